@@ -238,7 +238,8 @@ $(BUILD)/tests/api/test_space_threads: private LDFLAGS += \
 
 $(BUILD)/tests/api/test_gate: private LDFLAGS += \
     $(call wrap,api_gate_enter api_gate_sees api_gate_may_create api_gate_may_change api_role_allows \
-    api_token_is_current api_token_owns api_token_ranges api_tokens_find)
+    api_token_is_current api_token_is_equal api_token_owns api_token_ranges api_tokens_find \
+    st_keyed_begin)
 
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
     $(call wrap,pthread_mutex_lock shutdown)

@@ -545,6 +545,15 @@ static const api_example examples[] = {
      .status = 200,
      .produces = "application/json",
      .response = "{\"name\":null,\"role\":\"admin\",\"prefixes\":[],\"expires\":null}"},
+    {.route = "tickets_post",
+     .target = "/v1/tickets",
+     .consumes = "application/json",
+     .request = "{\"path\":\"/v1/meshes/kite/content?format=glb\"}",
+     .status = 200,
+     .produces = "application/json",
+     .response = "{\"path\":\"/v1/meshes/kite/content?format=glb&ticket="
+                 "hedge_p6Dq0wYzR2mXk8VtB4nHs1LcJf7GaEu9TiKo3CvQy5W\",\"expires\":"
+                 "\"2026-01-01T12:00:00.000Z\"}"},
     {.route = "reload_post",
      .target = "/v1/admin/reload",
      .status = 200,

@@ -389,8 +389,8 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
-/* A token, whose role stands where OAuth has scopes (OpenAPI 3.1 lets other schemes name them too);
- * or nothing, since a server may ask for none. */
+/* A token, or a ticket in its place, whose role stands where OAuth has scopes (OpenAPI 3.1 lets
+ * other schemes name them too); or nothing, since a server may ask for none. */
 static void write_security(api_out *out, const api_route *route)
 {
     api_out_key(out, "security");
@@ -402,6 +402,13 @@ static void write_security(api_out *out, const api_route *route)
         api_out_string(out, api_role_name(route->role));
         api_out_array_end(out);
         api_out_object_end(out);
+        if (strcmp(route->method, "GET") == 0) {
+            api_out_object_begin(out);
+            api_out_key(out, "ticket");
+            api_out_array_begin(out);
+            api_out_array_end(out);
+            api_out_object_end(out);
+        }
         api_out_object_begin(out);
         api_out_object_end(out);
     }
@@ -483,6 +490,14 @@ static void write_security_schemes(api_out *out)
                        "A server with --tokens asks for one, with at least the role that an "
                        "operation names: read, write (which includes read), admin (everything) or "
                        "metrics. A dry run of an edit takes read.");
+    api_out_object_end(out);
+    api_out_key(out, "ticket");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "apiKey");
+    api_out_key_string(out, "in", "query");
+    api_out_key_string(out, "name", "ticket");
+    api_out_key_string(out, "description",
+                       "The last parameter of a GET, as POST /v1/tickets gives it.");
     api_out_object_end(out);
     api_out_object_end(out);
 }

@@ -664,6 +664,22 @@ static const api_route routes[] = {
      .doc = "What the token of the request may do. Where the server asks for no tokens the name is "
             "null and the role admin."},
     {.method = "POST",
+     .path = "/v1/tickets",
+     .name = "tickets_post",
+     .run = api_tickets_post,
+     .role = API_ROLE_READ,
+     .flags = API_STORELESS,
+     .body_kind = API_BODY_CONTROL,
+     .consumes = json,
+     .produces = json,
+     .statuses = {200, 413, 415},
+     .request = "ticket_asked",
+     .response = "ticket",
+     .summary = "One GET without a header",
+     .doc = "For images and downloads of a page, where a browser sends no Authorization: `path` of "
+            "the answer is that of the request with a ticket. It is good for one GET within 60 "
+            "seconds, and does what the token may that asked for it."},
+    {.method = "POST",
      .path = "/v1/admin/reload",
      .name = "reload_post",
      .run = api_admin_reload,

@@ -414,6 +414,9 @@ const api_member api_answer_members[] = {
      "Meshes whose ids begin with none of them do not exist for the token; none: all do."},
     {"token", "expires", "time?", REQUIRED, "Null: never."},
 
+    {"ticket", "path", "text", REQUIRED, "With the ticket at its end."},
+    {"ticket", "expires", "time", REQUIRED, NULL},
+
     {"reloaded", "tokens", "count?", REQUIRED,
      "That are in force; null where the server asks for none."},
 
@@ -491,6 +494,9 @@ const api_member api_request_members[] = {
     {"attribute_patch", "dry_run", "flag", OPTIONAL, NULL},
 
     {"mesh_patch", "name", "text?", OPTIONAL, "null removes it."},
+
+    {"ticket_asked", "path", "text", REQUIRED,
+     "Path and query of the GET, as they will stand in its URL."},
 
     {"copy", "id", "text", OPTIONAL, NULL},
     {"copy", "name", "text", OPTIONAL, NULL},

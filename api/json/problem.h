@@ -184,6 +184,9 @@
       "respond-async. What all elements of a mesh are read for takes that header.")                \
     X(TOO_MANY_JOBS, "too_many_jobs", 503, "Too many jobs are waiting",                            \
       "The queue of jobs is full. Try again after Retry-After seconds.")                           \
+    X(TOO_MANY_TICKETS, "too_many_tickets", 503, "Too many tickets are good",                      \
+      "A ticket is good for a minute or until it is used, and only so many may be. Try again "     \
+      "after Retry-After seconds.")                                                                \
     X(LOADING, "loading", 503, "The mesh is being loaded",                                         \
       "Reading it from the disk takes longer than a request waits for it. Try again after "        \
       "Retry-After seconds.")                                                                      \

@@ -1,8 +1,13 @@
-/* GET /v1/token and POST /v1/admin/reload: which token a request has, and reading their file
- * again. */
+/* GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: which token a request has, a ticket in
+ * its place, and reading the file of tokens again. */
 #include "api/request/handlers.h"
 
+#include "api/request/gate.h"
+#include "system/clock.h"
+
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 /* Where no tokens are asked for, everybody is what an admin is. */
 void api_token_get(api_exchange *x)
@@ -30,6 +35,69 @@ void api_token_get(api_exchange *x)
         api_out_null(out);
     }
     api_out_object_end(out);
+    api_answer_json(x, 200);
+}
+
+/* A raw path with its query, as it will stand in a request line, of a GET. */
+static bool check_target(api_exchange *x, const api_in *in, const char *target)
+{
+    const size_t most = API_MAX_URI - sizeof "?" API_TICKET - API_TOKEN_TEXT;
+    const char *mark = strchr(target, '?');
+    const char *query = mark == NULL ? "" : mark + 1;
+    char allow[API_ALLOW];
+    api_path path;
+    api_variables variables;
+    char *raw = api_arena_copy(&x->arena, target, strcspn(target, "?"));
+    if (raw == NULL) {
+        return api_fail_memory(x);
+    }
+    for (const char *c = target; *c != '\0'; c++) {
+        if (*c <= ' ' || *c > '~' || *c == '#') {
+            return api_in_fail(in, API_BAD_PATH, "byte %zu cannot be in a path",
+                               (size_t)(c - target));
+        }
+    }
+    if (raw[0] != '/' || strlen(target) > most || api_gate_ticket(query) != NULL) {
+        return api_in_fail(in, API_BAD_PATH,
+                           "a path begins with \"/\", has at most %zu characters and no ticket",
+                           most);
+    }
+    if (!api_path_split(raw, &x->arena, &path, &x->problem)) {
+        x->problem.status = x->problem.code == HE_NO_MEMORY ? 0 : 400;
+        api_in_point(in);
+        return false;
+    }
+    return api_route_find(x->service->routes, "GET", &path, &variables, allow) != NULL ||
+           api_in_fail(in, API_BAD_PATH, "no route takes GET at \"%.150s\"", raw);
+}
+
+void api_tickets_post(api_exchange *x)
+{
+    static const char *const members[] = {"path", NULL};
+    const char *target;
+    char ticket[API_TOKEN_TEXT + 1];
+    double expires;
+    api_in in;
+    if (!api_in_only(&x->root, members) || !api_in_need(&x->root, "path", &in) ||
+        !api_in_string(&in, API_MAX_URI, &target) || !check_target(x, &in, target)) {
+        return;
+    }
+    if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), ticket,
+                          &expires)) {
+        api_fail(x, API_TOO_MANY_TICKETS, "as many tickets wait to be used as may");
+        return;
+    }
+    char *whole = api_arena_array(&x->arena, strlen(target) + sizeof ticket + 10, 1);
+    if (whole == NULL) {
+        api_fail_memory(x);
+        return;
+    }
+    (void)snprintf(whole, strlen(target) + sizeof ticket + 10, "%s%c" API_TICKET "%s", target,
+                   strchr(target, '?') == NULL ? '?' : '&', ticket);
+    api_out_object_begin(&x->out);
+    api_out_key_string(&x->out, "path", whole);
+    api_out_key_time(&x->out, "expires", expires);
+    api_out_object_end(&x->out);
     api_answer_json(x, 200);
 }
 

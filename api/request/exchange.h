@@ -34,6 +34,7 @@
 #include "api/limits.h"
 #include "api/request/api.h"
 #include "api/request/route.h"
+#include "api/token/tickets.h"
 #include "base/siphash.h"
 #include "store/write.h"
 
@@ -42,6 +43,7 @@ struct api_service {
     api_route_tree *routes;
     api_options options;
     api_backfills backfills;
+    api_tickets *tickets;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
 };
 

@@ -2,6 +2,7 @@
 
 #include "system/clock.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -40,30 +41,62 @@ static bool may_rehearse(const api_exchange *x)
     return (x->route->flags & API_REHEARSED) != 0 && api_role_allows(x->token->role, API_ROLE_READ);
 }
 
-static bool enter(api_exchange *x)
+const char *api_gate_ticket(const char *query)
 {
-    api_tokens *tokens = x->service->options.tokens;
-    const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
-    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* nobody else needs the secret */
-    if (tokens == NULL || x->route->role == API_ROLE_OPEN) {
-        return true;
+    const char *last = strrchr(query, '&');
+    last = last == NULL ? query : last + 1;
+    return strncmp(last, API_TICKET, strlen(API_TICKET)) == 0 ? last : NULL;
+}
+
+/* The ticket is taken off the query: what is left is what it was made for. */
+static bool take_ticket(api_exchange *x, const char *ticket)
+{
+    const char *path = x->request.path, *query = x->request.query;
+    int length = ticket == query ? 0 : (int)(ticket - query) - 1;
+    size_t size = strlen(path) + (size_t)length + 2;
+    char *target = api_arena_array(&x->arena, size, 1);
+    if (target == NULL) {
+        return api_fail_memory(x);
     }
+    (void)snprintf(target, size, "%s%s%.*s", path, length > 0 ? "?" : "", length, query);
+    x->request.query = target + strlen(path) + (length > 0 ? 1 : 0);
+    return (strcmp(x->request.method, "GET") == 0 &&
+            api_tickets_take(x->service->tickets, ticket + strlen(API_TICKET), target,
+                             st_clock_utc(), &x->token)) ||
+           refuse_unknown(x, true);
+}
+
+/* Nothing may follow the token. */
+static bool take_bearer(api_exchange *x, const char *header)
+{
     const char *text;
     size_t length = read_bearer(header, &text);
-    if (text != NULL) {
-        x->token = api_tokens_find(tokens, text, length, st_clock_utc());
+    if (text != NULL && text[length] == '\0') {
+        x->token = api_tokens_find(x->service->options.tokens, text, length, st_clock_utc());
     }
-    if (x->token == NULL) {
-        return refuse_unknown(x, text != NULL);
-    }
-    if (text[length] != '\0') {
-        return refuse_unknown(x, true);
-    }
+    return x->token != NULL || refuse_unknown(x, text != NULL);
+}
+
+static bool has_role(api_exchange *x)
+{
     if (api_role_allows(x->token->role, x->route->role)) {
         return true;
     }
     x->rehearses_only = may_rehearse(x);
     return x->rehearses_only || refuse_role(x, x->route->role);
+}
+
+static bool enter(api_exchange *x)
+{
+    bool asks = x->service->options.tokens != NULL;
+    const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
+    const char *ticket = header == NULL ? api_gate_ticket(x->request.query) : NULL;
+    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* nobody else needs the secret */
+    if (x->route->role == API_ROLE_OPEN || (!asks && ticket == NULL)) {
+        return true;
+    }
+    return (ticket != NULL ? take_ticket(x, ticket) : take_bearer(x, header)) &&
+           (!asks || has_role(x));
 }
 
 bool api_gate_enter(api_exchange *x)

@@ -26,6 +26,11 @@ bool api_gate_may_create(api_exchange *x, const char *mesh);
  * once more where it commits. */
 bool api_gate_may_change(api_exchange *x);
 
+/* A ticket (api/token/tickets.h) in place of the header is the last parameter of the query. */
+#define API_TICKET "ticket="
+/* Where the ticket begins in a query, NULL where it has none. */
+const char *api_gate_ticket(const char *query);
+
 /* The value of WWW-Authenticate for the problem of the exchange, NULL where it has none. */
 const char *api_gate_challenge(const api_exchange *x);
 

@@ -16,6 +16,7 @@ void api_openapi_get(api_exchange *x);
 
 /* token.c */
 void api_token_get(api_exchange *x);
+void api_tickets_post(api_exchange *x);
 void api_admin_reload(api_exchange *x);
 
 /* Jobs: x->job_id. */

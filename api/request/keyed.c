@@ -1,5 +1,7 @@
 #include "api/request/keyed.h"
 
+#include "api/request/gate.h"
+
 #include <string.h>
 
 /* With the 0 at its end, so that texts do not run together. */
@@ -60,9 +62,13 @@ static const char *representation_of(const api_route *route)
     return strstr(route->path, "/attributes/") != NULL ? "attribute" : "edits";
 }
 
+/* A token may have other prefixes than when it made the mesh. */
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->keyed);
+    if (kept->id[0] != '\0' && !api_gate_may_create(x, kept->id)) {
+        return;
+    }
     x->info.position = kept->position;
     x->info.incarnation = kept->incarnation;
     x->has_info = true;
@@ -89,7 +95,7 @@ bool api_keyed_find(api_exchange *x)
     if (x->key == NULL) {
         return true;
     }
-    st_key key = {.text = x->key};
+    st_key key = {.text = x->key, .holder = x->token == NULL ? "" : x->token->name};
     he_siphash_end(&x->hash, key.digest);
     st_mesh *mesh = x->route->flags & API_KEYED_NEW ? NULL : x->mesh;
     switch (st_keyed_begin(x->store, mesh, &key, &x->keyed)) {

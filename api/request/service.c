@@ -18,9 +18,10 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
     api_service *service = he_mem_zero(1, sizeof *service);
     if (service != NULL) {
         service->routes = api_route_tree_new(routes);
+        service->tickets = api_tickets_new();
     }
-    if (service != NULL && service->routes == NULL) {
-        he_mem_free(service);
+    if (service != NULL && (service->routes == NULL || service->tickets == NULL)) {
+        api_service_free(service);
         service = NULL;
     }
     if (service != NULL) {
@@ -41,6 +42,7 @@ void api_service_free(api_service *service)
 {
     if (service != NULL) {
         api_route_tree_free(service->routes);
+        api_tickets_free(service->tickets);
     }
     he_mem_free(service);
 }

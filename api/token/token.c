@@ -50,9 +50,14 @@ bool api_token_is_current(const api_token *token, double now)
     return !atomic_load_explicit(&token->revoked, memory_order_relaxed) && now < token->expires;
 }
 
+bool api_token_is_equal(const unsigned char *a, const unsigned char *b, size_t length)
+{
+    return memeql_sec(a, b, length) != 0;
+}
+
 bool api_token_matches(const api_token *token, const unsigned char hash[API_TOKEN_HASH])
 {
-    return memeql_sec(token->hash, hash, API_TOKEN_HASH) != 0;
+    return api_token_is_equal(token->hash, hash, API_TOKEN_HASH);
 }
 
 static bool begins_with(const char *text, const char *prefix)

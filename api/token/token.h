@@ -60,6 +60,8 @@ bool api_role_allows(api_role has, api_role needs);
 
 /* Is it neither revoked nor expired? `now` is in seconds since 1970. */
 bool api_token_is_current(const api_token *token, double now);
+/* Are the bytes the same? Takes the same time whichever of them differ. */
+bool api_token_is_equal(const unsigned char *a, const unsigned char *b, size_t length);
 /* Is the hash its own? Takes the same time whichever bytes differ. */
 bool api_token_matches(const api_token *token, const unsigned char hash[API_TOKEN_HASH]);
 /* Does a mesh of this id exist for it? NULL is the token of nobody, where no tokens are asked for:

@@ -47,6 +47,8 @@ typedef struct st_record_key {
     uint64_t digest[2]; /* of the request; good with the store's secret only */
     double time;        /* when the request came, seconds since 1970 */
     bool of_store;      /* the key is the store's: the change made the mesh */
+    const char *holder; /* whose key it is: another one's of the same text is another. "" or NULL
+                           for that of nobody in particular */
 } st_record_key;
 
 /* How long a key is kept, and how many of a mesh or of the store: the oldest go first. */

@@ -17,7 +17,7 @@ void st_keys_init(st_keys *keys, const uint64_t secret[2])
 
 static uint64_t bytes_of(const st_keyed *keyed)
 {
-    return sizeof *keyed + strlen(keyed->text) + 1 +
+    return sizeof *keyed + strlen(keyed->text) + 1 + strlen(keyed->key.holder) + 1 +
            (keyed->answer.body == NULL ? 0 : keyed->answer.length);
 }
 
@@ -29,10 +29,11 @@ static void release(st_keyed *keyed)
     }
 }
 
-static st_keyed **find(const st_keys *keys, const char *key, uint64_t hash)
+static st_keyed **find(const st_keys *keys, const char *key, const char *holder, uint64_t hash)
 {
     st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
-    while (*at != NULL && ((*at)->hash != hash || strcmp((*at)->text, key) != 0)) {
+    while (*at != NULL && ((*at)->hash != hash || strcmp((*at)->text, key) != 0 ||
+                           strcmp((*at)->key.holder, holder) != 0)) {
         at = &(*at)->next;
     }
     return at;
@@ -41,7 +42,7 @@ static st_keyed **find(const st_keys *keys, const char *key, uint64_t hash)
 /* Take it out of the table. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
-    *find(keys, keyed->text, keyed->hash) = keyed->next;
+    *find(keys, keyed->text, keyed->key.holder, keyed->hash) = keyed->next;
     keys->count--;
     if (keyed->is_kept) {
         *(keyed->older == NULL ? &keys->oldest : &keyed->older->newer) = keyed->newer;
@@ -96,21 +97,25 @@ static void forget_old(st_keys *keys, double now)
     }
 }
 
-static st_keyed_status add(st_keys *keys, const st_key *key, uint64_t hash, double now,
-                           st_keyed **out)
+static st_keyed_status add(st_keys *keys, const st_key *key, const char *whose, uint64_t hash,
+                           double now, st_keyed **out)
 {
-    size_t length = strlen(key->text);
-    st_keyed *keyed = reserve_bucket(keys) ? he_mem_zero(1, sizeof *keyed + length + 1) : NULL;
+    size_t length = strlen(key->text), holder = strlen(whose);
+    st_keyed *keyed =
+        reserve_bucket(keys) ? he_mem_zero(1, sizeof *keyed + length + holder + 2) : NULL;
     if (keyed == NULL) {
         return ST_KEYED_NO_MEMORY;
     }
     keyed->keys = keys;
     keyed->uses = 2;
     keyed->listed = true;
-    keyed->key = (st_record_key){
-        .text = keyed->text, .digest = {key->digest[0], key->digest[1]}, .time = now};
+    keyed->key = (st_record_key){.text = keyed->text,
+                                 .holder = keyed->text + length + 1,
+                                 .digest = {key->digest[0], key->digest[1]},
+                                 .time = now};
     keyed->hash = hash;
     memcpy(keyed->text, key->text, length + 1);
+    memcpy(keyed->text + length + 1, whose, holder + 1);
     st_keyed **at = &keys->buckets[hash & (keys->bucket_count - 1)];
     keyed->next = *at;
     *at = keyed;
@@ -121,13 +126,15 @@ static st_keyed_status add(st_keys *keys, const st_key *key, uint64_t hash, doub
 
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out)
 {
-    uint64_t hash = he_siphash_of(keys->secret, key->text, strlen(key->text));
+    const char *holder = key->holder == NULL ? "" : key->holder;
+    uint64_t hash = he_siphash_of(keys->secret, key->text, strlen(key->text)) ^
+                    he_siphash_of(keys->secret, holder, strlen(holder));
     pthread_mutex_lock(&keys->lock);
     forget_old(keys, now);
-    st_keyed *keyed = keys->bucket_count == 0 ? NULL : *find(keys, key->text, hash);
+    st_keyed *keyed = keys->bucket_count == 0 ? NULL : *find(keys, key->text, holder, hash);
     st_keyed_status status;
     if (keyed == NULL) {
-        status = add(keys, key, hash, now, out);
+        status = add(keys, key, holder, hash, now, out);
     } else if (keyed->key.digest[0] != key->digest[0] || keyed->key.digest[1] != key->digest[1]) {
         status = ST_KEYED_OTHER;
     } else if (!keyed->is_kept) {
@@ -173,7 +180,8 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
 {
     st_keys *keys = context;
     const st_record_key *was = &kept->key;
-    const st_key key = {.text = was->text, .digest = {was->digest[0], was->digest[1]}};
+    const st_key key = {
+        .text = was->text, .holder = was->holder, .digest = {was->digest[0], was->digest[1]}};
     st_kept answer = {.status = was->of_store ? 201 : 204,
                       .changed = true,
                       .incarnation = kept->incarnation,

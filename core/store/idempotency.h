@@ -44,7 +44,7 @@ struct st_keyed {
     uint64_t hash;
     st_kept answer; /* `body` is owned */
     struct st_keyed *next, *older, *newer;
-    char text[]; /* of the key */
+    char text[]; /* of the key, and behind its end the holder */
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);

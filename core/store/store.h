@@ -227,6 +227,7 @@ const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision);
 typedef struct st_key {
     const char *text;
     uint64_t digest[2]; /* of the request, by st_secret */
+    const char *holder; /* whose it is; "" or NULL for that of nobody in particular */
 } st_key;
 
 typedef enum st_keyed_status {

@@ -555,6 +555,92 @@ static void try_streams(world *w)
     must(w, "left", "GET", "/v1/meshes/left-m", NULL, 200);
 }
 
+static void try_url(world *w, const char *method, const char *target, int status)
+{
+    bench_reply r = ask_with(w, NULL, method, target, NULL, NULL);
+    if (r.status != status) {
+        found(w, "%s with a ticket is %d and not %d: %.200s", method, r.status, status, r.body);
+    }
+    bench_done(r);
+}
+
+/* `url` is the path with its ticket. */
+static void ask_ticket(world *w, const char *name, const char *target, char url[TARGET])
+{
+    char body[TARGET + 20];
+    snprintf(body, sizeof body, "{\"path\":\"%s\"}", target);
+    bench_reply r = ask(w, name, "POST", "/v1/tickets", body);
+    const cJSON *path = cJSON_GetObjectItem(r.json, "path");
+    snprintf(url, TARGET, "%s", cJSON_IsString(path) ? path->valuestring : target);
+    if (r.status != 200 || strncmp(url, target, strlen(target)) != 0) {
+        found(w, "%s's ticket for %s: %d %.200s", name, target, r.status, r.body);
+    }
+    bench_done(r);
+}
+
+/* A ticket is one GET of its path, as its token might ask for it. */
+static void try_tickets(world *w)
+{
+    char url[TARGET], other[TARGET], file[FILE_BYTES];
+    ask_ticket(w, "left", "/v1/meshes/left-m/content?format=obj", url);
+    const char *ticket = strstr(url, "&ticket=");
+    snprintf(other, sizeof other, "/v1/meshes/left-m/content?format=off%s",
+             ticket == NULL ? "" : ticket);
+    try_url(w, "GET", other, 401);
+    snprintf(other, sizeof other, "/v1/meshes/left-m?%s", ticket == NULL ? "" : ticket + 1);
+    try_url(w, "GET", other, 401);
+    snprintf(other, sizeof other, "%s", url);
+    other[strlen(other) - 1] ^= 1;
+    try_url(w, "GET", other, 401);
+    try_url(w, "HEAD", url, 401);
+    try_url(w, "POST", url, 405);
+    try_url(w, "GET", url, 200);
+    try_url(w, "GET", url, 401);
+    ask_ticket(w, "right", "/v1/meshes/left-m", url);
+    try_url(w, "GET", url, 404);
+    ask_ticket(w, "right", "/v1/meshes/right-m", url);
+    try_url(w, "GET", url, 200);
+    must(w, "meter", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes\"}", 403);
+    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes?ticket=x\"}", 400);
+    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m x\"}", 400);
+    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"//evil.example/\"}", 400);
+    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m/undo\"}", 400);
+    ask_ticket(w, "left", "/v1/meshes/left-m", url);
+    write_file(file, "left");
+    bench_change_tokens(w->bench, file);
+    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+    try_url(w, "GET", url, 401);
+    bench_change_tokens(w->bench, w->file);
+    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+}
+
+/* A key is that of a token: another one's of the same text is another, with a mesh and without. */
+static void try_keys(world *w)
+{
+    static const char *const key[] = {"Idempotency-Key", "one", NULL};
+    static const struct {
+        const char *target, *body;
+    } rows[] = {{"/v1/meshes/left-m/edits", "{\"op\":\"face_poke\",\"face\":0}"},
+                {"/v1/meshes", "{\"shape\":\"cube\"}"}};
+    static const struct {
+        const char *name;
+        bool again;
+    } sends[] = {{"left", false}, {"writer", false}, {"left", true}, {"writer", true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        for (size_t s = 0; s < sizeof sends / sizeof *sends; s++) {
+            char authorization[100];
+            snprintf(authorization, sizeof authorization, "Bearer %s" SECRET, sends[s].name);
+            bench_reply r = ask_with(w, authorization, "POST", rows[i].target, key, rows[i].body);
+            bool again = strcmp(bench_header(&r, "Idempotency-Replayed"), "true") == 0;
+            if (r.status >= 300 || again != sends[s].again) {
+                found(w, "%s's key at %s: %d, replayed %d", sends[s].name, rows[i].target, r.status,
+                      again);
+            }
+            bench_done(r);
+        }
+    }
+}
+
 size_t gate_findings(bool tell)
 {
     world w = {.tells = tell};
@@ -569,6 +655,8 @@ size_t gate_findings(bool tell)
     try_bodies_and_ids(&w);
     try_jobs(&w);
     try_streams(&w);
+    try_tickets(&w);
+    try_keys(&w);
     bench_free(w.bench);
     return w.findings;
 }

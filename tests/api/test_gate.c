@@ -23,6 +23,11 @@
     X(api_token_is_current, bool, (const api_token *t, double now), (t, now), true)                \
     X(api_token_owns, bool, (const api_token *t, const char *holder, const char *mesh),            \
       (t, holder, mesh), true)                                                                     \
+    X(api_token_is_equal, bool, (const unsigned char *a, const unsigned char *b, size_t length),   \
+      (a, b, length), true)                                                                        \
+    X(st_keyed_begin, st_keyed_status,                                                             \
+      (st_store * s, st_mesh * m, const st_key *k, st_keyed **out), (s, m, k, out),                \
+      __real_st_keyed_begin(s, m, &(st_key){k->text, {k->digest[0], k->digest[1]}, ""}, out))      \
     X(api_token_ranges, size_t, (const api_token *t, const char **out), (t, out), 0)               \
     X(api_tokens_find, api_token *, (api_tokens * s, const char *text, size_t length, double now), \
       (s, text, length, now), __real_api_tokens_find(s, "boss-s3cr3t", 11, now))

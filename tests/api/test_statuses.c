@@ -261,6 +261,10 @@ static const step steps[] = {
     {"DELETE", "/v1/jobs/none", 404, NULL, {NULL}},
 
     {"GET", "/v1/token", 200, NULL, {NULL}},
+    {"POST", "/v1/tickets", 200, "{\"path\":\"/v1/meshes\"}", {NULL}},
+    {"POST", "/v1/tickets", 400, "{\"path\":\"/v1/undo\"}", {NULL}},
+    {"POST", "/v1/tickets", 413, BIG, {NULL}},
+    {"POST", "/v1/tickets", 415, "{}", {TEXT}},
     {"POST", "/v1/admin/reload", 200, NULL, {NULL}},
     {"GET", "/v1/operations", 200, NULL, {NULL}},
     {"GET", "/v1/openapi.json", 200, NULL, {NULL}},

@@ -549,9 +549,9 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
         {"GET /v1/meshes/m/attributes/corners/a",
          "\"corners\" is none of vertices, halfedges, edges, faces, mesh"},
         {"GET /v1/mesh",
-         "\"mesh\" is none of meshes, jobs, token, admin, operations, openapi.json"},
-        {"GET /v1",
-         "the path goes on with one of meshes, jobs, token, admin, operations, openapi.json"},
+         "\"mesh\" is none of meshes, jobs, token, tickets, admin, operations, openapi.json"},
+        {"GET /v1", "the path goes on with one of meshes, jobs, token, tickets, admin, operations, "
+                    "openapi.json"},
         {"GET /v1/meshes/m/vertices/0/edges/1",
          "there is nothing at \"/v1/meshes/m/vertices/0/edges/1\""},
     };

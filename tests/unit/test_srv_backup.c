@@ -167,8 +167,9 @@ static bool count_key(void *context, const st_kept_key *key)
 static void a_restore_keeps_keys_without_their_tags(void **state)
 {
     (void)state;
-    static const st_record_key make = {"a key", {7, 8}, 1000, true};
-    static const st_record_key edit = {"a key", {7, 8}, 1001, false};
+    static const st_record_key make = {
+        .text = "a key", .digest = {7, 8}, .time = 1000, .of_store = true};
+    static const st_record_key edit = {.text = "a key", .digest = {7, 8}, .time = 1001};
     told_journal told;
     kept_mesh mesh = new_mesh("a");
     open_store(&told);

@@ -43,7 +43,7 @@ static int teardown(void **state)
 }
 
 typedef struct taken {
-    char texts[MOST][32];
+    char texts[MOST][32], holders[MOST][32];
     st_kept_key keys[MOST];
     size_t count, most; /* none is taken beyond `most` */
 } taken;
@@ -55,6 +55,7 @@ static bool take(void *context, const st_kept_key *key)
         return false;
     }
     snprintf(t->texts[t->count], sizeof t->texts[0], "%s", key->key.text);
+    snprintf(t->holders[t->count], sizeof t->holders[0], "%s", key->key.holder);
     t->keys[t->count++] = *key;
     return true;
 }
@@ -66,10 +67,15 @@ static taken keys_of(const char *id)
     return t;
 }
 
+static const char *holder = NULL; /* of the keys that are appended */
+
 static void append(kept_mesh *mesh, st_record record, const char *text, double time, bool of_store)
 {
-    const st_record_key key = {
-        .text = text, .digest = {7, (uint64_t)time}, .time = time, .of_store = of_store};
+    const st_record_key key = {.text = text,
+                               .digest = {7, (uint64_t)time},
+                               .time = time,
+                               .of_store = of_store,
+                               .holder = holder};
     record.key = &key;
     record.time = time;
     uint64_t position = kept_append(&told.journal, record, mesh, record.number == 1 ? NULL : "x",
@@ -107,6 +113,29 @@ static void keys_come_back_with_what_they_were_for(void **state)
     told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
     assert_int_equal(keys_of("a").count, 0);
     assert_int_equal(keys_of(NULL).count, 2);
+}
+
+static void keys_of_one_text_are_those_of_their_holders(void **state)
+{
+    (void)state;
+    static const char *const holders[] = {NULL, "alice", "bob"};
+    kept_mesh a = {.id = "a", .name = "", .content = content, .incarnation = 11};
+    append(&a, kept_content(&a), "makes-a", 100, true);
+    for (size_t i = 0; i < 3; i++) {
+        holder = holders[i];
+        append(&a, kept_edit(&a), "same", 101 + (double)i, false);
+    }
+    holder = NULL;
+    for (int again = 0; again < 2; again++) {
+        taken of_a = keys_of("a");
+        assert_int_equal(of_a.count, 3);
+        for (size_t i = 0; i < 3; i++) {
+            assert_string_equal(of_a.texts[i], "same");
+            assert_string_equal(of_a.holders[i], i == 0 ? "" : holders[i]);
+        }
+        told_end(&told);
+        open_store();
+    }
 }
 
 static void keys_older_than_a_day_go(void **state)
@@ -248,6 +277,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(keys_come_back_with_what_they_were_for, setup, teardown),
+        cmocka_unit_test_setup_teardown(keys_of_one_text_are_those_of_their_holders, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(keys_older_than_a_day_go, setup, teardown),
         cmocka_unit_test_setup_teardown(a_key_of_a_request_that_changed_nothing_is_kept, setup,
                                         teardown),

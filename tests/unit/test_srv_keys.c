@@ -60,6 +60,26 @@ static bool is_kept(const char *text, double now)
     return status == ST_KEYED_KEPT;
 }
 
+static void another_holder_has_keys_of_its_own(void **state)
+{
+    (void)state;
+    const st_key alice = {.text = "a", .digest = {1, 7}, .holder = "alice"};
+    const st_key bob = {.text = "a", .digest = {2, 7}, .holder = "bob"};
+    st_keyed *first = NULL, *second = NULL, *again = NULL;
+    put("a", "body", 4, 0);
+    assert_int_equal(st_keys_begin(&keys, &alice, 0, &first), ST_KEYED_NEW);
+    assert_int_equal(st_keys_begin(&keys, &bob, 0, &second), ST_KEYED_NEW);
+    assert_int_equal(st_keys_begin(&keys, &alice, 0, &again), ST_KEYED_BUSY);
+    keep(first, "alice's", 7, true);
+    st_keyed_end(second);
+    assert_int_equal(st_keys_begin(&keys, &alice, 0, &again), ST_KEYED_KEPT);
+    assert_int_equal(again->answer.length, 7);
+    st_keyed_end(again);
+    assert_true(is_kept("a", 0));
+    assert_int_equal(st_keys_begin(&keys, &bob, 0, &again), ST_KEYED_NEW);
+    st_keyed_end(again);
+}
+
 static void the_first_answer_is_given_again(void **state)
 {
     (void)state;
@@ -207,6 +227,7 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = {
+        TEST(another_holder_has_keys_of_its_own),
         TEST(the_first_answer_is_given_again),
         TEST(a_request_without_an_answer_is_forgotten),
         TEST(answers_last_a_day),

@@ -276,7 +276,7 @@ static void listeners_are_sent_away(void **state)
 static void the_key_of_a_lost_creation_is_forgotten(void **state)
 {
     (void)state;
-    const st_key key = {"a-key", {1, 2}};
+    const st_key key = {.text = "a-key", .digest = {1, 2}};
     st_keyed *keyed = NULL;
     st_mesh *made = NULL;
     for (int lost = 0; lost < 2; lost++) {

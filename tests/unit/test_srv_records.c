@@ -25,7 +25,7 @@ static int setup(void **state)
 {
     (void)state;
     open_store(BUDGET);
-    st_key key = {"a-key", {5, 6}};
+    st_key key = {.text = "a-key", .digest = {5, 6}};
     st_keyed *keyed;
     assert_int_equal(st_keyed_begin(store, NULL, &key, &keyed), ST_KEYED_NEW);
     assert_int_equal(

@@ -2,6 +2,7 @@
  */
 #include "unit/fixture.h"
 
+#include "api/token/tickets.h"
 #include "api/token/token_set.h"
 
 #include <math.h>
@@ -270,6 +271,45 @@ static void without_memory_the_tokens_before_stay(void **state)
     }
 }
 
+static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
+{
+    (void)state;
+    api_token_list list;
+    char ticket[API_TOKEN_TEXT + 1], another[API_TOKEN_TEXT + 1];
+    double expires;
+    assert_true(read_text("a read " HASH " expires=1970-01-02\nb read " OTHER, &list));
+    api_tickets *tickets = api_tickets_new();
+    assert_non_null(tickets);
+    api_token *a = list.items[0], *b = list.items[1], *got = NULL;
+    assert_true(api_tickets_make(tickets, a, "/x", 100, ticket, &expires));
+    assert_true(expires == 160);
+    assert_false(api_tickets_take(tickets, ticket, "/y", 100, &got));
+    assert_false(api_tickets_take(tickets, "ticket", "/x", 100, &got));
+    assert_true(api_tickets_take(tickets, ticket, "/x", 159, &got));
+    assert_ptr_equal(got, a);
+    api_token_release(got);
+    assert_false(api_tickets_take(tickets, ticket, "/x", 159, &got));
+    assert_true(api_tickets_make(tickets, a, "/x", 100, ticket, &expires));
+    assert_false(api_tickets_take(tickets, ticket, "/x", 160, &got)); /* it has expired */
+    assert_true(api_tickets_make(tickets, a, "/x", 86390, ticket, &expires));
+    assert_false(api_tickets_take(tickets, ticket, "/x", 86400, &got)); /* its token has */
+    for (int i = 0; i < API_TICKETS_OF_A_TOKEN; i++) {
+        assert_true(api_tickets_make(tickets, b, "/x", 0, ticket, &expires));
+    }
+    assert_false(api_tickets_make(tickets, b, "/x", 0, another, &expires));
+    for (int i = API_TICKETS_OF_A_TOKEN; i < API_TICKETS; i++) {
+        assert_true(api_tickets_make(tickets, NULL, "/x", 0, another, &expires));
+    }
+    assert_false(api_tickets_make(tickets, NULL, "/x", 0, another, &expires));
+    assert_true(api_tickets_make(tickets, NULL, "/x", 60, another, &expires));
+    assert_true(api_tickets_take(tickets, another, "/x", 60, &got));
+    assert_null(got);
+    assert_true(api_tickets_make(tickets, b, "/x", 60, another, &expires)); /* freed with it */
+    api_tickets_free(tickets);
+    assert_int_equal(b->uses, 1);
+    api_token_list_clear(&list);
+}
+
 static void a_new_token_is_in_its_line(void **state)
 {
     (void)state;
@@ -345,6 +385,7 @@ int main(void)
         cmocka_unit_test(prefixes_say_which_meshes_there_are),
         cmocka_unit_test(a_file_takes_the_place_of_another_whole_or_not_at_all),
         cmocka_unit_test(without_memory_the_tokens_before_stay),
+        cmocka_unit_test(a_ticket_is_good_once_for_its_path_and_a_minute),
         cmocka_unit_test(a_new_token_is_in_its_line),
         cmocka_unit_test(a_check_costs_about_a_microsecond),
     };

@@ -10,17 +10,18 @@ static const char of_store[] =
     "ORDER BY time DESC LIMIT ?2) ORDER BY time";
 static const char of_mesh[] =
     "SELECT * FROM (SELECT k.mesh, k.text, k.digest, k.time, k.id, k.incarnation, k.revision, "
-    "k.metadata, k.position, k.made, k.sum FROM kept k JOIN mesh m ON k.mesh = m.key "
+    "k.metadata, k.position, k.made, k.sum, k.holder FROM kept k JOIN mesh m ON k.mesh = m.key "
     "WHERE m.id = ?3 AND k.time > m.modified - ?1 ORDER BY k.time DESC LIMIT ?2) ORDER BY time";
 
-bool st_kept_row_read(sqlite3_stmt *s, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
-                      st_kept_row *row)
+bool st_kept_row_read(sqlite3_stmt *s, st_kept_texts *texts, st_kept_row *row)
 {
-    st_db_text(s, 4, id, ST_MESH_ID + 1);
-    st_db_text(s, 1, text, ST_KEY_TEXT + 1);
+    st_db_text(s, 4, texts->id, sizeof texts->id);
+    st_db_text(s, 1, texts->text, sizeof texts->text);
+    st_db_text(s, 11, texts->holder, sizeof texts->holder);
     *row = (st_kept_row){.mesh = sqlite3_column_int64(s, 0),
-                         .text = text,
-                         .id = id,
+                         .holder = texts->holder,
+                         .text = texts->text,
+                         .id = texts->id,
                          .time = sqlite3_column_double(s, 3),
                          .incarnation = st_db_word(s, 5),
                          .revision = st_db_word(s, 6),
@@ -39,7 +40,7 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
 {
     st_sqlite *self = context;
     sqlite3_stmt *s = NULL;
-    char of[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1];
+    st_kept_texts texts;
     st_kept_row row;
     bool taken = true;
     if (self->only_reads) {
@@ -56,12 +57,13 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     }
     while (code == SQLITE_OK && taken && (code = sqlite3_step(s)) == SQLITE_ROW) {
         code = SQLITE_OK;
-        if (st_kept_row_read(s, of, text, &row)) {
-            const st_kept_key key = {.key = {.text = text,
+        if (st_kept_row_read(s, &texts, &row)) {
+            const st_kept_key key = {.key = {.text = row.text,
+                                             .holder = row.holder,
                                              .digest = {row.digest[0], row.digest[1]},
                                              .time = row.time,
                                              .of_store = row.made},
-                                     .id = of,
+                                     .id = row.id,
                                      .incarnation = row.incarnation,
                                      .revision = row.revision,
                                      .metadata = row.metadata};

@@ -129,8 +129,10 @@ void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
     const st_record_key *key = &kept->key;
     st_copy_text(room->key_text, key->text, ST_KEY_TEXT);
     st_copy_text(room->card.id, kept->id, ST_MESH_ID);
+    st_copy_text(room->key_holder, key->holder == NULL ? "" : key->holder, ST_KEY_HOLDER);
     room->has_key = true;
     room->key = (st_kept_row){.mesh = key->of_store ? 0 : -1,
+                              .holder = room->key_holder,
                               .text = room->key_text,
                               .id = room->card.id,
                               .digest = {key->digest[0], key->digest[1]},

@@ -70,7 +70,7 @@ enum { MESHES, MESH_PUT, KEPT, KEPT_PUT, JOB, JOB_PUT, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [MESHES] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE key > ?1 ORDER BY key LIMIT 1",
     [MESH_PUT] = "UPDATE mesh SET incarnation = ?2, sum = ?3 WHERE key = ?1",
-    [KEPT] = "SELECT " ST_KEPT_COLUMNS ", holder FROM kept "
+    [KEPT] = "SELECT " ST_KEPT_COLUMNS " FROM kept "
              "WHERE (mesh, holder, text) > (?1, ?2, ?3) ORDER BY mesh, holder, text LIMIT 1",
     [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?4 "
                  "WHERE mesh = ?1 AND holder = ?2 AND text = ?3",
@@ -104,21 +104,20 @@ static st_sql draw_incarnations(st_db *db)
 /* Kept answers lose their ETags: the states that they name may be gone. */
 static st_sql take_tags_of_keys(st_db *db)
 {
-    char id[ST_MESH_ID + 1], holder[ST_KEY_TEXT + 1] = "", text[ST_KEY_TEXT + 1] = "";
-    st_kept_row row = {.mesh = INT64_MIN};
+    st_kept_texts row_texts;
+    st_kept_row row = {.mesh = INT64_MIN, .holder = "", .text = ""};
     for (;;) {
         sqlite3_stmt *s;
-        st_sql outcome = st_db_find(db, KEPT, &s, "itt", row.mesh, holder, text);
+        st_sql outcome = st_db_find(db, KEPT, &s, "itt", row.mesh, row.holder, row.text);
         if (outcome != ST_SQL_ROW) {
             return outcome;
         }
-        const bool good = st_kept_row_read(s, id, text, &row);
-        st_db_text(s, ST_KEPT_COUNT, holder, sizeof holder);
+        const bool good = st_kept_row_read(s, &row_texts, &row);
         st_db_reset(s);
         row.incarnation = row.revision = row.metadata = 0;
         /* What was damaged stays so. */
         const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
-        outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, holder, text, (uint64_t)sum);
+        outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, row.holder, row.text, (uint64_t)sum);
         if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
             outcome = ST_SQL_DAMAGED;
         }

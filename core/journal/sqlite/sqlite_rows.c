@@ -36,8 +36,8 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_PURGE_ALL] = "SELECT " ST_PURGE_COLUMNS " FROM purge",
     [ST_SQL_PURGE_DELETE] = "DELETE FROM purge WHERE kind = ?1 AND key = ?2",
     [ST_SQL_KEPT_MAKE] = "INSERT OR REPLACE INTO kept(mesh, text, digest, time, id, incarnation, "
-                         "revision, metadata, position, made, sum) "
-                         "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)",
+                         "revision, metadata, position, made, sum, holder) "
+                         "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12)",
     [ST_SQL_KEPT_DELETE] = "DELETE FROM kept WHERE mesh = ?1",
     [ST_SQL_KEPT_TRIM] = "DELETE FROM kept WHERE (mesh, holder, text) IN (SELECT mesh, holder, "
                          "text FROM kept WHERE time < ?1 ORDER BY time LIMIT 2)",
@@ -296,9 +296,9 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
     const uint32_t sum = st_kept_row_sum(&row);
     st_sql outcome =
-        st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiii", row.mesh, row.text, row.digest,
+        st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiiit", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
-                 row.position, (uint64_t)row.made, (uint64_t)sum);
+                 row.position, (uint64_t)row.made, (uint64_t)sum, row.holder);
     self->keys++; /* one that takes the place of another counts twice until the next start */
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }

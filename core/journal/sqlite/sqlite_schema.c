@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* A key is one incarnation's and is never used again. `fence`, `node` and `holder` have no
-     * other values than these in version 1. */
+    /* A key is one incarnation's and is never used again. `fence`, `node` and a mesh's
+     * `holder` have no other values than these in version 1. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -108,6 +108,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row)
 uint32_t st_kept_row_sum(const st_kept_row *row)
 {
     uint32_t sum = add_text(add_word(begin("kept"), (uint64_t)row->mesh), row->text);
+    /* Stores that were written before keys had holders have the sums of rows without one. */
+    sum = row->holder[0] == '\0' ? sum : add_text(sum, row->holder);
     sum = add_time(add_word(add_word(sum, row->digest[0]), row->digest[1]), row->time);
     sum = add_word(add_text(sum, row->id), row->incarnation);
     sum = add_word(add_word(sum, row->revision), row->metadata);

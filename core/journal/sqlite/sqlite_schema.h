@@ -13,7 +13,8 @@ enum {
     ST_SCHEMA_VERSION = 2,              /* 1 had no jobs */
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
-    ST_KEY_TEXT = 255                   /* of an Idempotency-Key, at most */
+    ST_KEY_TEXT = 255,                  /* of an Idempotency-Key, at most */
+    ST_KEY_HOLDER = 64                  /* of the name of whose it is */
 };
 
 /* What the store is: never changed once it was made. */
@@ -61,12 +62,17 @@ typedef struct st_purge_row {
 /* A kept key's row; the mesh is 0 for keys of the store. */
 typedef struct st_kept_row {
     int64_t mesh;
-    const char *text, *id;
+    const char *holder, *text, *id;
     uint64_t digest[2];
     double time;
     uint64_t incarnation, revision, metadata, position;
     bool made; /* the mesh: the answer was 201 */
 } st_kept_row;
+
+/* What the texts of a row that was read point into. */
+typedef struct st_kept_texts {
+    char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1], holder[ST_KEY_HOLDER + 1];
+} st_kept_texts;
 
 /* --- sums --- */
 
@@ -89,8 +95,8 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 #define ST_SNAPSHOT_COLUMNS "key, mesh, number, revision, parts, process, chain, facts, sum"
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
 #define ST_KEPT_COLUMNS \
-    "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum"
-enum { ST_KEPT_COUNT = 11 }; /* of these columns */
+    "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum, holder"
+enum { ST_KEPT_COUNT = 12 }; /* of these columns */
 #define ST_JOB_COLUMNS                                                                          \
     "id, number, state, operation, phase, mesh, location, holder, progress, created, started, " \
     "finished, status, shown, type, disposition, tag, warnings, body, sum"

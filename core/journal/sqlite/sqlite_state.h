@@ -72,7 +72,7 @@ typedef struct st_sqlite_room {
     st_card card;       /* of the mesh after them */
     bool has_key;
     st_kept_row key; /* its texts are those here */
-    char key_text[ST_KEY_TEXT + 1];
+    char key_text[ST_KEY_TEXT + 1], key_holder[ST_KEY_HOLDER + 1];
     st_job_word job_word;
     st_job
         job; /* its texts and body lie in the room's bytes; of WORK what the records tell of it */
@@ -339,10 +339,9 @@ st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t li
 /* One of those that were listed last. ST_SQL_DONE where it is none of them. */
 st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_row *out);
 /* --- sqlite_keys.c --- */
-/* The row's texts lie in `id` and `text`. False where the sum is wrong: such a key is as good as
+/* The row's texts lie in `texts`. False where the sum is wrong: such a key is as good as
  * none. */
-bool st_kept_row_read(sqlite3_stmt *statement, char id[ST_MESH_ID + 1], char text[ST_KEY_TEXT + 1],
-                      st_kept_row *row);
+bool st_kept_row_read(sqlite3_stmt *statement, st_kept_texts *texts, st_kept_row *row);
 st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
 /* Opens the connections that read; closes them. */
 st_sql st_readers_open(st_sqlite *self, const char *path);
