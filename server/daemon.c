@@ -5,6 +5,7 @@
 #include "api/job/job_table.h"
 #include "journal/sqlite/sqlite_journal.h"
 #include "server/assets.h"
+#include "server/backup.h"
 #include "server/http/http.h"
 #include "server/net/healthcheck.h"
 #include "server/net/notify.h"
@@ -47,6 +48,7 @@ typedef struct daemon_parts {
     api_tokens *tokens;      /* NULL: nobody needs one */
     const char *tokens_path; /* of their file */
     char address[SRV_ADDRESS_TEXT]; /* with the port that was taken */
+    srv_backups backups;
     _Atomic bool ready;
 } daemon_parts;
 
@@ -218,23 +220,27 @@ static bool open_service(daemon_parts *parts, const srv_config *config)
     if (parts->job_table == NULL) {
         return fail("no memory to start");
     }
-    parts->service = api_service_new(parts->store, api_routes(),
-                                     &(api_options){
-                                         .max_upload = config->max_upload,
-                                         .version = SRV_VERSION,
-                                         .asset = srv_assets_find,
-                                         .asset_context = parts->assets,
-                                         .ready = is_ready,
-                                         .ready_context = parts,
-                                         .memory = count_memory,
-                                         .tokens = parts->tokens,
-                                         .reload = reload,
-                                         .reload_context = parts,
-                                         .jobs = parts->job_table,
-                                         .pool = parts->pool,
-                                         .plain_answers = config->no_compression,
-                                         .exec = st_parallel_exec(parts->parallel),
-                                     });
+    parts->backups.folder = srv_config_folder(config);
+    parts->service =
+        api_service_new(parts->store, api_routes(),
+                        &(api_options){
+                            .max_upload = config->max_upload,
+                            .version = SRV_VERSION,
+                            .asset = srv_assets_find,
+                            .asset_context = parts->assets,
+                            .ready = is_ready,
+                            .ready_context = parts,
+                            .memory = count_memory,
+                            .tokens = parts->tokens,
+                            .reload = reload,
+                            .reload_context = parts,
+                            .backup = parts->backups.folder == NULL ? NULL : srv_backup_make,
+                            .backup_context = &parts->backups,
+                            .jobs = parts->job_table,
+                            .pool = parts->pool,
+                            .plain_answers = config->no_compression,
+                            .exec = st_parallel_exec(parts->parallel),
+                        });
     bool logs = config->log == SRV_LOG_ACCESS ||
                 (config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
     if (logs) {

@@ -1,12 +1,16 @@
 /* element_rows.h - rows of the table of routes that differ in the kind of element.
  *
  * vertices_list, vertex_get, vertex_faces: `one` and `many` are the kind's names, `what` is the
- * name of a relation of core/query/adjacency.h. The media types they name are those of routes.c. */
+ * name of a relation of core/query/adjacency.h. The table in routes.c uses `json` as
+ * well. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 
 #include "api/describe/parameters.h"
 #include "api/request/handlers.h"
+
+static const char *const json[] = {"application/json", NULL};
+static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
 
 #define ELEMENTS(of, one, many, words)                                                            \
     {                                                                                             \

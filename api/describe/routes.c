@@ -8,11 +8,9 @@
 
 /* --- media types --- */
 
-static const char *const json[] = {"application/json", NULL};
 static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
 static const char *const octets[] = {"application/octet-stream", NULL};
 static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
-static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
 static const char *const mesh_in[] = {"application/json",
                                       "model/obj",
                                       "model/x-off",
@@ -37,7 +35,9 @@ static const char *const job_results[] = {"application/json",
                                           "model/ply",
                                           "model/stl",
                                           "model/gltf-binary",
+                                          "application/vnd.sqlite3",
                                           NULL};
+static const char *const database[] = {"application/vnd.sqlite3", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",
@@ -692,6 +692,19 @@ static const api_route routes[] = {
      .doc = "As SIGHUP does. A token that is not in it any more is refused from now on, and its "
             "event streams end with `bye`. Where the file is wrong what was in force stays, and "
             "the refusal names the line."},
+
+    {.method = "POST",
+     .path = "/v1/admin/backup",
+     .name = "backup_post",
+     .run = api_admin_backup,
+     .role = API_ROLE_ADMIN,
+     .flags = API_LONG,
+     .produces = database,
+     .headers = {&disposition},
+     .statuses = {200, 202, 409},
+     .summary = "Back up the store",
+     .doc = "A file for `hedged --restore`. A job unless the client waits; its result is the file, "
+            "of which the server keeps one at a time: DELETE the job when it is fetched."},
 
     /* the tables */
     {.method = "GET",

@@ -2,6 +2,7 @@
 #ifndef HE_API_JOB_JOB_H
 #define HE_API_JOB_JOB_H
 
+#include "api/blob.h"
 #include "api/token/token.h"
 #include "journal/journal.h"
 
@@ -34,6 +35,7 @@ typedef struct api_job {
     char location[API_JOB_LOCATION];   /* likewise; "" where it has none */
     const char *body;                  /* lent for the call; NULL: none, or not kept */
     size_t length;
+    api_blob blob;                        /* lent: where the answer lies, if not in `body` */
     bool shown;                           /* the body is JSON, and a part of what is told of it */
     const char *headers[API_JOB_HEADERS]; /* lent for the call; NULL where it has none */
 } api_job;

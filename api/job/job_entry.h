@@ -14,6 +14,7 @@ typedef struct api_job_entry {
     api_job_table *table;
     api_job facts;     /* but for phase and progress until it has ended */
     char *body;        /* facts.body, owned */
+    api_blob blob;     /* facts.blob, owned */
     char *texts;       /* what facts.headers point into, and of a job of before the start the
                           others too; owned */
     api_job_work work; /* self NULL when it has ended */

@@ -22,7 +22,7 @@ const char *api_job_state_name(api_job_state state)
 void api_job_result_path(const api_job *job, char out[API_JOB_RESULT_PATH])
 {
     out[0] = '\0';
-    if (job->state == API_JOB_DONE && job->body != NULL) {
+    if (job->state == API_JOB_DONE && (job->body != NULL || job->blob.self != NULL)) {
         snprintf(out, API_JOB_RESULT_PATH, "/v1/jobs/%s/result", job->id);
     }
 }

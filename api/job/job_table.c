@@ -36,10 +36,19 @@ static void free_work(api_job_work *work)
 
 /* --- the list, under the lock --- */
 
+static void free_blob(api_job_entry *j)
+{
+    if (j->blob.self != NULL) {
+        j->blob.free(j->blob.self);
+    }
+    j->blob = j->facts.blob = (api_blob){.self = NULL};
+}
+
 void api_job_entry_release(api_job_entry *j)
 {
     if (--j->uses == 0) {
         free_work(&j->work);
+        free_blob(j);
         he_mem_free(j->body);
         he_mem_free(j->texts);
         he_mem_free(j);
@@ -182,12 +191,17 @@ static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
     if (length < sizeof j->facts.location) {
         memcpy(j->facts.location, outcome->location, length + 1);
     }
+    j->blob = outcome->blob;
     if (outcome->body != NULL && keep_headers(j, outcome)) {
         j->body = outcome->body;
     } else {
         he_mem_free(outcome->body);
     }
+    if (j->blob.self != NULL && !keep_headers(j, outcome)) {
+        free_blob(j);
+    }
     j->facts.body = j->body;
+    j->facts.blob = (api_blob){j->blob.self, j->blob.length, j->blob.read, NULL};
     j->facts.length = j->body == NULL ? 0 : outcome->length;
     j->facts.shown = outcome->shown;
 }
@@ -228,6 +242,7 @@ static void answer_lost(api_job_entry *j)
     api_problem_write(&problem, "", &text);
     pthread_mutex_lock(&j->table->lock);
     he_mem_free(j->body);
+    free_blob(j);
     j->body = text.failed ? NULL : text.bytes;
     j->facts.body = j->body;
     j->facts.length = text.failed ? 0 : text.length;

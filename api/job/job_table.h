@@ -56,6 +56,7 @@ typedef struct api_job_outcome {
     const char *location; /* "" for none */
     char *body;           /* from he_mem; NULL: none */
     size_t length;
+    api_blob blob;                        /* in place of `body`; the table takes it */
     bool shown;                           /* as in api_job */
     const char *headers[API_JOB_HEADERS]; /* NULL where it has none */
     st_shown awaits;                      /* the end shows when that is durable */

@@ -125,6 +125,11 @@
     X(IDEMPOTENCY_BUSY, "idempotency_in_progress", 409, "The same request is under way",           \
       "A request with this Idempotency-Key is being answered. Ask again after Retry-After "        \
       "seconds: its answer is given then.")                                                        \
+    X(BACKUP_KEPT, "backup_kept", 409, "There is a backup already",                                \
+      "The server keeps one at a time, since it takes as much room as the store. Fetch it from "   \
+      "its job and DELETE the job, or wait until it has ended.")                                   \
+    X(NOTHING_KEPT, "nothing_kept", 409, "There is nothing to back up",                            \
+      "The server was started with --store memory.")                                               \
     X(RELOAD_FAILED, "reload_failed", 409, "A file cannot be taken",                               \
       "A file that the server was to read again is wrong; the detail says where. What was in "     \
       "force before stays.")                                                                       \
@@ -202,6 +207,8 @@
     X(INTERRUPTED, "interrupted", 503, "The server stopped before the job had ended",              \
       "Of a job alone: it was accepted, and waited or ran when the server stopped or was killed. " \
       "Nothing of it was done, and nothing was changed; send the request again.")                  \
+    X(BACKUP_FAILED, "backup_failed", 503, "The backup was not made",                              \
+      "The detail says why: most likely there is no room for it beside the store.")                \
     X(VERSION_NOT_SUPPORTED, "version_not_supported", 505, "The HTTP version is not supported",    \
       "HTTP/1.1 and HTTP/1.0 are. The connection is closed.")                                      \
     X(STORE_FULL, "store_full", 507, "The disk is full",                                           \

@@ -77,7 +77,12 @@ void api_job_result(api_exchange *x)
         const char *tag = kept_header(&job, "ETag");
         if (tag == NULL || !api_not_modified_since(x, tag)) {
             answer_kept_headers(x, &job);
-            api_answer_bytes(x, 200, kept_header(&job, "Content-Type"), job.body, job.length);
+            const char *type = kept_header(&job, "Content-Type");
+            if (job.blob.self != NULL) {
+                api_answer_blob(x, 200, type, &job.blob);
+            } else {
+                api_answer_bytes(x, 200, type, job.body, job.length);
+            }
         }
     }
 }

@@ -107,6 +107,11 @@ typedef struct api_options {
      * `message`, and what was in force stays. NULL: there is nothing to be read. */
     bool (*reload)(void *context, char *message, size_t size);
     void *reload_context;
+    /* Writes all that is stored to a file of its own, which takes as long as the store is large.
+     * ST_BUSY while the one before is kept, ST_FAILED with a sentence in `message`. NULL: nothing
+     * is kept beyond memory. */
+    st_status (*backup)(void *context, api_blob *out, char *message, size_t size);
+    void *backup_context;
     api_job_table *jobs; /* NULL: nothing becomes a job, and no route shows any */
     bool plain_answers;  /* never coded, whatever a client accepts */
     const he_exec *exec; /* threads for parts of large work; NULL: none */

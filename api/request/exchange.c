@@ -440,6 +440,22 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
     x->free_stream = free_stream;
 }
 
+static int64_t read_blob(void *context, char *buffer, size_t size)
+{
+    api_exchange *x = context;
+    int64_t got = x->blob.read(x->blob.self, x->blob_at, buffer, size);
+    x->blob_at += got > 0 ? (uint64_t)got : 0;
+    return got;
+}
+
+void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob)
+{
+    x->blob = *blob;
+    x->blob_at = 0;
+    api_answer_stream(x, status, type, (int64_t)blob->length, read_blob, x, NULL);
+    x->answer.slow = true;
+}
+
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
                      const char *idle)
 {

@@ -130,6 +130,8 @@ struct api_exchange {
     api_source live;
     api_pack *pack; /* codes the answer, or holds all of it; NULL: neither */
     char *coded;    /* all of it */
+    api_blob blob;  /* which is sent, freed with the exchange unless it is lent */
+    uint64_t blob_at;
 };
 
 /* --- query parameters: checked against the row already, so these cannot fail --- */
@@ -197,6 +199,8 @@ bool api_answer_minimal(api_exchange *x);
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
+/* What lies elsewhere: takes `blob`, where that can be freed. A job keeps it as it is. */
+void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
 /* An answer that goes on, for as long as the token is good: takes `source`, freed with the
  * exchange. `idle` is a literal. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,

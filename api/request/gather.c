@@ -22,7 +22,7 @@ static bool read_piece(api_exchange *x, bool *ended)
 void api_gather(api_exchange *x)
 {
     api_answer *a = &x->answer;
-    if (a->read == NULL || x->problem.code != HE_OK) {
+    if (a->read == NULL || x->blob.self != NULL || x->problem.code != HE_OK) {
         return;
     }
     he_error err = {0};

@@ -7,8 +7,8 @@
 
 #include "api/request/exchange.h"
 
-/* The answer that is pulled becomes one of bytes, in x->text; others stay as they are. The problem
- * is filled without memory, when the stream fails, and when the watch gives up. */
+/* The answer that is pulled becomes one of bytes, in x->text; a blob and others stay as they are.
+ * The problem is filled without memory, when the stream fails, and when the watch gives up. */
 void api_gather(api_exchange *x);
 
 #endif

@@ -19,6 +19,9 @@ void api_token_get(api_exchange *x);
 void api_tickets_post(api_exchange *x);
 void api_admin_reload(api_exchange *x);
 
+/* backup.c */
+void api_admin_backup(api_exchange *x);
+
 /* Jobs: x->job_id. */
 void api_jobs_list(api_exchange *x);
 void api_job_get(api_exchange *x);

@@ -68,12 +68,21 @@ static void put_header(api_exchange *x, const char *name, const char *value)
     }
 }
 
+static void free_blob(api_exchange *x)
+{
+    if (x->blob.self != NULL && x->blob.free != NULL) {
+        x->blob.free(x->blob.self);
+    }
+    x->blob.self = NULL;
+}
+
 static void drop_answer(api_exchange *x)
 {
     if (x->free_stream != NULL) {
         x->free_stream(x->stream);
         x->free_stream = NULL;
     }
+    free_blob(x);
     x->answer = (api_answer){.route = x->answer.route, .close = x->answer.close};
     x->answered = false;
 }
@@ -375,6 +384,8 @@ static void run_job(void *self, const char *id, api_job_progress *progress, void
         (api_media_is(type, "application/json") || api_media_is(type, "application/problem+json"));
     out->length = (size_t)answer->length;
     out->body = take_bytes(x);
+    out->blob = x->blob;
+    x->blob.self = NULL;
     out->awaits = answer->shown;
     out->changed = answer->changed;
 }
@@ -674,6 +685,7 @@ void api_free(api_exchange *x)
     if (x->free_state != NULL) {
         x->free_state(x->state);
     }
+    free_blob(x);
     api_unpack_free(x->unpack);
     api_pack_free(x->pack);
     he_mem_free(x->coded);

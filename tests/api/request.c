@@ -1,6 +1,7 @@
 #include "tests/api/request.h"
 
 #include "api/request/answer_headers.h"
+#include "api/request/exchange.h"
 
 #include "tests/traffic.h"
 
@@ -32,6 +33,8 @@ struct api_bench {
     api_tokens *tokens; /* NULL: nobody needs one */
     const char *file;   /* of tokens, to be read by a reload; NULL: nothing is read */
     char bearer[300];   /* "": none is sent */
+    const char *kept;   /* what a backup gives */
+    bool is_lent;       /* and has not been freed */
     api_service *service;
 };
 
@@ -73,6 +76,31 @@ static bool reload(void *context, char *message, size_t size)
     }
     snprintf(message, size, "%s", why);
     return good;
+}
+
+static int64_t read_kept(void *self, uint64_t at, char *buffer, size_t size)
+{
+    const api_bench *b = self;
+    size_t left = strlen(b->kept) - (size_t)at, length = left < size ? left : size;
+    memcpy(buffer, b->kept + at, length);
+    return (int64_t)length;
+}
+
+static void free_kept(void *self)
+{
+    ((api_bench *)self)->is_lent = false;
+}
+
+static st_status back_up(void *context, api_blob *out, char *message, size_t size)
+{
+    api_bench *b = context;
+    snprintf(message, size, "the disk is full");
+    if (b->is_lent || b->kept[0] == '\0') {
+        return b->is_lent ? ST_BUSY : ST_FAILED;
+    }
+    b->is_lent = true;
+    *out = (api_blob){b, strlen(b->kept), read_kept, free_kept};
+    return ST_OK;
 }
 
 static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget, uint64_t upload,
@@ -134,6 +162,13 @@ api_bench *bench_new_guarded(const char *file)
 {
     const st_journal journal = st_journal_memory();
     return bench_new_with(&journal, 64 << 20, 0, file);
+}
+
+void bench_keep(api_bench *b, const char *text)
+{
+    b->kept = text;
+    b->service->options.backup = text == NULL ? NULL : back_up;
+    b->service->options.backup_context = b;
 }
 
 void bench_change_tokens(api_bench *b, const char *file)

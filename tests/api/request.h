@@ -19,6 +19,8 @@ api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 api_bench *bench_new_guarded(const char *file);
 /* What POST /v1/admin/reload reads from now on. */
 void bench_change_tokens(api_bench *b, const char *file);
+/* POST /v1/admin/backup gives a file with this text from now on; NULL: nothing is kept. */
+void bench_keep(api_bench *b, const char *text);
 /* Requests carry this token from now on, where they have no Authorization; NULL: none. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);

@@ -480,6 +480,14 @@ static void test_each_declared_status(void **state)
     take_job(b);
     take_result(b);
     take_costly_check(b);
+    take(b, "POST", "/v1/admin/backup", 409, NULL, NULL, 0);
+    bench_keep(b, "bytes");
+    take(b, "POST", "/v1/admin/backup", 200, (const char *const[]){"Prefer", "wait=10", NULL}, NULL,
+         0);
+    take(b, "POST", "/v1/admin/backup", 202, NULL, NULL, 0);
+    bench_run_jobs(b, BENCH_JOBS);
+    take(b, "POST", "/v1/admin/backup", 409, (const char *const[]){"Prefer", "wait=10", NULL}, NULL,
+         0);
     bench_change_tokens(b, "nothing");
     take(b, "POST", "/v1/admin/reload", 409, NULL, NULL, 0);
     size_t missing = 0;

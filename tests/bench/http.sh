@@ -16,8 +16,25 @@ curl -sf -o /dev/null -H 'Content-Type: application/json' "$base/v1/meshes?id=be
 element=$base/v1/meshes/bench/faces/1000
 adjacency=$base/v1/meshes/bench/vertices/100/faces
 
-"$bare" 1 "$(curl -sf "$element")" <"$work/stdin" >"$work/port" &
+# The same with tokens, of which requests carry one.
+"$hedged" --new-token bench write >"$work/token"
+tail -n 1 "$work/token" >"$work/tokens"
+bearer="Authorization: Bearer $(head -n 1 "$work/token")"
+mkfifo "$work/guarded"
+"$hedged" --workers 1 --tokens "$work/tokens" --listen 127.0.0.1:0 --store memory \
+    2>"$work/guarded" &
 others=$!
+exec 5<"$work/guarded"
+while read -r line <&5; do
+    case $line in *"listening on "*) guarded=${line##*listening on }; break ;; esac
+done
+cat <&5 >/dev/null &
+others="$others $!"
+curl -sf -o /dev/null -H "$bearer" -H 'Content-Type: application/json' \
+    "$guarded/v1/meshes?id=bench" -d '{"shape":"icosphere","subdivisions":4}'
+
+"$bare" 1 "$(curl -sf "$element")" <"$work/stdin" >"$work/port" &
+others="$others $!"
 exec 3>"$work/stdin"
 read -r port <"$work/port"
 
@@ -41,6 +58,7 @@ i=0
 while [ $i -lt "$rounds" ]; do
     load "http://127.0.0.1:$port/" >>"$work/bare"
     load "$element" >>"$work/element"
+    load -H "$bearer" "$guarded${element#"$base"}" >>"$work/token-element"
     load "$adjacency" >>"$work/adjacency"
     load -s "$work/edit.lua" "$base/v1/meshes/bench/edits" >>"$work/edit"
     i=$((i + 1))
@@ -57,8 +75,11 @@ row() {
 echo "medians of $rounds runs of $seconds s; access log on"
 printf '%-28s %8.0f req/s\n' "bare libmicrohttpd" "$peer"
 row "GET an element" element 0.8
+row "GET an element with a token" token-element 0.8
 row "GET an adjacency" adjacency 0.8
 row "POST an edit" edit 0.5
+awk -v with="$(median token-element)" -v without="$(median element)" 'BEGIN {
+    printf "%-28s %8.2f us a request   target 1.00\n", "a token costs", 1e6 / with - 1e6 / without }'
 # Both make one recvfrom and one sendmsg a request, no other call; two thirds of our time are those.
 cat <<'NOTE'
 Not measured here: what hedged does for a GET beyond the bare program is six header fields for one,

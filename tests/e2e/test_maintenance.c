@@ -1,6 +1,7 @@
 /* hedged --backup, --restore, --verify and --dump. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/daemon.h"
+#include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
 
 #include <setjmp.h>
@@ -60,6 +61,60 @@ static void a_backup_is_made_beside_the_daemon_and_restored_without_it(void **st
     expect_run(ARGUMENTS("--store", store, "--restore", "/proc/1/none"), 1, "/proc/1/none");
     expect_run(ARGUMENTS("--store", store, "--backup", "/proc/1/none"), 1, "/proc/1/none");
     expect_run(ARGUMENTS("--store", "memory", "--backup", file), 1, "--store sqlite:DIR");
+}
+
+static reply back_up(client *c, const char *prefer)
+{
+    return client_send(c, "POST", "/v1/admin/backup", NULL, 0,
+                       prefer == NULL ? NULL : ARGUMENTS(prefer));
+}
+
+static void save(const reply *r)
+{
+    FILE *out = fopen(file, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(r->body, 1, r->length, out), r->length);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void a_backup_is_asked_for_and_fetched(void **state)
+{
+    (void)state;
+    char job[100], result[120], left[FOLDER_PATH + 16];
+    daemon_process *d = daemon_start(ARGUMENTS("--store", store, "--samples"));
+    client *c = client_new(d);
+    reply r = reply_expect(202, back_up(c, NULL));
+    (void)reply_header(&r, "Location", job, sizeof job);
+    reply_done(r);
+    (void)snprintf(result, sizeof result, "%s/events", job);
+    listener *l = listener_open(d, result, NULL, 0);
+    while (strcmp(listener_next(l, true), "") != 0) {
+    }
+    listener_close(l);
+    r = reply_expect(409, back_up(c, "Prefer: wait=60"));
+    assert_string_equal(reply_string(&r, "code"), "backup_kept");
+    reply_done(r);
+    (void)snprintf(result, sizeof result, "%s/result", job);
+    for (int again = 0; again < 2; again++) {
+        r = reply_expect(200, client_get(c, result));
+        char type[64];
+        assert_string_equal(reply_header(&r, "Content-Type", type, sizeof type),
+                            "application/vnd.sqlite3");
+        save(&r);
+        reply_done(r);
+        expect_run(ARGUMENTS("--verify", file), 0, "torus");
+    }
+    (void)snprintf(left, sizeof left, "%s/sent.db", folder);
+    assert_int_not_equal(access(left, F_OK), 0);
+    reply_done(reply_expect(204, client_send(c, "DELETE", job, NULL, 0, NULL)));
+    r = reply_expect(200, back_up(c, "Prefer: wait=60"));
+    save(&r);
+    reply_done(r);
+    expect_run(ARGUMENTS("--verify", file), 0, "torus");
+    reply_done(reply_expect(200, back_up(c, "Prefer: wait=60")));
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+    expect_run(ARGUMENTS("--store", store, "--restore", file), 0, "is restored from");
 }
 
 static void run_sql(const char *text)
@@ -137,6 +192,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_backup_is_made_beside_the_daemon_and_restored_without_it,
                                         make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_backup_is_asked_for_and_fetched, make_folder,
+                                        remove_folder),
         cmocka_unit_test_setup_teardown(what_is_damaged_is_named_and_the_rest_is_saved, make_folder,
                                         remove_folder),
     };

@@ -1,0 +1,28 @@
+/* POST /v1/admin/backup: the whole store as one file. */
+#include "api/request/handlers.h"
+
+static void make(api_exchange *x)
+{
+    const api_options *options = &x->service->options;
+    char message[API_PROBLEM_DETAIL];
+    api_blob blob;
+    st_status status = options->backup(options->backup_context, &blob, message, sizeof message);
+    if (status == ST_OK) {
+        api_answer_blob(x, 200, "application/vnd.sqlite3", &blob);
+        api_answer_header(x, "Content-Disposition", "attachment; filename=\"hedge.db\"");
+    } else if (status == ST_BUSY) {
+        api_fail(x, API_BACKUP_KEPT, "a backup is being made, or kept with its job");
+    } else {
+        api_fail(x, API_BACKUP_FAILED, "%s", message);
+    }
+}
+
+/* How large the store is nobody knows before: it is a job unless the client waits. */
+void api_admin_backup(api_exchange *x)
+{
+    if (x->service->options.backup == NULL) {
+        api_fail(x, API_NOTHING_KEPT, "meshes are kept in memory alone");
+        return;
+    }
+    api_run_long(x, make, true, 2 * API_PATIENCE);
+}
