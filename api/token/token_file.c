@@ -97,7 +97,7 @@ static bool read_hash(const reader *r, word w, api_token *out)
     for (size_t i = 0; good && i < API_TOKEN_HASH; i++) {
         int high = digit_of(w.at[skipped + 2 * i]), low = digit_of(w.at[skipped + 2 * i + 1]);
         good = high >= 0 && low >= 0;
-        out->hash[i] = good ? (unsigned char)(high << 4 | low) : 0;
+        out->hash[i] = (unsigned char)(good ? high << 4 | low : 0);
     }
     return good ||
            fail(r, "the hash (field 3) is not sha256: and %d digits 0-9 a-f", 2 * API_TOKEN_HASH);
