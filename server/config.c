@@ -1,7 +1,8 @@
-#include "server/config_file.h"
-#include "server/config_option.h"
+#include "server/config.h"
 
 #include "base/mem.h"
+#include "server/config_file.h"
+#include "server/config_option.h"
 #include "server/net/address.h"
 
 #include <inttypes.h>

@@ -45,8 +45,8 @@ typedef struct daemon_parts {
     srv_http *http;
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
-    api_tokens *tokens;      /* NULL: nobody needs one */
-    const char *tokens_path; /* of their file */
+    api_tokens *tokens;             /* NULL: nobody needs one */
+    const char *tokens_path;        /* of their file */
     char address[SRV_ADDRESS_TEXT]; /* with the port that was taken */
     srv_backups backups;
     _Atomic bool ready;
@@ -357,7 +357,7 @@ static uint64_t now_micros(void)
     return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
 }
 
-/* A service manager hears twice in the time it waits that a worker still answers. */
+/* systemd hears twice in the time it waits that a worker still answers. */
 static void feed_watchdog(const daemon_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();

@@ -1,4 +1,4 @@
-/* notify.h - what a service manager is told: sd_notify(3)'s protocol, without its library.
+/* notify.h - what systemd is told: the protocol of sd_notify(3), without its library.
  *
  * systemd gives a service of Type=notify a Unix datagram socket in NOTIFY_SOCKET, and with
  * WatchdogSec= the time within which it wants to hear of it in WATCHDOG_USEC. Outside of such a

@@ -1,4 +1,4 @@
-/* What an operator's tools take for granted: a service manager is told, a file holds the settings.
+/* What an operator's tools take for granted: systemd is told, a file holds the settings.
  */
 #include "tests/e2e/client.h"
 
@@ -17,8 +17,8 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* The manager's end of NOTIFY_SOCKET; a file, or with '@' a name that the kernel keeps. */
-static int be_manager(const char *name)
+/* systemd's end of NOTIFY_SOCKET; a file, or with '@' a name that the kernel keeps. */
+static int be_systemd(const char *name)
 {
     struct sockaddr_un own = {.sun_family = AF_UNIX};
     size_t length = strlen(name);
@@ -45,17 +45,17 @@ static void expect_message(int fd, const char *expected)
     assert_string_equal(text, expected);
 }
 
-static void a_service_manager_hears_of_start_life_and_stop(void **state)
+static void systemd_hears_of_start_life_and_stop(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/hedge-notify-XXXXXX", file[64], name[64];
+    char folder[] = "/tmp/notify-XXXXXX", file[64], name[64];
     assert_non_null(mkdtemp(folder));
     snprintf(file, sizeof file, "%s/socket", folder);
     snprintf(name, sizeof name, "@hedge-notify-%d", (int)getpid());
     const char *const names[] = {file, name};
     setenv("WATCHDOG_USEC", "100000", 1);
     for (size_t i = 0; i < 2; i++) {
-        int fd = be_manager(names[i]);
+        int fd = be_systemd(names[i]);
         daemon_process *d = daemon_start(ARGUMENTS("--log", "access"));
         expect_message(fd, "READY=1");
         expect_message(fd, "WATCHDOG=1");
@@ -84,7 +84,7 @@ static void a_watchdog_of_another_process_is_not_fed(void **state)
     (void)state;
     char name[64];
     snprintf(name, sizeof name, "@hedge-watched-%d", (int)getpid());
-    int fd = be_manager(name);
+    int fd = be_systemd(name);
     setenv("WATCHDOG_USEC", "1000", 1);
     setenv("WATCHDOG_PID", "1", 1);
     daemon_process *d = daemon_start(NULL);
@@ -108,7 +108,7 @@ static void write_file(const char *path, const char *text)
 static void a_file_holds_the_settings(void **state)
 {
     (void)state;
-    char file[] = "/tmp/hedge-settings-XXXXXX", output[16384], expected[128];
+    char file[] = "/tmp/settings-XXXXXX", output[16384], expected[128];
     int fd = mkstemp(file);
     assert_true(fd >= 0);
     close(fd);
@@ -155,7 +155,7 @@ static void variables_that_no_option_has_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_service_manager_hears_of_start_life_and_stop),
+        cmocka_unit_test(systemd_hears_of_start_life_and_stop),
         cmocka_unit_test(a_watchdog_of_another_process_is_not_fed),
         cmocka_unit_test(a_file_holds_the_settings),
         cmocka_unit_test(variables_that_no_option_has_are_named),

@@ -238,7 +238,7 @@ static void test_print_and_help(void **state)
 /* A file of settings, read with these words and variables after it. */
 static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
 {
-    char path[] = "/tmp/hedge-config-XXXXXX";
+    char path[] = "/tmp/settings-XXXXXX";
     int fd = mkstemp(path);
     assert_true(fd >= 0);
     assert_int_equal(write(fd, text, length), (ssize_t)length);
