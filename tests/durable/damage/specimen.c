@@ -157,7 +157,7 @@ static st_mesh *make(st_store *store, const char *id)
 static st_status edit_keyed(st_mesh *mesh, const char *operations, const st_keyed *keyed)
 {
     st_write w;
-    st_status status = st_write_begin(mesh, keyed, &w);
+    st_status status = st_write_begin(mesh, &(st_cause){.keyed = keyed}, &w);
     if (status != ST_OK) {
         return status;
     }
