@@ -10,7 +10,6 @@
 #include "mesh/compact.h"
 #include "mesh/write.h"
 #include "store/followers.h"
-#include "store/history_cursor.h"
 #include "store/table.h"
 
 #include <semaphore.h>
@@ -367,65 +366,6 @@ static void a_smaller_budget_keeps_the_newest(void **state)
         expect_contents(mesh, loaded);
         st_release(loaded);
         st_store_free(other);
-    }
-    st_release(mesh);
-    st_store_free(store);
-    kept_journal_free(journal);
-}
-
-/* From the first revision on, as those who listen are told what they missed. */
-static void follow_all(st_mesh *mesh, he_mesh *const at[], uint64_t last)
-{
-    st_cursor *cursor;
-    st_cursor_step step;
-    assert_int_equal(st_cursor_begin(mesh, 1, &cursor), ST_OK);
-    for (uint64_t revision = 2; revision <= last; revision++) {
-        assert_int_equal(st_cursor_next(cursor, &step), ST_OK);
-        assert_int_equal(step.revision, revision);
-        assert_true(he_mesh_equal(step.content, at[revision]));
-    }
-    assert_int_equal(st_cursor_next(cursor, &step), ST_NOTHING);
-    st_cursor_end(cursor);
-}
-
-static void what_memory_has_dropped_is_followed_from_the_disk(void **state)
-{
-    (void)state;
-    enum { REVISIONS = 40 };
-    journal = kept_journal_new();
-    st_store *store = open_store(3000);
-    st_mesh *mesh = make(store, "m");
-    he_mesh *at[REVISIONS + 1] = {NULL, content_of(mesh)};
-    for (unsigned revision = 2; revision <= REVISIONS; revision++) {
-        st_write w;
-        script(writing_begin(mesh, &w), "vertex_add position=%u,1,0", revision);
-        assert_true(writing_commit(&w, "vertex_add", NULL));
-        at[revision] = content_of(mesh);
-    }
-    for (int again = 0; again < 2; again++) {
-        st_history reach;
-        st_entry entry;
-        st_history_reach(mesh, &reach);
-        assert_int_equal(reach.oldest, 1);
-        assert_false(st_history_entry(mesh, REVISIONS - 2, &entry));
-        follow_all(mesh, at, REVISIONS);
-        st_cursor *none;
-        assert_int_equal(st_cursor_begin(mesh, 0, &none), ST_GONE);
-        assert_int_equal(st_cursor_begin(mesh, REVISIONS + 1, &none), ST_AHEAD);
-        st_release(mesh);
-        st_store_free(store);
-        store = open_store(3000);
-        mesh = load(store, "m");
-    }
-    /* A replacement is where it begins. */
-    assert_int_equal(writing_replace(mesh, content_of(mesh), NULL, NULL), ST_OK);
-    st_history reach;
-    st_cursor *gone;
-    st_history_reach(mesh, &reach);
-    assert_int_equal(reach.oldest, REVISIONS + 1);
-    assert_int_equal(st_cursor_begin(mesh, REVISIONS, &gone), ST_GONE);
-    for (unsigned revision = 1; revision <= REVISIONS; revision++) {
-        he_mesh_free(at[revision]);
     }
     st_release(mesh);
     st_store_free(store);
@@ -813,7 +753,6 @@ int main(void)
         cmocka_unit_test(a_mesh_comes_back_as_it_was),
         cmocka_unit_test(a_younger_base_leads_to_the_same_mesh),
         cmocka_unit_test(a_revision_beyond_memory_is_read_from_the_disk),
-        cmocka_unit_test(what_memory_has_dropped_is_followed_from_the_disk),
         cmocka_unit_test(a_smaller_budget_keeps_the_newest),
         cmocka_unit_test(a_revision_before_the_base_costs_no_load),
         cmocka_unit_test(a_revision_of_the_disk_is_loaded_once_for_all_who_read_it),

@@ -80,11 +80,11 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
         return st_refuse(message, "%.300s is no store of hedged", path);
     }
     return version <= ST_SCHEMA_VERSION ||
-           st_refuse(
-               message,
-               "%.300s has version %lld of the tables, and hedged %s knows them up to version "
-               "%d: start a newer hedged, or restore a backup made by this one",
-               path, (long long)version, release, ST_SCHEMA_VERSION);
+           st_refuse(message,
+                     "%.300s has version %lld of the tables, and this hedged%s%s knows them up to "
+                     "version %d: start a newer hedged, or restore a backup made by this one",
+                     path, (long long)version, release[0] == '\0' ? "" : " ", release,
+                     ST_SCHEMA_VERSION);
 }
 
 static bool make_store(st_sqlite *self, const char *path, const char *release,
