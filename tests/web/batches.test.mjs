@@ -1,5 +1,6 @@
 // Files that refer to others go to the server with them, in one request.
 import assert from 'node:assert/strict';
+import { File } from 'node:buffer'; // no global of node 18
 import { test } from 'node:test';
 
 import { batchesOf } from '../../web/src/batches.js';
