@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { MeshoptEncoder } from '../../web/node_modules/meshoptimizer/index.module.js';
+import { MeshoptEncoder } from '../../web/node_modules/meshoptimizer/index.js';
 import {
     MeshoptDecoder,
 } from '../../web/node_modules/three/examples/jsm/libs/meshopt_decoder.module.js';
