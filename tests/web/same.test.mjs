@@ -15,7 +15,8 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Keeps what is sent to textures of 32 bits a component, as the graphics memory has it.
+// Keeps what is sent to textures of 32 bits a component, as the graphics memory has it, and the
+// memory of the page that it was sent from.
 function keepTextures() {
     const { prototype } = WebGL2RenderingContext;
     const kept = new Map();
@@ -31,13 +32,15 @@ function keepTextures() {
     hook('texStorage2D', function allocate(target, levels, format, width, height) {
         if (format === this.RGBA32F || format === this.RGBA32UI) {
             const words = new Uint32Array(4 * width * height);
-            kept.set(this.getParameter(this.TEXTURE_BINDING_2D), { format, width, words });
+            const sources = new Set();
+            kept.set(this.getParameter(this.TEXTURE_BINDING_2D), { format, width, words, sources });
         }
     });
     hook('texSubImage2D', function send(target, level, x, y, width, height, ...[, , data]) {
         const texture = kept.get(this.getParameter(this.TEXTURE_BINDING_2D));
         if (texture !== undefined) {
             const from = new Uint32Array(data.buffer, data.byteOffset, data.length);
+            texture.sources.add(data.buffer);
             const length = pixels.get(this.UNPACK_ROW_LENGTH) || width;
             const left = pixels.get(this.UNPACK_SKIP_PIXELS) ?? 0;
             const top = pixels.get(this.UNPACK_SKIP_ROWS) ?? 0;
@@ -49,11 +52,16 @@ function keepTextures() {
         }
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
-    window.readTextures = () => {
-        const { RGBA32F } = WebGL2RenderingContext;
-        const find = (isFloat) =>
-            [...kept.values()].filter(({ format }) => (format === RGBA32F) === isFloat);
-        return { vertices: find(true), triangles: find(false) };
+    // Of each format there are two, of the mesh and of the materials of its faces. That of the mesh
+    // was sent from its array, and from nothing else.
+    window.readTextures = ({ vertices, triangles }) => {
+        const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;
+        const find = (wanted, { buffer }) => {
+            const all = [...kept.values()].filter(({ format }) => format === wanted);
+            const own = all.filter(({ sources }) => sources.size === 1 && sources.has(buffer));
+            return { count: all.length, own };
+        };
+        return { vertices: find(RGBA32F, vertices), triangles: find(RGBA32UI, triangles) };
     };
 }
 
@@ -70,10 +78,11 @@ function readArrays(page) {
         };
         const { geometry } = document.getElementById('canvas');
         const { revision, layout, vertexCount, triangleCount } = geometry;
-        const textures = window.readTextures();
+        const textures = window.readTextures(geometry);
         const both = (name, count) => ({
             array: text(geometry[name], count),
-            textures: textures[name].map(({ words }) => text(words, count)),
+            textures: textures[name].own.map(({ words }) => text(words, count)),
+            textureCount: textures[name].count,
         });
         return {
             revision,
@@ -91,9 +100,9 @@ async function checkSame(daemon, mesh, page) {
     assert.deepEqual([kept.revision, kept.layout], [fresh.revision, fresh.layout]);
     for (const [name, count] of [['vertices', 'vertexCount'], ['triangles', 'triangleCount']]) {
         const wanted = Buffer.from(fresh[name].buffer, 0, 16 * fresh[count]).toString('base64');
-        const { array, textures } = kept[name];
+        const { array, textures, textureCount } = kept[name];
         assert.ok(array === wanted, `${name} of the page at revision ${fresh.revision}`);
-        assert.equal(textures.length, 1);
+        assert.deepEqual([textures.length, textureCount], [1, 2], `textures of ${name}`);
         assert.ok(textures[0] === wanted, `${name} of its texture at ${fresh.revision}`);
     }
 }
