@@ -1,16 +1,14 @@
 /* element_rows.h - rows of the table of routes that differ in the kind of element.
  *
  * vertices_list, vertex_get, vertex_faces: `one` and `many` are the kind's names, `what` is the
- * name of a relation of core/query/adjacency.h. The table in routes.c uses `json` as
- * well. */
+ * name of a relation of core/query/adjacency.h. The table in routes.c has ELEMENT_ROWS among its
+ * rows, and the header `next_page` that they name. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 
+#include "api/describe/media_types.h"
 #include "api/describe/parameters.h"
 #include "api/request/handlers.h"
-
-static const char *const json[] = {"application/json", NULL};
-static const char *const lines_too[] = {"application/json", "application/x-ndjson", NULL};
 
 #define ELEMENTS(of, one, many, words)                                                            \
     {                                                                                             \
@@ -44,5 +42,47 @@ static const char *const lines_too[] = {"application/json", "application/x-ndjso
     }
 
 #define AROUND "Counter-clockwise from the stored half-edge, each once."
+
+/* All of them, in the order of the table. */
+#define ELEMENT_ROWS                                                                              \
+    ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),                                        \
+        ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),                             \
+        ELEMENTS(HE_EDGE, "edge", "edges", "edges"), ELEMENTS(HE_FACE, "face", "faces", "faces"), \
+        ELEMENT(HE_VERTEX, "vertex", "vertices",                                                  \
+                "One vertex: its position, a half-edge that leaves it, its degree."),             \
+        ELEMENT(HE_HALFEDGE, "halfedge", "halfedges",                                             \
+                "One half-edge: its twin, next, prev, origin, target, edge and face."),           \
+        ELEMENT(HE_EDGE, "edge", "edges", "One edge: its half-edges, ends, faces and length."),   \
+        ELEMENT(HE_FACE, "face", "faces",                                                         \
+                "One face: its corners, half-edges, area, normal and centroid."),                 \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "vertices", "Neighbours of a vertex",          \
+                  "The vertices at the other ends of its edges. " AROUND),                        \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",  \
+                  "Those that have it as their origin. " AROUND),                                 \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming",                                    \
+                  "Half-edges that arrive at a vertex",                                           \
+                  "The twins of those that leave it, in their order. " AROUND),                   \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",                  \
+                  "Those that end at it. " AROUND),                                               \
+        ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",              \
+                  "Those left of the half-edges that leave it; holes are left out. " AROUND),     \
+        ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",        \
+                  "The half-edges around its face or hole, from itself by next."),                \
+        ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",        \
+                  "The half-edges that leave its origin, counter-clockwise from itself."),        \
+        ADJACENCY(HE_EDGE, "edge", "edges", "vertices", "Ends of an edge",                        \
+                  "Origin and target of its half-edge 2 * id."),                                  \
+        ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",                 \
+                  "2 * id and 2 * id + 1."),                                                      \
+        ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",                      \
+                  "Those left of its half-edges, each once; holes are left out."),                \
+        ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",                      \
+                  "The origins of its half-edges. " AROUND),                                      \
+        ADJACENCY(HE_FACE, "face", "faces", "halfedges", "Half-edges of a face",                  \
+                  "Those that have it on their left. " AROUND),                                   \
+        ADJACENCY(HE_FACE, "face", "faces", "edges", "Edges of a face",                           \
+                  "Those of its half-edges. " AROUND),                                            \
+        ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",                       \
+                  "Those across its edges; holes are left out. " AROUND)
 
 #endif

@@ -1,54 +1,11 @@
 #include "api/describe/routes.h"
 
 #include "api/describe/element_rows.h"
+#include "api/describe/media_types.h"
 #include "api/describe/parameters.h"
 #include "api/document/summary.h"
 #include "api/request/handlers.h"
 #include "api/request/mesh_access.h"
-
-/* --- media types --- */
-
-static const char *const merge_patch[] = {"application/merge-patch+json", "application/json", NULL};
-static const char *const octets[] = {"application/octet-stream", NULL};
-static const char *const octets_too[] = {"application/json", "application/octet-stream", NULL};
-static const char *const mesh_in[] = {"application/json",
-                                      "model/obj",
-                                      "model/x-off",
-                                      "model/ply",
-                                      "application/ply",
-                                      "model/stl",
-                                      "model/gltf-binary",
-                                      "model/gltf+json",
-                                      "application/octet-stream",
-                                      API_MULTIPART,
-                                      NULL};
-static const char *const mesh_out[] = {"application/json",  "model/obj", "model/mtl",
-                                       "model/x-off",       "model/ply", "model/stl",
-                                       "model/gltf-binary", NULL};
-static const char *const event_stream[] = {"text/event-stream", NULL};
-static const char *const job_results[] = {"application/json",
-                                          "application/x-ndjson",
-                                          "application/octet-stream",
-                                          "model/obj",
-                                          "model/mtl",
-                                          "model/x-off",
-                                          "model/ply",
-                                          "model/stl",
-                                          "model/gltf-binary",
-                                          "application/vnd.sqlite3",
-                                          NULL};
-static const char *const database[] = {"application/vnd.sqlite3", NULL};
-static const char *const html[] = {"text/html", NULL};
-static const char *const anything[] = {"text/html",
-                                       "text/javascript",
-                                       "text/css",
-                                       "image/svg+xml",
-                                       "image/png",
-                                       "application/json",
-                                       "text/plain",
-                                       "font/woff2",
-                                       "application/octet-stream",
-                                       NULL};
 
 /* --- headers --- */
 
@@ -255,45 +212,7 @@ static const api_route routes[] = {
             "earlier revision where one is named."},
 
     /* its elements: a collection, an element and what is adjacent to it, for each kind */
-    ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),
-    ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),
-    ELEMENTS(HE_EDGE, "edge", "edges", "edges"),
-    ELEMENTS(HE_FACE, "face", "faces", "faces"),
-    ELEMENT(HE_VERTEX, "vertex", "vertices",
-            "One vertex: its position, a half-edge that leaves it, its degree."),
-    ELEMENT(HE_HALFEDGE, "halfedge", "halfedges",
-            "One half-edge: its twin, next, prev, origin, target, edge and face."),
-    ELEMENT(HE_EDGE, "edge", "edges", "One edge: its half-edges, ends, faces and length."),
-    ELEMENT(HE_FACE, "face", "faces",
-            "One face: its corners, half-edges, area, normal and centroid."),
-    ADJACENCY(HE_VERTEX, "vertex", "vertices", "vertices", "Neighbours of a vertex",
-              "The vertices at the other ends of its edges. " AROUND),
-    ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",
-              "Those that have it as their origin. " AROUND),
-    ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming", "Half-edges that arrive at a vertex",
-              "The twins of those that leave it, in their order. " AROUND),
-    ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",
-              "Those that end at it. " AROUND),
-    ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",
-              "Those left of the half-edges that leave it; holes are left out. " AROUND),
-    ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",
-              "The half-edges around its face or hole, from itself by next."),
-    ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",
-              "The half-edges that leave its origin, counter-clockwise from itself."),
-    ADJACENCY(HE_EDGE, "edge", "edges", "vertices", "Ends of an edge",
-              "Origin and target of its half-edge 2 * id."),
-    ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",
-              "2 * id and 2 * id + 1."),
-    ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",
-              "Those left of its half-edges, each once; holes are left out."),
-    ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",
-              "The origins of its half-edges. " AROUND),
-    ADJACENCY(HE_FACE, "face", "faces", "halfedges", "Half-edges of a face",
-              "Those that have it on their left. " AROUND),
-    ADJACENCY(HE_FACE, "face", "faces", "edges", "Edges of a face",
-              "Those of its half-edges. " AROUND),
-    ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",
-              "Those across its edges; holes are left out. " AROUND),
+    ELEMENT_ROWS,
 
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/materials",
