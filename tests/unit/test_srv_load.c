@@ -1,10 +1,11 @@
 /* Meshes that come back from what the journal keeps: after random edits a mesh that is dropped and
- * loaded is what it was, with its history, and what was damaged is named. */
+ * loaded is what it was, with its history. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
+#include "tests/unit/kept_store.h"
 #include "tests/writing.h"
 
 #include "mesh/compact.h"
@@ -16,40 +17,9 @@
 
 static kept_journal *journal;
 
-static st_store *open_store_with(uint64_t budget, st_pool *pool)
-{
-    st_store *store = st_store_new(&(st_store_options){.undo_budget = budget,
-                                                       .max_meshes = 1000,
-                                                       .journal = kept_journal_open(journal),
-                                                       .pool = pool,
-                                                       .base_bytes = 1});
-    assert_non_null(store);
-    return store;
-}
-
 static st_store *open_store(uint64_t budget)
 {
-    return open_store_with(budget, NULL);
-}
-
-static st_mesh *load(st_store *store, const char *id)
-{
-    st_mesh *mesh = NULL;
-    assert_int_equal(st_find(store, id, &mesh), ST_COLD);
-    st_status status = st_load(store, id, &mesh);
-    if (status != ST_OK || st_damage(mesh)[0] != '\0') {
-        fail_msg("loading is %d: %s", status, status == ST_OK ? st_damage(mesh) : "");
-    }
-    return mesh;
-}
-
-static st_mesh *make(st_store *store, const char *id)
-{
-    st_mesh *mesh;
-    he_mesh *content = script_mesh("012,023,034,045,051", NULL);
-    script_add_columns(content);
-    assert_int_equal(st_create(store, id, "as made", content, NULL, &mesh), ST_OK);
-    return mesh;
+    return kept_store_open(journal, budget, NULL);
 }
 
 /* --- random changes --- */
@@ -150,49 +120,7 @@ static void change(st_mesh *mesh, md_random *random, unsigned serial)
     }
 }
 
-/* --- two meshes are one --- */
-
-static void expect_entries(st_mesh *was, st_mesh *is)
-{
-    st_history a, b;
-    st_entry x, y;
-    size_t i = 0;
-    st_history_reach(was, &a);
-    st_history_reach(is, &b);
-    assert_int_equal(a.oldest, b.oldest);
-    assert_int_equal(a.dropped, b.dropped);
-    while (st_history_entry(was, i, &x)) {
-        assert_true(st_history_entry(is, i, &y));
-        assert_int_equal(x.revision, y.revision);
-        assert_int_equal(x.inverts, y.inverts);
-        assert_int_equal(x.action, y.action);
-        assert_string_equal(x.ops, y.ops);
-        assert_int_equal(x.undoable, y.undoable);
-        assert_true(x.time == y.time);
-        assert_memory_equal(&x.tally, &y.tally, sizeof x.tally);
-        i++;
-    }
-    assert_false(st_history_entry(is, i, &y));
-}
-
-static void expect_same(st_mesh *was, st_mesh *is)
-{
-    st_mesh_info a, b;
-    const he_mesh *m = st_read_begin(was, &a), *n = st_read_begin(is, &b);
-    assert_true(he_mesh_equal(m, n));
-    assert_string_equal(a.id, b.id);
-    assert_string_equal(a.name, b.name);
-    assert_int_equal(a.incarnation, b.incarnation);
-    assert_int_equal(a.metadata, b.metadata);
-    assert_int_equal(a.revision, b.revision);
-    assert_int_equal(a.record, b.record);
-    assert_true(a.created == b.created && a.modified == b.modified);
-    assert_int_equal(a.undo, b.undo);
-    assert_int_equal(a.redo, b.redo);
-    expect_entries(was, is);
-    st_read_end(was);
-    st_read_end(is);
-}
+/* --- what is loaded is what was there --- */
 
 static he_mesh *content_of(st_mesh *mesh)
 {
@@ -244,8 +172,8 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
 static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
 {
     st_store *other = open_store(budget);
-    *loaded = load(other, "m");
-    expect_same(mesh, *loaded);
+    *loaded = kept_store_load(other, "m");
+    kept_store_expect_same(mesh, *loaded);
     return other;
 }
 
@@ -273,7 +201,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
         uint64_t budget = budgets[round % 5];
         journal = kept_journal_new();
         st_store *store = open_store(budget);
-        st_mesh *mesh = make(store, "m");
+        st_mesh *mesh = kept_store_make(store, "m");
         for (unsigned i = 0; i < CHANGES; i++) {
             change(mesh, &random, i);
             if (md_chance(&random, 15)) {
@@ -320,8 +248,8 @@ static void a_younger_base_leads_to_the_same_mesh(void **state)
         uint64_t budget = budgets[round % 4], base = 1;
         journal = kept_journal_new();
         st_pool *pool = st_pool_new("bases", 3, 100);
-        st_store *store = open_store_with(budget, pool);
-        st_mesh *mesh = make(store, "m");
+        st_store *store = kept_store_open(journal, budget, pool);
+        st_mesh *mesh = kept_store_make(store, "m");
         for (unsigned i = 0; i < 2 * CHANGES; i++) {
             change(mesh, &random, i);
             if (md_chance(&random, 20)) {
@@ -352,14 +280,14 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     md_random random = {seed_of_run()};
     journal = kept_journal_new();
     st_store *store = open_store(64 << 20);
-    st_mesh *mesh = make(store, "m");
+    st_mesh *mesh = kept_store_make(store, "m");
     for (unsigned i = 0; i < CHANGES; i++) {
         edit(mesh, &random, i);
         (void)writing_step(mesh, i % 3 == 0 ? ST_UNDO : ST_REDO, 1);
     }
     for (uint64_t budget = 20000; budget > 500; budget /= 2) {
         st_store *other = open_store(budget);
-        st_mesh *loaded = load(other, "m");
+        st_mesh *loaded = kept_store_load(other, "m");
         st_history reach;
         st_history_reach(loaded, &reach);
         assert_true(reach.bytes / 2 <= budget || reach.bytes < 700);
@@ -380,7 +308,7 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     md_random random = {seed_of_run()};
     journal = kept_journal_new();
     st_store *store = open_store(3000);
-    st_mesh *mesh = make(store, "m");
+    st_mesh *mesh = kept_store_make(store, "m");
     he_mesh *at[REVISIONS + 1] = {NULL, content_of(mesh)};
     st_mesh_info info;
     uint64_t head = 1;
@@ -417,8 +345,8 @@ static st_mesh *make_rebased(st_store **store, st_pool **pool)
 {
     journal = kept_journal_new();
     *pool = st_pool_new("bases", 3, 100);
-    *store = open_store_with(0, *pool);
-    st_mesh *mesh = make(*store, "m");
+    *store = kept_store_open(journal, 0, *pool);
+    st_mesh *mesh = kept_store_make(*store, "m");
     for (unsigned i = 0; i < 40; i++) {
         st_write w;
         script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
@@ -456,7 +384,7 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     (void)state;
     journal = kept_journal_new();
     st_store *store = open_store(0);
-    st_mesh *mesh = make(store, "m");
+    st_mesh *mesh = kept_store_make(store, "m");
     for (unsigned i = 0; i < 9; i++) {
         st_write w;
         script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
@@ -488,8 +416,8 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
     (void)state;
     journal = kept_journal_new();
     st_pool *pool = st_pool_new("bases", 3, 100);
-    st_store *store = open_store_with(64 << 20, pool);
-    st_mesh *mesh = make(store, "m");
+    st_store *store = kept_store_open(journal, 64 << 20, pool);
+    st_mesh *mesh = kept_store_make(store, "m");
     for (unsigned i = 0; i < 40; i++) {
         st_write w;
         script(writing_begin(mesh, &w), "vertex_move vertex=1 to=%u,1,2", i);
@@ -514,7 +442,7 @@ static void without_memory_nothing_is_loaded(void **state)
     md_random random = {7};
     journal = kept_journal_new();
     st_store *store = open_store(1 << 20);
-    st_mesh *mesh = make(store, "m");
+    st_mesh *mesh = kept_store_make(store, "m");
     for (unsigned i = 0; i < 30; i++) {
         change(mesh, &random, i);
     }
@@ -530,11 +458,11 @@ static void without_memory_nothing_is_loaded(void **state)
         assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
         if (status == ST_OK) {
             assert_string_equal(st_damage(loaded), "");
-            expect_same(mesh, loaded);
+            kept_store_expect_same(mesh, loaded);
             st_release(loaded);
         } else {
             assert_false(kept_journal_facts(journal, "m").condemned);
-            st_release(load(other, "m")); /* the next one finds the memory */
+            st_release(kept_store_load(other, "m")); /* the next one finds the memory */
         }
         st_store_free(other);
     }
@@ -556,7 +484,7 @@ static void without_memory_for_its_keys_nothing_is_loaded(void **state)
     (void)state;
     journal = kept_journal_new();
     st_store *store = open_store(1 << 20);
-    st_release(make(store, "m"));
+    st_release(kept_store_make(store, "m"));
     bool failed = true;
     for (unsigned n = 1; failed; n++) {
         st_store *other = open_store(1 << 20);
@@ -567,139 +495,9 @@ static void without_memory_for_its_keys_nothing_is_loaded(void **state)
         failed = allocation_failed();
         fail_allocation(0);
         assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
-        st_release(status == ST_OK ? loaded : load(other, "m"));
+        st_release(status == ST_OK ? loaded : kept_store_load(other, "m"));
         st_store_free(other);
     }
-    st_store_free(store);
-    kept_journal_free(journal);
-}
-
-/* --- damage --- */
-
-static void expect_damaged(st_store *store, const char *part)
-{
-    st_mesh *mesh = NULL;
-    st_write w;
-    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
-    if (strstr(st_damage(mesh), part) == NULL) {
-        fail_msg("\"%s\" does not say \"%s\"", st_damage(mesh), part);
-    }
-    assert_true(kept_journal_facts(journal, "m").condemned);
-    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_DAMAGED);
-    assert_non_null(writing_begin(mesh, &w));
-    st_write_rename(&w, "no");
-    assert_int_equal(st_write_commit(&w, NULL), ST_DAMAGED);
-    st_card card;
-    size_t count;
-    assert_int_equal(st_cards(store, "", &card, 1, &count), ST_OK);
-    assert_int_equal(count, 1);
-    assert_string_equal(card.damage, st_damage(mesh));
-    assert_true(card.counts.vertices > 0);
-    st_release(mesh);
-}
-
-static void make_damaged(kept_damage how)
-{
-    journal = kept_journal_new();
-    st_store *store = open_store(1 << 20);
-    st_mesh *mesh = make(store, "m");
-    md_random random = {3};
-    for (unsigned i = 0; i < 10; i++) {
-        st_write w;
-        script(writing_begin(mesh, &w), "vertex_move vertex=%u to=%u,1,2", md_below(&random, 5), i);
-        assert_true(writing_commit(&w, "vertex_move", NULL));
-    }
-    st_release(mesh);
-    st_store_free(store);
-    kept_journal_damage(journal, "m", 4, how, how == KEPT_NEWER ? 0 : 5);
-}
-
-static void what_is_damaged_is_named(void **state)
-{
-    (void)state;
-    static const char *const parts[] = {
-        [KEPT_CUT] = "record 6, byte", [KEPT_TURNED] = "record 6", [KEPT_SUM] = "its sum is wrong"};
-    for (int how = KEPT_CUT; how <= KEPT_SUM; how++) {
-        make_damaged((kept_damage)how);
-        for (int again = 0; again < 2; again++) {
-            st_store *store = open_store(1 << 20);
-            expect_damaged(store, parts[how]);
-            expect_damaged(store, parts[how]);
-            st_store_free(store);
-        }
-        kept_journal_free(journal);
-    }
-}
-
-static void a_mesh_of_a_newer_release_is_named_and_left_as_it_is(void **state)
-{
-    (void)state;
-    make_damaged(KEPT_NEWER);
-    for (int again = 0; again < 2; again++) {
-        st_store *store = open_store(1 << 20);
-        st_mesh *mesh = NULL;
-        st_write w;
-        assert_int_equal(st_load(store, "m", &mesh), ST_OK);
-        assert_int_equal(st_unreadable(mesh), ST_NEWER);
-        assert_non_null(strstr(st_damage(mesh), "the edit has version 2, this release reads 1"));
-        assert_int_equal(st_write_claim(mesh, NULL, &w), ST_NEWER);
-        assert_non_null(writing_begin(mesh, &w));
-        st_write_rename(&w, "no");
-        assert_int_equal(st_write_commit(&w, NULL), ST_NEWER);
-        assert_false(kept_journal_facts(journal, "m").condemned);
-        st_release(mesh);
-        st_store_free(store);
-    }
-    /* The newer release reads it. */
-    kept_journal_damage(journal, "m", 4, KEPT_NEWER, 0);
-    st_store *store = open_store(1 << 20);
-    st_release(load(store, "m"));
-    st_store_free(store);
-    kept_journal_free(journal);
-}
-
-static void a_damaged_mesh_can_be_removed(void **state)
-{
-    (void)state;
-    st_mesh *mesh = NULL;
-    make_damaged(KEPT_CUT);
-    st_store *store = open_store(1 << 20);
-    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
-    assert_int_equal(writing_remove(mesh), ST_OK);
-    st_release(mesh);
-    assert_int_equal(st_store_count(store), 0);
-    assert_int_equal(st_load(store, "m", &mesh), ST_ABSENT);
-    st_release(make(store, "m"));
-    st_store_free(store);
-    kept_journal_free(journal);
-}
-
-static void a_damaged_mesh_can_be_replaced(void **state)
-{
-    (void)state;
-    st_mesh *mesh = NULL, *fresh = NULL, *late = NULL;
-    make_damaged(KEPT_SUM);
-    st_store *store = open_store(1 << 20);
-    assert_int_equal(st_load(store, "m", &mesh), ST_OK);
-    he_mesh *content = fixture_mesh("012");
-    kept_journal_refuse(journal, ST_FULL);
-    assert_int_equal(st_create_over(store, mesh, "anew", content, NULL, &fresh), ST_FULL);
-    kept_journal_refuse(journal, ST_OK);
-    assert_int_equal(st_create_over(store, mesh, "anew", content, NULL, &fresh), ST_OK);
-    content = fixture_mesh("012");
-    assert_int_equal(st_create_over(store, mesh, "late", content, NULL, &late), ST_ABSENT);
-    he_mesh_free(content);
-    st_release(mesh);
-    assert_int_equal(st_store_count(store), 1);
-    assert_int_equal(st_find(store, "m", &mesh), ST_OK);
-    assert_ptr_equal(mesh, fresh);
-    st_release(mesh);
-    st_store *other = open_store(1 << 20);
-    mesh = load(other, "m");
-    expect_same(fresh, mesh);
-    st_release(mesh);
-    st_release(fresh);
-    st_store_free(other);
     st_store_free(store);
     kept_journal_free(journal);
 }
@@ -714,13 +512,13 @@ static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
     char id[8];
     for (unsigned i = 0; i < 40; i++) {
         snprintf(id, sizeof id, "m%02u", i);
-        st_release(make(store, id));
+        st_release(kept_store_make(store, id));
     }
     st_store_free(store);
     store = open_store(1 << 20);
     for (unsigned i = 0; i < 40; i += 3) {
         snprintf(id, sizeof id, "m%02u", i);
-        st_release(load(store, id));
+        st_release(kept_store_load(store, id));
     }
     st_card cards[7];
     size_t count = 7, all = 0;
@@ -759,10 +557,6 @@ int main(void)
         cmocka_unit_test(a_base_that_waits_goes_with_the_content_it_was_of),
         cmocka_unit_test(without_memory_nothing_is_loaded),
         cmocka_unit_test(without_memory_for_its_keys_nothing_is_loaded),
-        cmocka_unit_test(what_is_damaged_is_named),
-        cmocka_unit_test(a_mesh_of_a_newer_release_is_named_and_left_as_it_is),
-        cmocka_unit_test(a_damaged_mesh_can_be_removed),
-        cmocka_unit_test(a_damaged_mesh_can_be_replaced),
         cmocka_unit_test(a_list_has_what_is_in_memory_and_what_is_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
