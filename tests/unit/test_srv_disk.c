@@ -113,12 +113,11 @@ static void *failing_resize(void *context, void *memory, size_t size)
     return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
 }
 
+/* 0: none fails. The hook itself is set while the journal's thread does not run. */
 static void fail_memory_at(long n)
 {
-    static const he_mem_hook hook = {failing_resize, NULL};
     atomic_store(&calls, 0);
     atomic_store(&fails_at, n);
-    he_mem_set_hook(&hook);
 }
 
 static bool was_done(st_status status)
@@ -182,8 +181,11 @@ static void compare(const did *done)
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;
+    static const he_mem_hook hook = {failing_resize, NULL};
     unsigned runs = 0, all = 0, none = 0;
     bool fired = true;
+    fail_memory_at(0);
+    he_mem_set_hook(&hook);
     for (long n = 1; fired; n += 1 + n / 32, runs++) {
         did done = {.revision = 0};
         open_store();
