@@ -143,16 +143,19 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
 {
     st_sqlite *self = context;
     sqlite3_stmt *s;
+    st_sql outcome;
     size_t found = 0;
     pthread_mutex_lock(&self->cards_lock);
-    st_sql outcome = self->salvage.on
-                         ? st_salvage_list(self, after[0] == '\0', out, limit, &found)
-                         : st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
-    while (outcome == ST_SQL_ROW) {
-        st_mesh_row row;
-        (void)st_sqlite_read_card(s, &row);
-        out[found++] = row.card;
-        outcome = st_db_step(&self->cards, s);
+    if (self->salvage.on) {
+        outcome = st_salvage_list(self, after[0] == '\0', out, limit, &found);
+    } else {
+        outcome = st_db_find(&self->cards, CARDS, &s, "ti", after, (uint64_t)limit);
+        while (outcome == ST_SQL_ROW) {
+            st_mesh_row row;
+            (void)st_sqlite_read_card(s, &row);
+            out[found++] = row.card;
+            outcome = st_db_step(&self->cards, s);
+        }
     }
     pthread_mutex_unlock(&self->cards_lock);
     if (outcome != ST_SQL_DONE) {
