@@ -9,11 +9,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-extern char **environ; /* POSIX has it in no header */
-
 enum { MISUSE = 2 };
 
-int main(int argc, char **argv)
+/* The third is not of the C standard; the systems that hedged runs on all have it. */
+int main(int argc, char **argv, char **environment)
 {
     srv_config config;
     char message[320];
@@ -41,7 +40,7 @@ int main(int argc, char **argv)
     } else if (srv_maintenance_asked(&config)) {
         status = srv_maintenance_run(&config);
     } else {
-        srv_config_tell_unknown(environ, stderr);
+        srv_config_tell_unknown(environment, stderr);
         status = srv_daemon_run(&config);
     }
     srv_config_clear(&config);

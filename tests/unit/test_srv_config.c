@@ -290,7 +290,7 @@ static void a_line_that_is_wrong_is_named(void **state)
         size_t length;
         const char *says;
     } rows[] = {
-#define ROW(text, says) {text, sizeof text - 1, says}
+#define ROW(text, says) {(text), sizeof(text) - 1, (says)}
         ROW("\n\nprot = 1\n", ":3: there is no setting \"prot\""),
         ROW("--workers = 1", ":1: there is no setting \"--workers\""),
         ROW("listen", ":1: listen needs a value"),
