@@ -26,7 +26,8 @@
  *     F3   the other side of a triangle beside the edge goes, and is a feature;
  *     F4   the target would move and has a feature edge, unless the edge is one of exactly two.
  *
- * So a line can be thinned out along itself, and what is beside it be drawn onto it.
+ * So a line can be thinned out along itself, and what is beside it be drawn onto it. A vertex moves
+ * where its position comes out as another one: a point that rounds to where it is moves nothing.
  *
  * delaunay leaves edges alone that edge_flip would refuse. Edits whose whole purpose is to take
  * something away (face_join, face_delete), and welds, do not heed `feature`: of edges that become

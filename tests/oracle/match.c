@@ -243,6 +243,8 @@ static bool adopt_parts(const or_mesh *o, uint32_t first_new, char text[OR_TEXT]
 
 static void settled(or_mesh *o)
 {
+    or_forget(o->before);
+    o->before = NULL;
     o->cuts = 0;
     o->may = 0;
     o->either = o->by_plane = o->bridging = false;
@@ -250,7 +252,12 @@ static void settled(or_mesh *o)
 
 void or_decline(or_mesh *o)
 {
+    or_lists *before = o->before;
+    o->before = NULL;
     settled(o);
+    if (before != NULL) {
+        or_restore(o, before);
+    }
 }
 
 bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT])

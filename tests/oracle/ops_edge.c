@@ -1,6 +1,8 @@
 #include "oracle/oracle.h"
 
 #include <assert.h>
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 static he_vec3 between(he_vec3 a, he_vec3 b, double t)
@@ -259,16 +261,49 @@ static bool same_point(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+/* Is the point at t further from v than rounding can lead? */
+static bool surely_off(double u, double v, double t)
+{
+    double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;
+    return (1 - t) * fabs(u - v) > most;
+}
+
+static bool surely_moves(he_vec3 u, he_vec3 v, double t)
+{
+    return surely_off(u.x, v.x, t) || surely_off(u.y, v.y, t) || surely_off(u.z, v.z, t);
+}
+
+uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
+                           uint64_t *doubt)
+{
+    he_vec3 from = o->vertex[u].at;
+    he_vec3 at = o->vertex[v].at;
+    bool apart = !same_point(from, at) || o->vertex[v].near;
+    bool can_move = to != NULL ? !same_point(*to, at) : t != 1 && apart;
+    bool moves = can_move && (to != NULL || surely_moves(from, at, t));
+    uint64_t refused = link_condition(o, u, v) | marks_about(o, u, v, moves);
+    *doubt |= marks_about(o, u, v, can_move) & ~refused;
+    return refused;
+}
+
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
 {
-    uint64_t refused = link_condition(o, u, v);
-    he_vec3 at = to != NULL ? *to : between(o->vertex[u].at, o->vertex[v].at, t);
-    bool together = same_point(o->vertex[u].at, o->vertex[v].at);
-    bool moves = to == NULL ? t != 1 && !together : !same_point(at, o->vertex[v].at);
-    refused |= marks_about(o, u, v, moves);
+    uint64_t doubt = 0;
+    uint64_t refused = or_check_collapse(o, u, v, t, to, &doubt);
     if (refused != 0) {
-        return refused;
+        return refused | doubt;
     }
+    if (doubt != 0) {
+        or_doubt(o, or_save(o), doubt);
+    }
+    or_draw_together(o, u, v, t, to);
+    return 0;
+}
+
+void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
+{
+    he_vec3 from = o->vertex[u].at;
+    he_vec3 at = o->vertex[v].at;
     o->edge[o->joined[u][v]].alive = false;
     for (uint32_t i = 0; i < o->faces; i++) {
         or_face *face = &o->face[i];
@@ -295,7 +330,6 @@ uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he
         }
     }
     o->vertex[u].alive = false;
-    o->vertex[v].at = at;
-    o->vertex[v].near = true;
-    return 0;
+    o->vertex[v].near = to == NULL && (o->vertex[v].near || !same_point(from, at));
+    o->vertex[v].at = to != NULL ? *to : between(from, at, t);
 }

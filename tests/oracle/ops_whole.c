@@ -7,14 +7,14 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
     or_face was = o->face[f];
     uint32_t shift = or_place(&was, start);
     uint64_t refused = 0;
+    uint64_t doubt = 0;
     or_lists *before = or_save(o);
     for (uint32_t k = 1; k < was.count && refused == 0; k++) {
         uint32_t u = was.v[(shift + k) % was.count];
-        he_vec3 at = o->vertex[start].at;
-        he_vec3 goes = o->vertex[u].at;
-        bool same = at.x == goes.x && at.y == goes.y && at.z == goes.z;
-        refused = or_edge_collapse(o, u, start, (double)k / (k + 1), same ? &at : NULL);
+        double t = (double)k / (k + 1);
+        refused = or_check_collapse(o, u, start, t, NULL, &doubt);
         if (refused == 0) {
+            or_draw_together(o, u, start, t, NULL);
             uint64_t wrong = or_derive(o);
             assert(wrong == 0);
             (void)wrong;
@@ -22,10 +22,14 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
     }
     if (refused != 0) {
         or_restore(o, before);
+        return refused | doubt;
+    }
+    if (doubt != 0) {
+        or_doubt(o, before, doubt);
     } else {
         or_forget(before);
     }
-    return refused;
+    return 0;
 }
 
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count)

@@ -12,12 +12,14 @@ or_mesh *or_new(void)
     memset(o->left, 0xFF, sizeof o->left);
     memset(o->joined, 0xFF, sizeof o->joined);
     o->known_vertices = o->known_edges = 0;
+    o->before = NULL;
     or_empty(o);
     return o;
 }
 
 void or_free(or_mesh *o)
 {
+    or_forget(o->before);
     free(o);
 }
 
@@ -89,6 +91,8 @@ void or_set_joined(or_mesh *o, uint32_t e)
 void or_empty(or_mesh *o)
 {
     forget_pairs(o);
+    or_forget(o->before);
+    o->before = NULL;
     o->vertices = o->edges = o->faces = o->fresh = o->cuts = 0;
     o->either = o->by_plane = o->bridging = false;
     o->may = 0;
@@ -124,6 +128,9 @@ or_lists *or_save(const or_mesh *o)
 
 void or_forget(or_lists *lists)
 {
+    if (lists == NULL) {
+        return;
+    }
     for (uint32_t f = 0; f < lists->faces; f++) {
         free(lists->face[f]);
     }
@@ -131,6 +138,13 @@ void or_forget(or_lists *lists)
     free(lists->edge);
     free(lists->vertex);
     free(lists);
+}
+
+void or_doubt(or_mesh *o, or_lists *before, uint64_t may)
+{
+    assert(o->before == NULL);
+    o->before = before;
+    o->may |= may;
 }
 
 void or_restore(or_mesh *o, or_lists *lists)

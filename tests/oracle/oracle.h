@@ -66,7 +66,10 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* what plane_split is to cut */
     double distance[OR_VERTICES]; /* from the plane; 0 in it */
-    uint64_t may;      /* refusals that depend on those triangles: hedge may give them or succeed */
+    /* Refusals that depend on those triangles, or on rounding: hedge may give them or succeed. In
+     * `before` are the lists to go back to if it does, NULL where nothing is changed in them. */
+    uint64_t may;
+    struct or_lists *before;
     bool bridging;     /* loop_bridge: new faces of hedge's choice join these two loops */
     or_face bridge[2]; /* as they go round their holes */
     double twist;      /* of the least twisted pairing without a doubled edge, if equally long */
@@ -105,6 +108,9 @@ typedef struct or_lists {
 or_lists *or_save(const or_mesh *o);
 void or_restore(or_mesh *o, or_lists *lists);
 void or_forget(or_lists *lists);
+/* hedge may refuse this with `may`: then or_decline goes back to `before`, which is the oracle's.
+ */
+void or_doubt(or_mesh *o, or_lists *before, uint64_t may);
 
 /* --- looking -------------------------------------------------------------------------------- */
 
@@ -150,6 +156,10 @@ uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
 /* u, the origin, goes; v stays, at `to` or at t between them. */
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
+/* Its two halves. What is refused only if v moves, which rounding decides, is added to *doubt. */
+uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
+                           uint64_t *doubt);
+void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
 
 uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep_isolated);
 uint64_t or_edge_cut(or_mesh *o, const uint32_t *e, uint32_t count);
