@@ -175,11 +175,12 @@ typedef struct attribute_slot {
     bool is_unknown;         /* what was there first is there again */
 } attribute_slot;
 
+/* "" beyond the labels there are, as bytes of a damaged store may say; the checker names those. */
 static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
 {
     uint32_t index;
     memcpy(&index, row + i * sizeof index, sizeof index);
-    return he_labels_get(column->labels, index);
+    return index < he_labels_count(column->labels) ? he_labels_get(column->labels, index) : "";
 }
 
 /* Do rows name the same? One column may be NULL, all of whose rows are the default of the other. */
