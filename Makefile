@@ -103,7 +103,7 @@ STAMPS     := build/.stamps
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
         hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-large bench-space container fresh \
         screenshot \
-        install uninstall clean
+        install uninstall clean ALWAYS
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
@@ -215,7 +215,6 @@ $(BUILD)/commit: ALWAYS
 	@mkdir -p $(@D)
 	@echo '$(COMMIT)' | cmp -s - $@ || echo '$(COMMIT)' >$@
 ALWAYS:
-.PHONY: ALWAYS
 $(call object,server/version.c): CPPFLAGS += -DSRV_COMMIT='"$(COMMIT)"'
 $(call object,server/version.c): $(BUILD)/commit
 

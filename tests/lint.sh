@@ -11,7 +11,8 @@ trap 'rm -rf "$copy"' EXIT
 passed=0
 failed=0
 
-cp -R .ci core api server README.md STYLE.md Makefile "$copy"
+cp -R .ci core api server README.md STYLE.md Makefile Dockerfile "$copy"
+mkdir "$copy/web" && cp web/package.json "$copy/web"
 cd "$copy" || exit 1
 
 sources() {

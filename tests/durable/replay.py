@@ -58,12 +58,20 @@ def state(client, mesh):
 
 
 def history(client, base):
-    """What can be undone, done again or read; where it ended once, a loaded mesh lists no more."""
+    """What can be undone, done again and read: [undo, redo, oldest, entries after that]."""
     told = client.get(base + '/edits?limit=1000').json()
     for entry in told['entries']:
         del entry['time'], entry['bytes']
     return json.dumps([told[name] for name in ('undo', 'redo', 'oldest')]
                       + [e for e in told['entries'] if e['revision'] > told['oldest']])
+
+
+def as_far_as_both(ours, theirs):
+    """Histories, of the revisions that both reach: a store reads back what memory has dropped."""
+    ours, theirs = json.loads(ours), json.loads(theirs)
+    oldest = max(ours[2], theirs[2])
+    return [json.dumps(told[:2] + [e for e in told[3:] if e['revision'] > oldest])
+            for told in (ours, theirs)]
 
 
 def difference(ours, theirs):
@@ -73,6 +81,8 @@ def difference(ours, theirs):
             f'the store {"lacks the mesh" if ours is None else "has a mesh that was deleted"}'
     for name in [*theirs, *ours]:
         a, b = ours.get(name), theirs.get(name)
+        if name == 'history' and a is not None and b is not None:
+            a, b = as_far_as_both(a, b)
         if a != b:
             at = next((i for i, (x, y) in enumerate(zip(a or '', b or '')) if x != y),
                       min(len(a or ''), len(b or '')))

@@ -494,7 +494,7 @@ test('everything is reached by keyboard, and the focus is seen', async (t) => {
             reached.push(name);
         }
     }
-    for (const name of ['pick', 'fit', 'refresh', 'mesh', 'upload wide', 'canvas']) {
+    for (const name of ['pick', 'fit', 'refresh', 'mesh', 'upload wide edits', 'canvas']) {
         assert.ok(reached.includes(name), `${name} is not among ${reached}`);
     }
     await page.getByRole('radio', { name: 'Face' }).focus();
