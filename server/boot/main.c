@@ -1,5 +1,5 @@
+#include "server/boot/daemon.h"
 #include "server/config.h"
-#include "server/daemon.h"
 #include "server/maintenance.h"
 #include "server/net/healthcheck.h"
 #include "server/tokens.h"

@@ -3,8 +3,8 @@
  *     store <- api service <- http <- clients
  *                  ^            |
  *                jobs <---------+       access log <- http                                   */
-#ifndef HE_SERVER_DAEMON_H
-#define HE_SERVER_DAEMON_H
+#ifndef HE_SERVER_BOOT_DAEMON_H
+#define HE_SERVER_BOOT_DAEMON_H
 
 #include "server/config.h"
 

@@ -1,0 +1,66 @@
+#include "server/boot/parts.h"
+
+#include "server/boot/resources.h"
+#include "server/version.h"
+
+#include <string.h>
+#include <unistd.h>
+
+/* Whoever reaches the daemon by the address it listens on names that as the host. */
+static void allow_own_host(srv_parts *parts, const srv_address *address)
+{
+    srv_names *hosts = &parts->policy.hosts;
+    srv_address_format(&address->socket.any, false, parts->own_host);
+    if (hosts->count < SRV_MAX_NAMES && strcmp(parts->own_host, "0.0.0.0") != 0 &&
+        strcmp(parts->own_host, "::") != 0) {
+        hosts->items[hosts->count++] = parts->own_host;
+    }
+}
+
+/* Programs wait for the first line. The second is for a reader at a terminal: it names localhost
+ * where the daemon listens on all addresses, since 0.0.0.0 in a browser is a Host that is refused.
+ */
+static void tell_ready(const srv_parts *parts)
+{
+    char port[SRV_ADDRESS_TEXT];
+    const char *text = parts->address;
+    fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
+    if (isatty(STDERR_FILENO) == 0) {
+        return;
+    }
+    if (strcmp(parts->own_host, "0.0.0.0") == 0 || strcmp(parts->own_host, "::") == 0) {
+        snprintf(port, sizeof port, "localhost:%u", srv_http_port(parts->http));
+        text = port;
+    }
+    fprintf(stderr, "hedge is at http://%s/ - open it in a browser; Ctrl-C stops it\n", text);
+}
+
+bool srv_open_http(srv_parts *parts)
+{
+    char message[256];
+    srv_http_options options = {
+        .service = parts->service,
+        .store = parts->store,
+        .pool = parts->pool,
+        .makers = parts->makers,
+        .log = parts->log,
+        .policy = &parts->policy,
+        .read_seconds = parts->config->read_seconds,
+        .heartbeat_micros = parts->config->heartbeat * 1000000,
+    };
+    if (!srv_address_parse(parts->config->listen, &options.address)) {
+        return srv_open_failed("no address to listen on");
+    }
+    parts->policy = parts->config->policy;
+    allow_own_host(parts, &options.address);
+    srv_choose_connections(parts->config, &options);
+    atomic_store(&parts->ready, true);
+    parts->http = srv_http_start(&options, message, sizeof message);
+    if (parts->http == NULL) {
+        return srv_open_failed(message);
+    }
+    srv_address_set_port(&options.address, srv_http_port(parts->http));
+    srv_address_format(&options.address.socket.any, true, parts->address);
+    tell_ready(parts);
+    return true;
+}

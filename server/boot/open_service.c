@@ -1,0 +1,95 @@
+#include "server/boot/parts.h"
+
+#include "api/describe/routes.h"
+#include "server/boot/reload.h"
+#include "server/version.h"
+#include "system/memory.h"
+
+#include <limits.h>
+#include <unistd.h>
+
+enum { LOG_RING = 8192 };
+
+static bool is_ready(void *context)
+{
+    const srv_parts *parts = context;
+    return atomic_load(&parts->ready);
+}
+
+static bool load_page(srv_parts *parts)
+{
+    char folder[PATH_MAX], message[320];
+    bool found = srv_assets_folder(parts->config->web, folder, sizeof folder);
+    parts->assets = srv_assets_load(found ? folder : NULL, message, sizeof message);
+    if (parts->assets == NULL) {
+        return srv_open_failed("no memory for the page");
+    }
+    /* Asked for by name, the page must be there; otherwise serving without it is fine. */
+    return message[0] == '\0' || parts->config->web[0] == '\0' || srv_open_failed(message);
+}
+
+static void count_memory(uint64_t *used, uint64_t *budget)
+{
+    *used = st_memory_used();
+    *budget = st_memory_budget();
+}
+
+bool srv_open_tokens(srv_parts *parts)
+{
+    char message[320];
+    if (parts->config->tokens[0] == '\0') {
+        return true;
+    }
+    parts->tokens = api_tokens_new();
+    if (parts->tokens == NULL) {
+        return srv_open_failed("no memory to start");
+    }
+    return srv_reload(parts, message, sizeof message) || srv_open_failed(message);
+}
+
+static bool submit_job(void *pool, const st_task *task)
+{
+    return st_pool_submit(pool, task);
+}
+
+static bool open_service(srv_parts *parts)
+{
+    parts->job_table = api_job_table_new(&(api_job_table_options){
+        .store = parts->store, .submit = submit_job, .pool = parts->pool, .keep = API_JOB_SECONDS});
+    if (parts->job_table == NULL) {
+        return srv_open_failed("no memory to start");
+    }
+    parts->backups.folder = srv_config_folder(parts->config);
+    parts->service =
+        api_service_new(parts->store, api_routes(),
+                        &(api_options){
+                            .max_upload = parts->config->max_upload,
+                            .version = SRV_VERSION,
+                            .asset = srv_assets_find,
+                            .asset_context = parts->assets,
+                            .ready = is_ready,
+                            .ready_context = parts,
+                            .memory = count_memory,
+                            .tokens = parts->tokens,
+                            .reload = srv_reload,
+                            .reload_context = parts,
+                            .backup = parts->backups.folder == NULL ? NULL : srv_backup_make,
+                            .backup_context = &parts->backups,
+                            .jobs = parts->job_table,
+                            .pool = parts->pool,
+                            .plain_answers = parts->config->no_compression,
+                            .exec = st_parallel_exec(parts->parallel),
+                        });
+    bool logs = parts->config->log == SRV_LOG_ACCESS ||
+                (parts->config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
+    if (logs) {
+        parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
+    }
+    return (parts->service != NULL && (parts->log != NULL || !logs)) ||
+           srv_open_failed("no memory or threads to start");
+}
+
+bool srv_open_service(srv_parts *parts)
+{
+    return load_page(parts) && open_service(parts);
+}

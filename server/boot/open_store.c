@@ -1,0 +1,86 @@
+#include "server/boot/parts.h"
+
+#include "api/event/event_follow.h"
+#include "journal/sqlite/sqlite_journal.h"
+#include "server/boot/resources.h"
+#include "server/samples.h"
+#include "server/version.h"
+
+enum {
+    SHORT_THREADS = 2, /* of the pool, beside as many as there may be jobs: thread_pool.h */
+    MAKER_QUEUE = 1024 /* pieces of answers; beyond it workers make them */
+};
+
+bool srv_open_failed(const char *why)
+{
+    fprintf(stderr, "hedged: %s\n", why);
+    return false;
+}
+
+static bool open_threads(srv_parts *parts)
+{
+    size_t jobs = parts->config->jobs != 0 ? (size_t)parts->config->jobs
+                  : srv_cores() > 2        ? srv_cores()
+                                           : 2;
+    parts->pool =
+        st_pool_new("hedged-pool", jobs + SHORT_THREADS, (size_t)parts->config->job_queue);
+    parts->makers = st_pool_new("hedged-answers", srv_cores(), MAKER_QUEUE);
+    parts->parallel = st_parallel_new(srv_cores() - 1);
+    return (parts->pool != NULL && parts->makers != NULL && parts->parallel != NULL) ||
+           srv_open_failed("no memory or threads to start");
+}
+
+/* *made: the store is new, so that samples may be put into it. */
+static bool open_journal(const srv_config *config, st_journal *out, bool *made)
+{
+    const char *folder = srv_config_folder(config);
+    st_sqlite_opened opened;
+    if (folder == NULL) {
+        *out = st_journal_memory();
+        *made = true;
+        return true;
+    }
+    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = SRV_VERSION}, &opened)) {
+        return srv_open_failed(opened.message);
+    }
+    fprintf(stderr, "hedged: meshes are kept in %s%s%s\n", folder,
+            opened.message[0] == '\0' ? "" : "; ", opened.message);
+    *out = opened.journal;
+    *made = opened.made;
+    return true;
+}
+
+static bool open_store(srv_parts *parts)
+{
+    st_journal journal;
+    bool made = false;
+    if (!open_journal(parts->config, &journal, &made)) {
+        return false;
+    }
+    parts->store = st_store_new(&(st_store_options){
+        .undo_budget = parts->config->undo_budget,
+        .max_meshes = parts->config->max_meshes,
+        .journal = journal,
+        .pool = parts->pool,
+        .listeners = parts->config->max_listeners,
+        .mesh_listeners = parts->config->max_mesh_listeners,
+        .render = api_event_render,
+    });
+    if (parts->store == NULL) {
+        journal.close(journal.self);
+        return srv_open_failed("no memory to start");
+    }
+    he_error err;
+    if (parts->config->samples && made && srv_samples_add(parts->store, &err) != HE_OK) {
+        return srv_open_failed(err.text);
+    }
+    if (made && journal.keeps) {
+        journal.begun(journal.self);
+    }
+    return true;
+}
+
+bool srv_open_store(srv_parts *parts)
+{
+    return open_threads(parts) && open_store(parts);
+}

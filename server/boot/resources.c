@@ -1,0 +1,82 @@
+#include "server/boot/resources.h"
+
+#include "system/memory.h"
+#include "system/memory_limit.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+enum {
+    OWN_FILES = 48, /* descriptors that are not connections */
+    DRAIN_FILES = 64
+};
+
+size_t srv_cores(void)
+{
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    return online < 1 ? 1 : (size_t)online;
+}
+
+/* Connections are descriptors: as many as the system lets this process have. */
+static size_t open_files(void)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0) {
+        return 1024;
+    }
+    files.rlim_cur = files.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &files);
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur > INT_MAX) {
+        return INT_MAX;
+    }
+    return (size_t)files.rlim_cur;
+}
+
+/* Some sockets are kept for answering 503 to connections beyond the limit. */
+void srv_choose_connections(const srv_config *config, srv_http_options *options)
+{
+    size_t files = open_files();
+    size_t own = OWN_FILES + DRAIN_FILES;
+    size_t sockets = files > 2 * own ? files - own : files / 2;
+    size_t slack = sockets / 16 < 256 ? sockets / 16 : 256;
+    size_t most = sockets - slack > 0 ? sockets - slack : 1;
+    if (config->max_connections < most) {
+        most = (size_t)config->max_connections;
+    }
+    options->deadlines = (srv_deadline_options){
+        .idle = config->idle_timeout,
+        .head = config->header_timeout,
+        .grace = config->body_grace,
+        .total = config->request_timeout,
+        .min_rate = config->min_rate,
+        .max_connections = most,
+    };
+    options->max_sockets = most + slack;
+    options->workers = config->workers == 0 ? srv_cores() : (size_t)config->workers;
+}
+
+void srv_choose_budget(const srv_config *config)
+{
+    const uint64_t mib = UINT64_C(1) << 20;
+    const st_memory_limit limit = st_memory_limit_find("", st_memory_limit_machine());
+    uint64_t budget = config->memory_budget;
+    if (budget == 0 && limit.bytes == UINT64_MAX) {
+        fprintf(stderr, "hedged: no memory budget: the system does not say what the machine has\n");
+    } else if (budget == 0) {
+        budget = limit.bytes / 4 * 3;
+        fprintf(stderr,
+                "hedged: memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
+                " MiB that %s allows\n",
+                budget / mib, limit.bytes / mib, limit.source);
+    } else if (budget > limit.bytes) {
+        fprintf(stderr,
+                "hedged: memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
+                " MiB that %s allows: the kernel may end the daemon before it is used up\n",
+                budget / mib, limit.bytes / mib, limit.source);
+    } else {
+        fprintf(stderr, "hedged: memory budget %" PRIu64 " MiB as told\n", budget / mib);
+    }
+    st_memory_set_budget(budget);
+}

@@ -1,0 +1,27 @@
+#include "server/boot/signals.h"
+
+#include <stddef.h>
+
+/* Signals that end a process unless it says otherwise, and mean nothing here: a terminal or client
+ * that is gone, timers, descriptors, and what other daemons take for a command. */
+static void ignore_signals(void)
+{
+    static const int harmless[] = {SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2, SIGVTALRM,
+                                   SIGPROF, SIGPOLL, SIGSTKFLT, SIGPWR};
+    for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
+        signal(harmless[i], SIG_IGN);
+    }
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++) {
+        signal(number, SIG_IGN);
+    }
+}
+
+void srv_signals_begin(sigset_t *waited)
+{
+    ignore_signals();
+    sigemptyset(waited);
+    sigaddset(waited, SIGTERM);
+    sigaddset(waited, SIGINT);
+    sigaddset(waited, SIGHUP);
+    pthread_sigmask(SIG_BLOCK, waited, NULL);
+}

@@ -1,0 +1,63 @@
+#include "server/boot/watch.h"
+
+#include "server/net/healthcheck.h"
+#include "server/net/notify.h"
+#include "system/clock.h"
+
+#include <time.h>
+
+static uint64_t processor_micros(void)
+{
+    struct timespec time = {0};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
+}
+
+/* A line when the disk is found full, when it has space again, and when it failed. What began and
+ * ended between two looks is told all the same; what ended and began again is not. */
+static void tell_health(const st_health *before, const st_health *now, const char *folder)
+{
+    const bool was_full = before->status == ST_FULL;
+    const bool found_full = !was_full && now->fulls != before->fulls;
+    if (found_full) {
+        fprintf(stderr,
+                "hedged: the disk of %s is full: changes are refused, reads and DELETE go on. Make "
+                "space there, or delete meshes\n",
+                folder);
+    }
+    if ((was_full || found_full) && now->status == ST_OK) {
+        fprintf(stderr, "hedged: the disk of %s has space again: changes are taken\n", folder);
+    }
+    if (now->status == ST_FAILED && before->status != ST_FAILED) {
+        fprintf(stderr,
+                "hedged: the disk of %s failed%s%s: reads go on, no change is taken any more. Look "
+                "at the disk and start hedged again: what was acknowledged is there\n",
+                folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
+    }
+}
+
+/* Within the time that systemd waits, it is told twice that a worker still answers. */
+static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
+{
+    const uint64_t patience = srv_notify_watchdog();
+    char message[128];
+    if (patience == 0 || st_clock_micros() - *fed < patience / 2) {
+        return;
+    }
+    *fed = st_clock_micros();
+    if (srv_healthcheck(NULL, parts->address, message, sizeof message)) {
+        srv_notify("WATCHDOG=1");
+    } else {
+        fprintf(stderr, "hedged: asked itself for /livez, and %s\n", message);
+    }
+}
+
+void srv_watch_look(srv_watch *watch, const srv_parts *parts)
+{
+    const st_health before = watch->health;
+    feed_watchdog(parts, &watch->fed);
+    st_memory_rests(&watch->rest, processor_micros());
+    st_store_rest(parts->store);
+    st_store_health(parts->store, &watch->health);
+    tell_health(&before, &watch->health, srv_config_folder(parts->config));
+}
