@@ -3,6 +3,7 @@
 #include "build/build.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static he_mesh *finish(he_soup *soup, he_status status)
 {
@@ -48,6 +49,34 @@ he_mesh *giant_rows(void)
         status = he_soup_add_face(&soup, lower, 3, NULL);
         if (status == HE_OK) {
             status = he_soup_add_face(&soup, upper, 3, NULL);
+        }
+    }
+    return finish(&soup, status);
+}
+
+he_mesh *giant_palette(const char *prefix, size_t count)
+{
+    static const uint32_t triangle[3] = {0, 1, 2};
+    he_soup soup;
+    he_soup_init(&soup, NULL);
+    he_status status = HE_OK;
+    for (uint32_t i = 0; i < 3 && status == HE_OK; i++) {
+        he_vec3 p = {i == 1, i == 2, 0};
+        status = he_soup_add_vertex(&soup, p, NULL);
+    }
+    if (status == HE_OK) {
+        status = he_soup_add_face(&soup, triangle, 3, NULL);
+    }
+    for (size_t i = 0; i < count && status == HE_OK; i++) {
+        char name[40];
+        he_material *row = NULL;
+        int length = snprintf(name, sizeof name, "%.16s%zu", prefix, i);
+        status = he_material_new(name, (size_t)length, &he_plain_look, &row, NULL);
+        if (status == HE_OK) {
+            status = he_materials_add(&soup.materials, row, NULL);
+        }
+        if (status != HE_OK) {
+            he_material_release(row);
         }
     }
     return finish(&soup, status);

@@ -8,6 +8,13 @@
 static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
 enum { NAMES = sizeof names / sizeof *names };
 
+/* The attribute `material` of faces without labels, as marks.c makes some, names no materials. */
+static bool clashes(const he_mesh *m)
+{
+    const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
+    return column != NULL && !he_is_material_column(column);
+}
+
 /* The model keeps no attributes: what a material looks like is the unit tests', what it does not
  * touch is the model's. */
 static bool draw_material_set(md_draft *d)
@@ -35,9 +42,9 @@ static bool draw_material_set(md_draft *d)
 
 static uint64_t play_material_set(const md_call *c, or_mesh *o, const he_mesh *m)
 {
-    (void)m;
     const he_arg *color = md_get(c, "base_color"), *faces = md_get(c, "face");
     uint64_t refused = faces->given ? md_require_all(o, HE_FACE, faces) : 0;
+    refused |= faces->given && clashes(m) ? OR_BIT(HE_ATTRIBUTE_CLASH) : 0;
     return refused | (color->given && color->color[0] > 1 ? OR_BIT(HE_BAD_VALUE) : 0);
 }
 
@@ -63,6 +70,9 @@ static uint64_t play_material_delete(const md_call *c, or_mesh *o, const he_mesh
 {
     (void)o;
     const he_arg *name = md_get(c, "name"), *to = md_get(c, "to");
+    if (clashes(m)) {
+        return OR_BIT(HE_ATTRIBUTE_CLASH);
+    }
     bool good = is_there(m, name->text) &&
                 (!to->given || (is_there(m, to->text) && strcmp(name->text, to->text) != 0));
     return good ? 0 : OR_BIT(HE_BAD_VALUE);

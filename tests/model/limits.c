@@ -2,6 +2,7 @@
 
 #include "giants.h"
 #include "mesh/check.h"
+#include "mesh/material.h"
 #include "model/arguments.h"
 
 #include <string.h>
@@ -11,17 +12,30 @@ typedef struct limit {
     he_mesh *(*make)(void);
     const char *element; /* its first argument, of id `id`; NULL for none */
     uint32_t id;
-    const char *number; /* its second one, 0.1 */
-    const char *method; /* its choice */
+    const char *number;     /* its second one, 0.1 */
+    const char *name;       /* its argument `name` */
+    he_mesh *(*mesh)(void); /* its argument `mesh` */
 } limit;
 
+static he_mesh *all_materials(void)
+{
+    return giant_palette("m", HE_MATERIALS);
+}
+
+static he_mesh *another_material(void)
+{
+    return giant_palette("n", 1);
+}
+
 static const limit limits[] = {
-    {"delaunay", giant_rows, NULL, 0, NULL, NULL},
-    {"face_inset", giant_star, "face", 0, "distance", NULL},
-    {"face_collapse", giant_star, "face", 0, NULL, NULL},
+    {.row = "delaunay", .make = giant_rows},
+    {.row = "face_inset", .make = giant_star, .element = "face", .number = "distance"},
+    {.row = "face_collapse", .make = giant_star, .element = "face"},
+    {.row = "material_set", .make = all_materials, .element = "face", .name = "n"},
+    {.row = "append", .make = all_materials, .mesh = another_material},
 };
 
-static void make_call(const limit *l, md_call *call)
+static void make_call(const limit *l, const he_mesh *other, md_call *call)
 {
     md_draft draft = {.c = call};
     for (call->row = 0; strcmp(he_op_at(call->row)->name, l->row) != 0; call->row++) {
@@ -36,24 +50,27 @@ static void make_call(const limit *l, md_call *call)
     if (l->number != NULL) {
         md_give_number(&draft, l->number, 0.1);
     }
-    if (l->method != NULL) {
-        size_t i = md_index(call, "method");
-        call->args[i].given = true;
-        call->args[i].choice = 0;
-        while (strcmp(call->op->params[i].choices[call->args[i].choice], l->method) != 0) {
-            call->args[i].choice++;
-        }
+    if (l->name != NULL) {
+        he_arg *name = &call->args[md_index(call, "name")];
+        name->given = true;
+        name->text = l->name;
+    }
+    if (other != NULL) {
+        he_arg *mesh = &call->args[md_index(call, "mesh")];
+        mesh->given = true;
+        mesh->mesh = other;
     }
 }
 
-static const char *refuse(const limit *l, he_mesh *m, const he_mesh *before, md_tally *tally)
+static const char *refuse(const limit *l, he_mesh *m, const he_mesh *before, const he_mesh *other,
+                          md_tally *tally)
 {
     md_call call = {.row = 0};
     he_results results = {0};
     he_error err = {0};
     he_problem problem;
     size_t problems = 0;
-    make_call(l, &call);
+    make_call(l, other, &call);
     he_status status = he_op_run(call.op, m, call.args, &results, &err);
     he_results_clear(&results);
     tally->edits++;
@@ -76,10 +93,14 @@ const char *md_limits_run(md_tally *tally)
     for (size_t i = 0; i < sizeof limits / sizeof *limits && wrong == NULL; i++) {
         he_mesh *m = limits[i].make();
         he_mesh *before = NULL;
-        wrong = m == NULL || he_mesh_copy(m, &before, NULL) != HE_OK ? "no memory" : NULL;
-        if (wrong == NULL) {
-            wrong = refuse(&limits[i], m, before, tally);
+        he_mesh *other = limits[i].mesh != NULL ? limits[i].mesh() : NULL;
+        if (m == NULL || he_mesh_copy(m, &before, NULL) != HE_OK ||
+            (limits[i].mesh != NULL && other == NULL)) {
+            wrong = "no memory";
+        } else {
+            wrong = refuse(&limits[i], m, before, other, tally);
         }
+        he_mesh_free(other);
         he_mesh_free(before);
         he_mesh_free(m);
     }

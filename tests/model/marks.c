@@ -58,10 +58,32 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
     return true;
 }
 
+/* Numbers under the name by which faces name their materials, unless they name some. */
+static bool add_clash(he_mesh *m)
+{
+    if (he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE) != NULL) {
+        return true;
+    }
+    he_column *column = NULL;
+    if (he_column_new(HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL) !=
+        HE_OK) {
+        return false;
+    }
+    if (he_column_extend(column, he_mesh_issued(m, HE_FACE), NULL) != HE_OK ||
+        he_mesh_add_column(m, column, NULL) != HE_OK) {
+        he_column_free(column);
+        return false;
+    }
+    return true;
+}
+
 bool md_mark(he_mesh *m, md_random *r)
 {
     static const he_kind locked[] = {HE_VERTEX, HE_EDGE, HE_FACE};
     static const he_kind numbered[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
+    if (md_chance(r, 5) && !add_clash(m)) {
+        return false;
+    }
     bool numbers = md_chance(r, 30);
     for (size_t i = 0; i < sizeof numbered / sizeof *numbered && numbers; i++) {
         if (md_chance(r, 60) && !add_numbers(m, r, numbered[i])) {
