@@ -29,6 +29,11 @@ const srv_option srv_options[] = {
      "answer requests for this Host too; may be repeated or a comma list"},
     {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
      "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
+    {"trusted-proxy", SRV_LIST, MEMBER(trusted_proxies), "", "ADDRESS", 0, 0,
+     "believe the proxy at this address, of this network (10.0.0.0/8), or on the Unix socket "
+     "(unix) "
+     "what it tells of its client in Forwarded, X-Forwarded-For and X-Forwarded-Proto; may be "
+     "repeated or a comma list"},
     {"web", SRV_TEXT, MEMBER(web), "", "DIR", 0, 0,
      "folder of the built page; otherwise looked for beside the executable"},
     {"store", SRV_TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
@@ -139,7 +144,7 @@ static bool read_list(srv_config *config, srv_names *names, const char *text, ch
 {
     size_t length = strlen(text);
     char *copy = he_mem_alloc(length + 1);
-    if (copy == NULL || config->owned_count == 2 * SRV_MAX_NAMES) {
+    if (copy == NULL || config->owned_count == SRV_MAX_LISTS) {
         he_mem_free(copy);
         snprintf(message, size, "%s is given too often", source);
         return false;
@@ -361,6 +366,21 @@ const char *srv_config_folder(const srv_config *config)
     return strncmp(config->store, scheme, length) == 0 ? config->store + length : NULL;
 }
 
+static bool find_proxies(srv_config *config, char *message, size_t size)
+{
+    for (size_t i = 0; i < config->trusted_proxies.count; i++) {
+        const char *text = config->trusted_proxies.items[i];
+        if (!srv_proxies_add(&config->policy.proxies, text)) {
+            snprintf(message, size,
+                     "--trusted-proxy takes an address, a network such as 10.0.0.0/8, or unix, not "
+                     "\"%s\"",
+                     text);
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool check(const srv_config *config, char *message, size_t size)
 {
     srv_address address;
@@ -379,7 +399,7 @@ static bool check(const srv_config *config, char *message, size_t size)
     const bool serves = !config->healthcheck && !config->print_config && !config->verify &&
                         !config->new_token && config->backup == NULL && config->restore == NULL &&
                         config->dump == NULL;
-    if (serves && !srv_address_is_loopback(&address) && config->tokens[0] == '\0' &&
+    if (serves && !srv_address_is_local(&address) && config->tokens[0] == '\0' &&
         !config->insecure) {
         snprintf(message, size,
                  "%s can be reached from other machines and requests need no token: name a file of "
@@ -416,7 +436,8 @@ bool srv_config_read(srv_config *config, int argc, char *const *argv,
         srv_config_clear(config);
         ok = read_places(config, file, argc, argv, environment, message, size);
     }
-    ok = ok && (config->help || config->version || check(config, message, size));
+    ok = ok && (config->help || config->version ||
+                (check(config, message, size) && find_proxies(config, message, size)));
     if (!ok) {
         srv_config_clear(config);
     }

@@ -12,6 +12,9 @@
 #include <stdint.h>
 #include <stdio.h>
 
+/* Times that an option which is a list may be given, all of them together. */
+enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
+
 /* SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
  * reader wants to see. */
 typedef enum st_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } st_log_kind;
@@ -21,7 +24,8 @@ typedef struct srv_config {
     const char *listen;
     bool insecure;
     const char *tokens; /* a file; "": nobody needs a token */
-    srv_policy policy;
+    srv_policy policy;  /* its proxies are those of `trusted_proxies` */
+    srv_names trusted_proxies;
     const char *web;   /* "": look beside the executable */
     const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
     bool samples;
@@ -50,7 +54,7 @@ typedef struct srv_config {
     const char *token_name, *token_role; /* of new_token; NULL: not given */
 
     /* The text that list members point into, and that of the configuration file. */
-    char *owned[2 * SRV_MAX_NAMES];
+    char *owned[SRV_MAX_LISTS];
     unsigned owned_count;
     char *file_text;
 } srv_config;

@@ -9,24 +9,25 @@
 #include <stdbool.h>
 
 /* X(name, separator): every header that must be named for a page to read it, in order. */
-#define API_EXPOSED_HEADERS(X)         \
-    X("Accept-Encoding", ", ")         \
-    X("Allow", ", ")                   \
-    X("Content-Disposition", ", ")     \
-    X("Content-Encoding", ", ")        \
-    X("Content-Security-Policy", ", ") \
-    X("ETag", ", ")                    \
-    X("Export-Warnings", ", ")         \
-    X("Idempotency-Replayed", ", ")    \
-    X("Link", ", ")                    \
-    X("Location", ", ")                \
-    X("Preference-Applied", ", ")      \
-    X("Referrer-Policy", ", ")         \
-    X("Retry-After", ", ")             \
-    X("Vary", ", ")                    \
-    X("WWW-Authenticate", ", ")        \
-    X("X-Accel-Buffering", ", ")       \
-    X("X-Content-Type-Options", ", ")  \
+#define API_EXPOSED_HEADERS(X)           \
+    X("Accept-Encoding", ", ")           \
+    X("Allow", ", ")                     \
+    X("Content-Disposition", ", ")       \
+    X("Content-Encoding", ", ")          \
+    X("Content-Security-Policy", ", ")   \
+    X("ETag", ", ")                      \
+    X("Export-Warnings", ", ")           \
+    X("Idempotency-Replayed", ", ")      \
+    X("Link", ", ")                      \
+    X("Location", ", ")                  \
+    X("Preference-Applied", ", ")        \
+    X("Referrer-Policy", ", ")           \
+    X("Retry-After", ", ")               \
+    X("Strict-Transport-Security", ", ") \
+    X("Vary", ", ")                      \
+    X("WWW-Authenticate", ", ")          \
+    X("X-Accel-Buffering", ", ")         \
+    X("X-Content-Type-Options", ", ")    \
     X("X-Request-Id", "")
 
 /* "Accept-Encoding, Allow, ..." */

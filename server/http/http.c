@@ -69,6 +69,9 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
         srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer, srv_buffer_taken());
         *slot = c;
+        if (c != NULL) {
+            c->is_proxy = srv_proxies_has(&http->options.policy->proxies, c->peer);
+        }
         if (c == NULL || !srv_recv_watch(c)) {
             /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
             shutdown(fd, SHUT_RDWR);

@@ -49,8 +49,24 @@ static const char *field_value(const srv_head *head, const char *name)
     return field == NULL ? NULL : field->value;
 }
 
+bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_client *client,
+                       api_problem *problem)
+{
+    srv_forwarding told = {0};
+    srv_scheme scheme = SRV_SCHEME_UNKNOWN;
+    for (size_t i = 0; i < head->field_count; i++) {
+        srv_forwarding_read(&told, &policy->proxies, head->fields[i].name, head->fields[i].value);
+    }
+    const char *wrong = srv_forwarding_end(&told, client->address, &scheme);
+    if (wrong != NULL) {
+        return api_problem_set(problem, API_BAD_HEADER, "%s", wrong);
+    }
+    client->scheme = scheme == SRV_SCHEME_UNKNOWN ? client->scheme : scheme;
+    return true;
+}
+
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
-               const char **cors, api_problem *problem)
+               srv_client *client, const char **cors, api_problem *problem)
 {
     const char *host = framing->host;
     size_t length = host == NULL ? 0 : strlen(host);
@@ -58,9 +74,15 @@ bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing
         !srv_policy_host(policy, framing->authority, framing->authority_length, problem)) {
         return false;
     }
-    const char *origin = field_value(head, "Origin");
-    *cors = srv_policy_cors(policy, origin);
+    const srv_sender sender = {
+        .method = head->method,
+        .host = host,
+        .origin = field_value(head, "Origin"),
+        .fetch_site = field_value(head, "Sec-Fetch-Site"),
+        .scheme = client->scheme,
+    };
+    *cors = srv_policy_cors(policy, sender.origin);
+    client->told_name = client->scheme == SRV_SCHEME_HTTPS && srv_policy_is_name(policy, host);
     return srv_policy_host(policy, host, length, problem) &&
-           srv_policy_origin(policy, head->method, host, origin,
-                             field_value(head, "Sec-Fetch-Site"), problem);
+           srv_policy_origin(policy, &sender, problem);
 }

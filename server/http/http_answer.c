@@ -136,6 +136,9 @@ static void describe(srv_request *r, srv_wire *wire)
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
     }
+    if (r->client.told_name) {
+        srv_wire_add(wire, "Strict-Transport-Security", "max-age=31536000");
+    }
     if (r->cors != NULL) {
         srv_wire_cors(wire, r->cors, r->preflight);
     }

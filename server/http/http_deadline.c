@@ -351,7 +351,7 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     c->socket = socket;
     c->buffer = buffer;
     srv_buffer_rest(buffer, st_clock_micros());
-    srv_address_format(peer, false, c->peer);
+    srv_address_of_peer(socket, peer, c->peer);
     srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     pthread_mutex_lock(&d->lock);
     c->next = d->first;

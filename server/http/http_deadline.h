@@ -67,6 +67,7 @@ typedef struct srv_connection {
     _Atomic uint64_t since; /* microseconds of the monotonic clock */
     _Atomic uint64_t bytes; /* received in this stage */
     bool drain;             /* drain after closing */
+    bool is_proxy;          /* a trusted one: what it tells of its client is believed */
     uint32_t buffer;        /* http_buffer.h */
     /* The worker's own. */
     srv_syntax syntax;

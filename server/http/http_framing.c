@@ -15,11 +15,14 @@ const srv_field *srv_head_find(const srv_head *head, const char *name)
     return NULL;
 }
 
-static bool split_target(const char *target, srv_framing *out, api_problem *problem)
+static bool split_target(const char *target, bool secure, srv_framing *out, api_problem *problem)
 {
     const char *path = target;
-    if (strncasecmp(target, "http://", 7) == 0) {
-        out->authority = target + 7;
+    const size_t scheme = strncasecmp(target, "http://", 7) == 0              ? 7
+                          : secure && strncasecmp(target, "https://", 8) == 0 ? 8
+                                                                              : 0;
+    if (scheme > 0) {
+        out->authority = target + scheme;
         out->authority_length = strcspn(out->authority, "/?");
         path = out->authority + out->authority_length;
     }
@@ -46,7 +49,7 @@ static uint64_t number_of(const srv_field *field)
     return value;
 }
 
-bool srv_framing_read(const srv_head *head, srv_framing *out, api_problem *problem)
+bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem)
 {
     const srv_field *length = srv_head_find(head, "Content-Length");
     const srv_field *host = srv_head_find(head, "Host");
@@ -59,7 +62,7 @@ bool srv_framing_read(const srv_head *head, srv_framing *out, api_problem *probl
         .has_length = length != NULL,
         .length = length == NULL ? 0 : number_of(length),
     };
-    bool ok = split_target(head->target, &framing, problem);
+    bool ok = split_target(head->target, secure, &framing, problem);
     *out = framing;
     return ok;
 }

@@ -37,8 +37,9 @@ typedef struct srv_framing {
     uint64_t length;
 } srv_framing;
 
-/* False with the problem filled, bad_path. */
-bool srv_framing_read(const srv_head *head, srv_framing *out, api_problem *problem);
+/* `secure`: it came over TLS, and https://authority/path?query is a target too. False with the
+ * problem filled, bad_path. */
+bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem);
 /* Without case; NULL when absent. */
 const srv_field *srv_head_find(const srv_head *head, const char *name);
 

@@ -137,8 +137,7 @@ static bool begin_work(srv_request *r)
                           .context = r,
                           .share = is_long ? ST_SHARE_LONG : ST_SHARE_BRIEF,
                           .cost = load.seconds,
-                          .flow =
-                              st_pool_flow(r->socket == NULL ? "" : r->socket->peer, load.mesh)};
+                          .flow = st_pool_flow(srv_request_client(r), load.mesh)};
     r->work_until = load.reads ? 0 : UINT64_MAX;
     if (!st_pool_submit(r->http->options.pool, &task)) {
         srv_answer_refuse(r, API_OVERLOADED, "too many long requests are waiting");
@@ -169,6 +168,15 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
     return MHD_YES;
 }
 
+/* False with r->refusal filled. */
+static bool find_client(srv_request *r, const srv_head *head)
+{
+    snprintf(r->client.address, sizeof r->client.address, "%s",
+             r->socket == NULL ? "-" : r->socket->peer);
+    return r->socket == NULL || !r->socket->is_proxy ||
+           srv_admit_proxied(r->http->options.policy, head, &r->client, &r->refusal);
+}
+
 /* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
@@ -183,7 +191,7 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
         return api_problem_set(&r->refusal, API_OVERLOADED,
                                "more than %" PRIu64 " connections are open", most);
     }
-    return srv_admit(http->options.policy, head, framing, &r->cors, &r->refusal);
+    return srv_admit(http->options.policy, head, framing, &r->client, &r->cors, &r->refusal);
 }
 
 /* The values of headers are libmicrohttpd's, which keeps them until the request has completed, or
@@ -237,7 +245,9 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     r->state = SRV_BODY;
 
     srv_framing framing;
-    if (is_faulty(r, &r->refusal) || !srv_framing_read(&head, &framing, &r->refusal)) {
+    bool known = find_client(r, &head);
+    if (is_faulty(r, &r->refusal) ||
+        !srv_framing_read(&head, r->client.scheme == SRV_SCHEME_HTTPS, &framing, &r->refusal)) {
         /* Where the body ends is not known, so it cannot be passed over. */
         r->step = API_READY;
         r->announced = UINT64_MAX;
@@ -250,7 +260,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     if (mark != NULL) {
         *mark = '\0'; /* now the path ends where the query begins */
     }
-    bool ok = admit(r, &head, &framing);
+    bool ok = known && admit(r, &head, &framing);
     if (ok && r->cors != NULL && strcmp(method, "OPTIONS") == 0 &&
         srv_head_find(&head, "Access-Control-Request-Method") != NULL) {
         r->preflight = true;

@@ -71,6 +71,22 @@ bool srv_policy_host(const srv_policy *policy, const char *host, size_t length,
                            "this server does not answer for the given Host; --allow-host adds one");
 }
 
+bool srv_policy_is_name(const srv_policy *policy, const char *host)
+{
+    authority named;
+    srv_proxies address = {0};
+    if (host == NULL || !parse_authority(host, strlen(host), &named)) {
+        return false;
+    }
+    for (size_t i = 0; i < policy->hosts.count; i++) {
+        const char *name = policy->hosts.items[i];
+        if (same_text(named.host, named.host_length, name)) {
+            return strcasecmp(name, "localhost") != 0 && !srv_proxies_add(&address, name);
+        }
+    }
+    return false;
+}
+
 bool srv_policy_is_read(const char *method)
 {
     return strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0 ||
@@ -91,20 +107,24 @@ const char *srv_policy_cors(const srv_policy *policy, const char *origin)
 }
 
 /* Does `origin` name the authority of Host? A missing port is the scheme's. */
-static bool is_own_origin(const char *origin, const char *host)
+static bool is_own_origin(const char *origin, const char *host, srv_scheme scheme)
 {
     long port;
+    srv_scheme named;
     if (strncasecmp(origin, "http://", 7) == 0) {
         origin += 7;
         port = 80;
+        named = SRV_SCHEME_HTTP;
     } else if (strncasecmp(origin, "https://", 8) == 0) {
         origin += 8;
         port = 443;
+        named = SRV_SCHEME_HTTPS;
     } else {
         return false;
     }
     authority from, here;
-    if (host == NULL || !parse_authority(origin, strlen(origin), &from) ||
+    if ((scheme != SRV_SCHEME_UNKNOWN && scheme != named) || host == NULL ||
+        !parse_authority(origin, strlen(origin), &from) ||
         !parse_authority(host, strlen(host), &here)) {
         return false;
     }
@@ -113,13 +133,13 @@ static bool is_own_origin(const char *origin, const char *host)
            (from.port < 0 ? port : from.port) == (here.port < 0 ? port : here.port);
 }
 
-bool srv_policy_origin(const srv_policy *policy, const char *method, const char *host,
-                       const char *origin, const char *fetch_site, api_problem *problem)
+bool srv_policy_origin(const srv_policy *policy, const srv_sender *sender, api_problem *problem)
 {
-    if (srv_policy_is_read(method) || srv_policy_cors(policy, origin) != NULL) {
+    const char *origin = sender->origin, *fetch_site = sender->fetch_site;
+    if (srv_policy_is_read(sender->method) || srv_policy_cors(policy, origin) != NULL) {
         return true;
     }
-    if (origin != NULL && !is_own_origin(origin, host)) {
+    if (origin != NULL && !is_own_origin(origin, sender->host, sender->scheme)) {
         return api_problem_set(problem, API_FOREIGN_ORIGIN,
                                "the Origin is not this server's; --allow-origin adds one");
     }

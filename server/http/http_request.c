@@ -57,7 +57,7 @@ static void write_log(const srv_request *r, uint64_t now)
     copy_text(access.request_id, sizeof access.request_id, r->request_id);
     copy_text(access.method, sizeof access.method, r->method);
     copy_text(access.path, sizeof access.path, r->path == NULL ? r->target : r->path);
-    copy_text(access.peer, sizeof access.peer, r->socket == NULL ? "-" : r->socket->peer);
+    copy_text(access.peer, sizeof access.peer, srv_request_client(r));
     srv_access_log_add(r->http->options.log, &access);
 }
 

@@ -71,7 +71,8 @@ typedef struct srv_request {
     uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
     uint64_t swallowed; /* since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
-    char *joined;     /* headers whose lines were joined (http_headers.h), NULL: none were */
+    char *joined; /* headers whose lines were joined (http_headers.h), NULL: none were */
+    srv_client client;
     const char *cors; /* the origin to be named, NULL: none */
     bool close;
 
@@ -98,6 +99,15 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
 /* Answered, or its client was lost: writes the line of the access log and frees the request. The
  * server may be freed at once after that. */
 void srv_request_end(srv_request *r);
+
+/* The address of the client, "192.0.2.1", THE one by which clients are counted and told apart: what
+ * a trusted proxy tells (--trusted-proxy), else that of the connection. On a Unix socket it is the
+ * user, "unix:uid=1000". It is known when the headers have been read, valid as long as the request,
+ * and "" before that. Without --trusted-proxy all clients of a proxy have the proxy's address. */
+static inline const char *srv_request_client(const srv_request *r)
+{
+    return r->client.address;
+}
 
 /* Suspend the connection, as long as that is allowed: to be called before another thread is told of
  * the request, which then resumes it, with MHD_resume_connection, exactly once. False when the gate

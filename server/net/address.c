@@ -1,3 +1,5 @@
+#define _GNU_SOURCE /* struct ucred */
+
 #include "server/net/address.h"
 
 #include <arpa/inet.h>
@@ -6,7 +8,7 @@
 
 enum { MAX_PORT = 65535, MAX_HOST = 47 };
 
-static bool parse_port(const char *text, unsigned *port)
+bool srv_address_parse_port(const char *text, unsigned *port)
 {
     unsigned value = 0;
     size_t length = strlen(text);
@@ -40,13 +42,31 @@ static bool parse_host(const char *host, srv_address *out)
     return inet_pton(AF_INET, host, &out->socket.v4.sin_addr) == 1;
 }
 
+static const char scheme[] = "unix:";
+
+static bool parse_path(const char *path, srv_address *out)
+{
+    size_t length = strlen(path);
+    if (length == 0 || length > SRV_MAX_PATH) {
+        return false;
+    }
+    *out = (srv_address){.length = sizeof out->socket.local};
+    out->socket.local.sun_family = AF_UNIX;
+    memcpy(out->socket.local.sun_path, path, length);
+    return true;
+}
+
 bool srv_address_parse(const char *text, srv_address *out)
 {
+    if (strncmp(text, scheme, sizeof scheme - 1) == 0) {
+        return parse_path(text + sizeof scheme - 1, out);
+    }
     const char *colon = strrchr(text, ':');
     char host[MAX_HOST + 1];
     unsigned port;
     srv_address address;
-    if (colon == NULL || (size_t)(colon - text) >= sizeof host || !parse_port(colon + 1, &port)) {
+    if (colon == NULL || (size_t)(colon - text) >= sizeof host ||
+        !srv_address_parse_port(colon + 1, &port)) {
         return false;
     }
     memcpy(host, text, (size_t)(colon - text));
@@ -64,8 +84,16 @@ static bool is_loopback_v4(const struct in_addr *address)
     return ntohl(address->s_addr) >> 24 == 127;
 }
 
-bool srv_address_is_loopback(const srv_address *address)
+const char *srv_address_path(const srv_address *address)
 {
+    return address->socket.any.sa_family == AF_UNIX ? address->socket.local.sun_path : NULL;
+}
+
+bool srv_address_is_local(const srv_address *address)
+{
+    if (address->socket.any.sa_family == AF_UNIX) {
+        return true;
+    }
     if (address->socket.any.sa_family == AF_INET6) {
         return IN6_IS_ADDR_LOOPBACK(&address->socket.v6.sin6_addr);
     }
@@ -92,6 +120,11 @@ void srv_address_format(const struct sockaddr *address, bool with_port, char out
     char host[INET6_ADDRSTRLEN] = "-";
     bool v6 = address->sa_family == AF_INET6;
     unsigned port = 0;
+    if (address->sa_family == AF_UNIX) {
+        const struct sockaddr_un *local = (const struct sockaddr_un *)(const void *)address;
+        snprintf(out, SRV_ADDRESS_TEXT, "%s%s", scheme, local->sun_path);
+        return;
+    }
     if (v6) {
         const struct sockaddr_in6 *in = (const struct sockaddr_in6 *)(const void *)address;
         inet_ntop(AF_INET6, &in->sin6_addr, host, sizeof host);
@@ -105,6 +138,19 @@ void srv_address_format(const struct sockaddr *address, bool with_port, char out
         snprintf(out, SRV_ADDRESS_TEXT, v6 ? "[%s]:%u" : "%s:%u", host, port);
     } else {
         snprintf(out, SRV_ADDRESS_TEXT, "%s", host);
+    }
+}
+
+void srv_address_of_peer(int socket, const struct sockaddr *peer, char out[SRV_ADDRESS_TEXT])
+{
+    struct ucred who;
+    socklen_t length = sizeof who;
+    if (peer->sa_family != AF_UNIX) {
+        srv_address_format(peer, false, out);
+    } else if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &length) == 0) {
+        snprintf(out, SRV_ADDRESS_TEXT, "%suid=%u", scheme, (unsigned)who.uid);
+    } else {
+        snprintf(out, SRV_ADDRESS_TEXT, "%s", scheme);
     }
 }
 

@@ -340,7 +340,7 @@ static void test_addresses(void **state)
     char shown[SRV_ADDRESS_TEXT];
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_true(srv_address_parse(rows[i].text, &address));
-        assert_int_equal(srv_address_is_loopback(&address), rows[i].loopback);
+        assert_int_equal(srv_address_is_local(&address), rows[i].loopback);
         srv_address_format(&address.socket.any, true, shown);
         assert_string_equal(shown, rows[i].shown);
     }

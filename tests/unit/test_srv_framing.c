@@ -20,9 +20,21 @@ static void a_target_is_a_path_or_an_address_of_this_server(void **state)
         srv_head head = head_of(refused[i]);
         srv_framing framing;
         api_problem problem = {0};
-        assert_false(srv_framing_read(&head, &framing, &problem));
+        assert_false(srv_framing_read(&head, false, &framing, &problem));
         assert_int_equal(problem.code, API_BAD_PATH);
     }
+}
+
+static void a_target_of_https_is_one_where_it_came_over_tls(void **state)
+{
+    (void)state;
+    srv_head head = head_of("https://mesh.example/v1/meshes?limit=1");
+    srv_framing framing;
+    api_problem problem = {0};
+    assert_true(srv_framing_read(&head, true, &framing, &problem));
+    assert_int_equal(framing.authority_length, strlen("mesh.example"));
+    assert_string_equal(framing.query, "limit=1");
+    assert_false(srv_framing_read(&head, false, &framing, &problem));
 }
 
 static void a_target_is_split(void **state)
@@ -43,7 +55,7 @@ static void a_target_is_split(void **state)
         srv_head head = head_of(rows[i].target);
         srv_framing f;
         api_problem problem = {0};
-        assert_true(srv_framing_read(&head, &f, &problem));
+        assert_true(srv_framing_read(&head, false, &f, &problem));
         assert_int_equal(problem.code, HE_OK);
         assert_int_equal(f.path_length, strlen(rows[i].path));
         assert_memory_equal(f.path, rows[i].path, f.path_length);
@@ -79,7 +91,7 @@ static void a_body_is_announced_by_a_length_or_by_chunks(void **state)
         head.fields[1] =
             (srv_field){rows[i].name, rows[i].value, strlen(rows[i].name), strlen(rows[i].value)};
         head.field_count = 2;
-        assert_true(srv_framing_read(&head, &f, &problem));
+        assert_true(srv_framing_read(&head, false, &f, &problem));
         assert_string_equal(f.host, "h");
         assert_int_equal(f.chunked, rows[i].chunked);
         assert_int_equal(f.has_length, rows[i].has_length);
@@ -248,7 +260,11 @@ static void test_origins(void **state)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         api_problem problem = {0};
-        if (srv_policy_origin(&policy, rows[i].method, rows[i].host, rows[i].origin, rows[i].site,
+        if (srv_policy_origin(&policy,
+                              &(srv_sender){.method = rows[i].method,
+                                            .host = rows[i].host,
+                                            .origin = rows[i].origin,
+                                            .fetch_site = rows[i].site},
                               &problem) != rows[i].allowed) {
             fail_msg("row %zu: %s, Origin %s", i, rows[i].method,
                      rows[i].origin == NULL ? "-" : rows[i].origin);
@@ -261,16 +277,64 @@ static void test_origins(void **state)
     assert_null(srv_policy_cors(&policy, NULL));
 }
 
+static void the_origin_has_the_scheme_by_which_the_request_came(void **state)
+{
+    (void)state;
+    static const srv_policy policy = {.hosts = {{"mesh.example"}, 1}};
+    static const struct {
+        const char *origin;
+        srv_scheme scheme;
+        bool allowed;
+    } rows[] = {
+        {"https://mesh.example", SRV_SCHEME_HTTPS, true},
+        {"http://mesh.example", SRV_SCHEME_HTTPS, false},
+        {"http://mesh.example:443", SRV_SCHEME_HTTPS, false},
+        {"https://mesh.example", SRV_SCHEME_HTTP, false},
+        {"http://mesh.example", SRV_SCHEME_HTTP, true},
+        {"https://mesh.example", SRV_SCHEME_UNKNOWN, true},
+        {"http://mesh.example", SRV_SCHEME_UNKNOWN, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        api_problem problem = {0};
+        const srv_sender sender = {.method = "POST",
+                                   .host = "mesh.example",
+                                   .origin = rows[i].origin,
+                                   .scheme = rows[i].scheme};
+        assert_int_equal(srv_policy_origin(&policy, &sender, &problem), rows[i].allowed);
+    }
+}
+
+static void browsers_are_told_of_names_and_not_of_addresses_or_localhost(void **state)
+{
+    (void)state;
+    static const srv_policy policy = {
+        .hosts = {{"mesh.example", "10.1.2.3", "localhost", "::2"}, 4}};
+    static const struct {
+        const char *host;
+        bool name;
+    } rows[] = {
+        {"mesh.example", true},   {"Mesh.Example:8443", true}, {"other.example", false},
+        {"10.1.2.3:8443", false}, {"localhost", false},        {"localhost:8443", false},
+        {"127.0.0.1", false},     {"[::2]:1", false},          {NULL, false},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_int_equal(srv_policy_is_name(&policy, rows[i].host), rows[i].name);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_target_is_a_path_or_an_address_of_this_server),
+        cmocka_unit_test(a_target_of_https_is_one_where_it_came_over_tls),
         cmocka_unit_test(a_target_is_split),
         cmocka_unit_test(a_body_is_announced_by_a_length_or_by_chunks),
         cmocka_unit_test(lines_of_a_list_are_joined_and_the_first_of_others_counts),
         cmocka_unit_test(headers_ask_for_memory_only_where_lines_are_joined),
         cmocka_unit_test(test_hosts),
         cmocka_unit_test(test_origins),
+        cmocka_unit_test(the_origin_has_the_scheme_by_which_the_request_came),
+        cmocka_unit_test(browsers_are_told_of_names_and_not_of_addresses_or_localhost),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
