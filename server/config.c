@@ -1,5 +1,6 @@
 #include "server/config.h"
 
+#include "api/limit/limit.h"
 #include "base/mem.h"
 #include "server/config_file.h"
 #include "server/config_option.h"
@@ -9,9 +10,10 @@
 #include <stddef.h>
 #include <string.h>
 
-#define MEMBER(m) offsetof(srv_config, m)
-#define KIB       (UINT64_C(1) << 10)
-#define TIB       (UINT64_C(1) << 40)
+#define MEMBER(m)           offsetof(srv_config, m)
+#define LIMIT(whose, limit) (MEMBER(whose.most) + API_LIMIT_##limit * sizeof(uint64_t))
+#define KIB                 (UINT64_C(1) << 10)
+#define TIB                 (UINT64_C(1) << 40)
 
 const char *const srv_log_kinds[] = {"off", "access", "auto", NULL}; /* by st_log_kind */
 
@@ -25,6 +27,29 @@ const srv_option srv_options[] = {
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
      "who may do what: a line for each token, as --new-token prints it. Without a file everybody "
      "may do everything. SIGHUP and POST /v1/admin/reload read it again"},
+    {"token-requests", SRV_COUNT, LIMIT(token_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
+     "requests a second of each token, 0 for any number; beyond it they are answered 429. Like the "
+     "other limits of tokens, a line of the file may set its own: requests=N"},
+    {"token-bytes", SRV_BYTES, LIMIT(token_limits, BYTES), "0", "BYTES", 0, API_LIMIT_MOST_BYTES,
+     "bytes a second that bodies and answers of each token have together, 0 for any number"},
+    {"token-jobs", SRV_COUNT, LIMIT(token_limits, JOBS), "0", "N", 0, API_LIMIT_MOST,
+     "jobs of each token that wait or run, 0 for any number; beyond it they are answered 429"},
+    {"token-meshes", SRV_COUNT, LIMIT(token_limits, MESHES), "0", "N", 0, API_LIMIT_MOST,
+     "meshes that each token may have made, 0 for any number; beyond it they are answered 507"},
+    {"token-mesh-bytes", SRV_BYTES, LIMIT(token_limits, MESH_BYTES), "0", "BYTES", 0,
+     API_LIMIT_MOST_BYTES,
+     "bytes that the meshes each token made take in memory, 0 for any number; what would make them "
+     "more is answered 507"},
+    {"address-requests", SRV_COUNT, LIMIT(address_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
+     "requests a second of each address (of IPv6 each /64) that need no token or have none, 0 for "
+     "any number"},
+    {"address-bytes", SRV_BYTES, LIMIT(address_limits, BYTES), "0", "BYTES", 0,
+     API_LIMIT_MOST_BYTES, "bytes a second of such bodies and answers, 0 for any number"},
+    {"address-connections", SRV_COUNT, LIMIT(address_limits, CONNECTIONS), "0", "N", 0, 1000000,
+     "connections of each address at once, 0 for any number; beyond it they are answered 429 and "
+     "closed"},
+    {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
+     "of requests and bytes that a client may have at once when it had none before"},
     {"allow-host", SRV_LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
      "answer requests for this Host too; may be repeated or a comma list"},
     {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
@@ -113,32 +138,6 @@ static void *member_of(srv_config *config, const srv_option *row)
     return (char *)config + row->member;
 }
 
-/* "12", and for bytes "64K", "1M", "2G", "1T" in powers of 1024. */
-static bool parse_number(const char *text, bool bytes, uint64_t *out)
-{
-    uint64_t value = 0, unit = 1;
-    const char *c = text;
-    for (; *c >= '0' && *c <= '9'; c++) {
-        if (value > (UINT64_MAX - 9) / 10) {
-            return false;
-        }
-        value = value * 10 + (uint64_t)(*c - '0');
-    }
-    if (c == text) {
-        return false;
-    }
-    if (bytes && *c != '\0') {
-        static const char units[] = "KMGT";
-        const char *at = strchr(units, *c >= 'a' ? *c - 'a' + 'A' : *c);
-        if (at == NULL) {
-            return false;
-        }
-        unit = UINT64_C(1) << (10 * (at - units + 1));
-        c++;
-    }
-    return *c == '\0' && !__builtin_mul_overflow(value, unit, out);
-}
-
 static bool read_list(srv_config *config, srv_names *names, const char *text, char *message,
                       size_t size, const char *source)
 {
@@ -205,8 +204,8 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
         return read_list(config, member, text, message, size, source);
     case SRV_BYTES:
     case SRV_COUNT:
-        if (!parse_number(text, row->kind == SRV_BYTES, &number) || number < row->low ||
-            number > row->high) {
+        if (!api_amount_parse(text, strlen(text), row->kind == SRV_BYTES, &number) ||
+            number < row->low || number > row->high) {
             snprintf(message, size,
                      "%s takes a number from %" PRIu64 " to %" PRIu64 "%s, not \"%s\"", source,
                      row->low, row->high,

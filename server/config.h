@@ -6,6 +6,7 @@
 #ifndef HE_SERVER_CONFIG_H
 #define HE_SERVER_CONFIG_H
 
+#include "api/limit/limit.h"
 #include "server/http/http_policy.h"
 
 #include <stdbool.h>
@@ -42,6 +43,9 @@ typedef struct srv_config {
     uint64_t read_seconds;
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
+
+    api_limits token_limits, address_limits; /* by api/limit/limit.h */
+    uint64_t limit_burst;                    /* seconds */
 
     uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */

@@ -275,6 +275,7 @@ static const struct {
     {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
     {415, "unsupported", "Accept-Encoding", "The codings that are taken, where it was that.",
      false},
+    {429, "limited", "Retry-After", "Seconds.", true},
     {503, "unavailable", "Retry-After", "Seconds.", true},
 };
 enum { HEADED_PROBLEMS = sizeof headed_problems / sizeof *headed_problems };

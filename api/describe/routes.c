@@ -655,7 +655,7 @@ static const api_route routes[] = {
      .name = "live_get",
      .run = api_live_get,
      .role = API_ROLE_OPEN,
-     .flags = API_FIXED,
+     .flags = API_FIXED | API_UNLIMITED,
      .produces = json,
      .statuses = {200},
      .response = "health",
@@ -666,7 +666,7 @@ static const api_route routes[] = {
      .name = "ready_get",
      .run = api_ready_get,
      .role = API_ROLE_OPEN,
-     .flags = API_FIXED,
+     .flags = API_FIXED | API_UNLIMITED,
      .produces = json,
      .statuses = {200},
      .response = "readiness",
@@ -736,6 +736,6 @@ api_route_table api_routes(void)
 const int *api_route_common(void)
 {
     static const int common[] = {400, 403, 404, 405, 406, 408, 414, 421,
-                                 431, 500, 501, 503, 505, 507, 0};
+                                 429, 431, 500, 501, 503, 505, 507, 0};
     return common;
 }

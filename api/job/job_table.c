@@ -428,6 +428,16 @@ static void watch_note(api_job_entry *j, uint64_t position)
     }
 }
 
+/* Under the lock. */
+static bool is_beyond(const api_job_table *table, const api_job_work *work)
+{
+    uint64_t open = 0;
+    for (const api_job_entry *j = work->most == 0 ? NULL : table->first; j != NULL; j = j->next) {
+        open += !api_job_entry_has_ended(j) && strcmp(j->facts.holder, work->holder) == 0 ? 1 : 0;
+    }
+    return work->most != 0 && open >= work->most;
+}
+
 /* Under the lock: the job cannot run before that is given back. A disk that takes no more notes is
  * no reason to refuse what only reads: such a job is not kept beyond a restart, and what writes is
  * refused when it comes to that. */
@@ -436,6 +446,9 @@ static st_status accept(api_job_table *table, api_job_entry *j, const st_task *t
     uint64_t position = 0;
     if (table->stopped || table->count >= API_JOBS_KEPT) {
         return ST_TOO_MANY;
+    }
+    if (is_beyond(table, &j->work)) {
+        return ST_QUOTA;
     }
     j->facts.number = ++table->submitted;
     st_status status = api_job_keep(j, &position);

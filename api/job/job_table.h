@@ -76,11 +76,13 @@ typedef struct api_job_work {
     double seconds;     /* about how long it takes */
     st_mesh *about;     /* whose listeners are told, held by the work; NULL: none */
     const char *holder; /* name of the token it is done for, "" for that of nobody */
+    uint64_t most;      /* jobs of that holder that may wait or run with this one; 0: all */
     bool claims;        /* the work has claimed that mesh: store/write.h */
 } api_job_work;
 
 /* Takes `work` and fills in what is known of the job; or ST_TOO_MANY when too many wait,
- * ST_BEHIND, ST_NO_MEMORY. `operation` is a literal, `mesh` the id of the mesh the job is about or
+ * ST_QUOTA when the holder has as many as it may, ST_BEHIND, ST_NO_MEMORY. `operation` is a
+ * literal, `mesh` the id of the mesh the job is about or
  * "". */
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);

@@ -247,8 +247,12 @@ int api_problem_http(const api_problem *problem)
     return problem->status != 0 ? problem->status : api_code_http(problem->code);
 }
 
-const char *api_problem_retry(const api_problem *problem)
+const char *api_problem_retry(const api_problem *problem, char out[API_RETRY])
 {
+    if (problem->retry != 0) {
+        (void)snprintf(out, API_RETRY, "%llu", (unsigned long long)problem->retry);
+        return out;
+    }
     switch (problem->code) {
     case API_STORE_LOST:
         return "0";
@@ -256,7 +260,7 @@ const char *api_problem_retry(const api_problem *problem)
     case API_IDEMPOTENCY_BUSY:
         return "1";
     default:
-        return api_problem_http(problem) == 503 ? "1" : NULL;
+        return api_problem_http(problem) == 503 || api_problem_http(problem) == 429 ? "1" : NULL;
     }
 }
 

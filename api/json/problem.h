@@ -164,7 +164,18 @@
       "One file of a multipart/form-data body must have a format that the server reads: by its "   \
       "name or media type or, if no file has, by its first bytes; the others are those that it "   \
       "refers to. ?format= says which one is meant where several could be.")                       \
-    X(RATE_LIMIT, "rate_limit", 429, "Too many requests", "Try again after Retry-After seconds.")  \
+    X(RATE_LIMIT, "rate_limit", 429, "Too many requests",                                          \
+      "The token, or without one the address, has had all the requests or bytes a second that it " \
+      "may. The detail says which; RateLimit-Policy tells the limits, RateLimit what is left. "    \
+      "Try "                                                                                       \
+      "again after Retry-After seconds.")                                                          \
+    X(TOO_MANY_CONNECTIONS, "too_many_connections", 429, "Too many connections of one address",    \
+      "The address has as many connections as one may. This one is closed; use those that are "    \
+      "open, or try again after Retry-After seconds.")                                             \
+    X(TOO_MANY_JOBS_OF_TOKEN, "too_many_jobs_of_token", 429, "Too many jobs of one token",         \
+      "As many jobs of the token wait or run as it may have. Try again after Retry-After "         \
+      "seconds, "                                                                                  \
+      "or cancel one.")                                                                            \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \
     X(MESH_DAMAGED, "mesh_damaged", 500, "The mesh is damaged",                                    \
@@ -217,6 +228,11 @@
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
       "What the request would store does not fit the configured budget. Delete a mesh and try "    \
       "again.")                                                                                    \
+    X(QUOTA, "quota", 507, "The token's quota is used up",                                         \
+      "The token that made the mesh may hold only so many meshes, or so many bytes of memory in "  \
+      "them; the detail says which. Nothing was changed. Delete a mesh of that token, or make "    \
+      "one "                                                                                       \
+      "smaller.")                                                                                  \
     X(TOO_MANY_MESHES, "too_many_meshes", 507, "There are too many meshes",                        \
       "The configured number of meshes is reached. Delete one and try again.")
 
@@ -247,6 +263,7 @@ typedef struct api_problem {
     unsigned repairs;             /* the set that lets the body pass (repair.h); 0: none */
     bool report_pointers;         /* add "/faces/3/1" to each: the body is a mesh document */
     const char *const *supported; /* with 406 and 415, ends in NULL, borrowed */
+    uint64_t retry;               /* seconds to wait, where that is known; 0: not */
     const char *role;             /* that the token lacks, with 403, a literal; NULL: none */
 } api_problem;
 
@@ -280,8 +297,9 @@ enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
-/* The value of Retry-After; NULL where waiting does not help. */
-const char *api_problem_retry(const api_problem *problem);
+/* The value of Retry-After, in `out` or a literal; NULL where waiting does not help. */
+enum { API_RETRY = 24 };
+const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
 /* The JSON object onto `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
 /* The page at /problems/{code}. */

@@ -2,6 +2,7 @@
 
 #include "api/request/coded.h"
 #include "api/request/gate.h"
+#include "api/request/rating.h"
 #include "format/text/number.h"
 
 #include <assert.h>
@@ -157,6 +158,9 @@ static bool find_route(api_exchange *x)
         return false;
     }
     x->route = api_route_find(x->service->routes, x->request.method, &path, &variables, x->allow);
+    if (x->route == NULL && !api_rating_enter(x)) {
+        return false;
+    }
     if (x->route == NULL && x->allow[0] == '\0') {
         return refuse_path(x, &path);
     }

@@ -21,6 +21,8 @@
     X("Link", ", ")                      \
     X("Location", ", ")                  \
     X("Preference-Applied", ", ")        \
+    X("RateLimit", ", ")                 \
+    X("RateLimit-Policy", ", ")          \
     X("Referrer-Policy", ", ")           \
     X("Retry-After", ", ")               \
     X("Strict-Transport-Security", ", ") \

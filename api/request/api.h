@@ -47,8 +47,10 @@ typedef struct api_request {
     const char *headers[API_REQUEST_HEADERS]; /* values, NULL where absent */
     bool has_length;                          /* Content-Length was given */
     uint64_t length;
-    bool has_body;    /* a body will follow, of known length or chunked */
-    bool has_consent; /* its Origin is one that was configured: such pages may do anything */
+    bool has_body;       /* a body will follow, of known length or chunked */
+    api_rate_key client; /* of the address it comes from: of clients that share one, the same */
+    bool is_beyond;      /* its connection is one more than its address may have */
+    bool has_consent;    /* its Origin is one that was configured: such pages may do anything */
 } api_request;
 
 typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
@@ -102,7 +104,9 @@ typedef struct api_options {
     /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
      * are; NULL: not told. */
     void (*memory)(uint64_t *used, uint64_t *budget);
-    api_tokens *tokens; /* NULL: nobody needs one, and everybody may do everything */
+    api_limits address_limits; /* of clients without a token, by their address */
+    uint64_t limit_burst;      /* seconds that buckets of requests and bytes hold; 0: one */
+    api_tokens *tokens;        /* NULL: nobody needs one, and everybody may do everything */
     /* Reads again what the server was told of by files, tokens among them. False with a sentence in
      * `message`, and what was in force stays. NULL: there is nothing to be read. */
     bool (*reload)(void *context, char *message, size_t size);
@@ -155,6 +159,15 @@ bool api_can_be_job(const api_exchange *exchange);
 /* After API_WORK and API_JOB, before the work has begun. */
 api_load api_load_of(const api_exchange *exchange);
 const api_answer *api_answer_of(const api_exchange *exchange);
+/* So many bytes of its body that api_body was not given, or of its answer, went over the wire: they
+ * count for its client's limit. */
+void api_charge(api_exchange *exchange, uint64_t bytes);
+/* The file of tokens was read: tells the store what each of them may hold. False without memory,
+ * and what held before holds. */
+bool api_service_apply_quotas(api_service *service);
+/* What limits of clients have refused (api/limit/limit.h). The server adds to it what it refuses
+ * before there is an exchange. */
+api_limited *api_service_limited(api_service *service);
 void api_free(api_exchange *exchange);
 
 /* All of it at once, the whole body given; NULL when memory is out. The caller frees. */

@@ -1,6 +1,7 @@
 #include "api/request/exchange.h"
 
 #include "api/request/gate.h"
+#include "api/request/quota.h"
 #include "api/request/token_stream.h"
 #include "format/text/number.h"
 
@@ -127,6 +128,12 @@ static bool fail_lost(api_exchange *x)
                : api_fail(x, API_STORE_LOST, "the mesh has a change that was lost");
 }
 
+st_cause api_cause(const api_exchange *x)
+{
+    return (st_cause){
+        .keyed = x->keyed, .job = x->own_job, .holder = x->token == NULL ? "" : x->token->name};
+}
+
 bool api_fail_store(api_exchange *x, st_status status)
 {
     x->shows_all |= status == ST_ABSENT || status == ST_TAKEN || status == ST_TOO_MANY;
@@ -177,6 +184,8 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_MESH_DAMAGED, "%s", x->mesh == NULL ? "" : st_damage(x->mesh));
     case ST_NEWER:
         return api_fail(x, API_MESH_NEWER, "%s", x->mesh == NULL ? "" : st_damage(x->mesh));
+    case ST_QUOTA:
+        return api_quota_fail_new(x);
     case ST_COLD:
         break;
     }
@@ -246,8 +255,9 @@ static bool write_began(api_exchange *x, st_status status)
 bool api_write_begin(api_exchange *x, const api_in *expected)
 {
     uint64_t revision = 0;
+    const st_cause cause = api_cause(x);
     if (!read_expected(expected, &revision) ||
-        !write_began(x, st_write_begin(x->mesh, &(st_cause){x->keyed, x->own_job}, &x->write))) {
+        !write_began(x, st_write_begin(x->mesh, &cause, &x->write))) {
         return false;
     }
     if (api_preconditions_hold(x, expected == NULL ? NULL : &revision)) {
@@ -260,8 +270,9 @@ bool api_write_begin(api_exchange *x, const api_in *expected)
 bool api_write_claim(api_exchange *x, const api_in *expected)
 {
     uint64_t revision = 0;
+    const st_cause cause = api_cause(x);
     return read_expected(expected, &revision) &&
-           write_began(x, st_write_claim(x->mesh, &(st_cause){x->keyed, x->own_job}, &x->write)) &&
+           write_began(x, st_write_claim(x->mesh, &cause, &x->write)) &&
            /* They hold until the claim ends: no other write can change the mesh. */
            api_preconditions_hold(x, expected == NULL ? NULL : &revision);
 }
@@ -275,7 +286,7 @@ bool api_write_commit(api_exchange *x, const char *ops)
     st_status status = st_write_commit(&x->write, ops);
     if (status != ST_OK) {
         x->has_info = x->has_info && status != ST_ABSENT;
-        return api_fail_store(x, status);
+        return status == ST_QUOTA ? api_quota_fail(x) : api_fail_store(x, status);
     }
     x->info = x->write.info;
     api_publish(x, 204);

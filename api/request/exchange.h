@@ -44,6 +44,8 @@ struct api_service {
     api_options options;
     api_backfills backfills;
     api_tickets *tickets;
+    api_rates *token_rates, *address_rates; /* NULL: none of them has a limit */
+    api_limited limited;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
 };
 
@@ -60,18 +62,22 @@ struct api_exchange {
 
     /* --- the request --- */
     api_request request;
-    const api_route *route; /* NULL where none matched */
-    bool head;              /* HEAD: the server sends the headers only */
-    const char *mesh_id;    /* of the path, well formed; NULL: none */
-    he_kind kind;           /* of {domain}, or the row's */
-    uint32_t id;            /* of {id} */
-    const char *code;       /* of {code} */
-    const char *attribute;  /* of {name} */
-    const char *job_id;     /* of {job}, any text */
-    api_token *token;       /* held; NULL: the route is open, or the server asks for none */
-    bool rehearses_only;    /* it may do a dry run of the write, and no more: gate.h */
-    bool has_bad_token;     /* the request brought a token that is not known */
-    bool at_gate;           /* it got no further, and nothing that is stored was looked at */
+    const api_route *route;    /* NULL where none matched */
+    bool head;                 /* HEAD: the server sends the headers only */
+    const char *mesh_id;       /* of the path, well formed; NULL: none */
+    he_kind kind;              /* of {domain}, or the row's */
+    uint32_t id;               /* of {id} */
+    const char *code;          /* of {code} */
+    const char *attribute;     /* of {name} */
+    const char *job_id;        /* of {job}, any text */
+    api_token *token;          /* held; NULL: the route is open, or the server asks for none */
+    bool rehearses_only;       /* it may do a dry run of the write, and no more: gate.h */
+    bool has_bad_token;        /* the request brought a token that is not known */
+    api_rates *rates;          /* where the bucket of its client is; NULL: it has no limit */
+    api_rate_key rate_key;     /* that of the client */
+    api_rate rate;             /* that it has */
+    api_rate_state rate_state; /* as it was when the request was let in, or not */
+    bool at_gate;              /* it got no further, and nothing that is stored was looked at */
     api_query query;
     const char *media_in;  /* which of route->consumes the body is, NULL without a body */
     const char *media_out; /* which of route->produces is wanted */
@@ -120,6 +126,7 @@ struct api_exchange {
     /* --- the answer --- */
     int published; /* see api_publish; 0: nothing was */
     char location[API_LOCATION];
+    char retry[API_RETRY], rate_policy[API_RATE_FIELD], rate_field[API_RATE_FIELD];
     api_problem problem;
     api_text text;
     api_out out; /* writes x->text */
@@ -143,6 +150,9 @@ int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when
 /* A bit for each choice that is named. */
 unsigned api_param_choices(const api_exchange *x, const char *name);
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
+
+/* What the request's changes are made for. */
+st_cause api_cause(const api_exchange *x);
 
 /* --- writes --- */
 /* Begins x->write, with x->info filled and preconditions checked (If-Match, If-None-Match).

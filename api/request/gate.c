@@ -1,5 +1,6 @@
 #include "api/request/gate.h"
 
+#include "api/request/rating.h"
 #include "system/clock.h"
 
 #include <stdio.h>
@@ -20,8 +21,12 @@ static size_t read_bearer(const char *header, const char **text)
     return strcspn(*text, " \t");
 }
 
+/* It counts for the address: who tries tokens is stopped like any other client. */
 static bool refuse_unknown(api_exchange *x, bool has_token)
 {
+    if (!api_rating_enter(x)) {
+        return false;
+    }
     x->has_bad_token = has_token;
     return has_token ? api_fail(x, API_UNAUTHORIZED, "the token is not known, or not any more")
                      : api_fail(x, API_UNAUTHORIZED, "the header Authorization: Bearer is missing");
@@ -93,10 +98,10 @@ static bool enter(api_exchange *x)
     const char *ticket = header == NULL ? api_gate_ticket(x->request.query) : NULL;
     x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* nobody else needs the secret */
     if (x->route->role == API_ROLE_OPEN || (!asks && ticket == NULL)) {
-        return true;
+        return api_rating_enter(x);
     }
     return (ticket != NULL ? take_ticket(x, ticket) : take_bearer(x, header)) &&
-           (!asks || has_role(x));
+           api_rating_enter(x) && (!asks || has_role(x));
 }
 
 bool api_gate_enter(api_exchange *x)

@@ -1,7 +1,8 @@
 /* gate.h - what the token of a request lets it do: every check of it, one function each.
  *
  *     api_gate_enter       the route: its row's role, before anything of the request is looked at
- *                          but its method and path. 401, 403 `forbidden`
+ *                          but its method and path. 401, 403 `forbidden`; and the client's rate
+ *                          (rating.h), 429
  *     api_gate_sees        a mesh: one outside the token's prefixes does not exist for it, and is
  *                          answered with the bytes of one that does not. 404
  *     api_gate_may_create  an id for a mesh. 403 `prefix`

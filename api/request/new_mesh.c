@@ -9,11 +9,11 @@ enum { RANDOM = 10 }; /* characters after the prefix */
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
                        const st_shown *from, st_mesh **out)
 {
+    const st_cause cause = api_cause(x);
     const char *prefix =
         x->token == NULL || x->token->prefix_count == 0 ? "" : x->token->prefixes[0];
     if (id != NULL || prefix[0] == '\0') {
-        return st_create_from(x->store, id, name, content, &(st_cause){x->keyed, x->own_job}, from,
-                              out);
+        return st_create_from(x->store, id, name, content, &cause, from, out);
     }
     char made[API_TOKEN_PREFIX + RANDOM + 1];
     size_t length = strlen(prefix);
@@ -21,8 +21,7 @@ st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mes
     memcpy(made, prefix, length);
     do {
         st_random_id(made + length, RANDOM);
-        status = st_create_from(x->store, made, name, content, &(st_cause){x->keyed, x->own_job},
-                                from, out);
+        status = st_create_from(x->store, made, name, content, &cause, from, out);
     } while (status == ST_TAKEN);
     return status;
 }

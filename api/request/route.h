@@ -82,6 +82,8 @@ enum {
     API_LONG = 128,       /* may become a job: Prefer is read, and 202 may be the answer */
     API_INTERRUPTS = 256, /* is not kept out by a long edit of the mesh */
     API_REHEARSED = 512,  /* takes `dry_run`: an answer may be about nothing that is */
+    API_UNLIMITED =
+        8192, /* limits of clients do not count it: watchers of the server must get in */
     API_TAG_OF_OTHERS = 4096, /* the answer of another request, which need not have had a tag */
     API_STORELESS = 2048,     /* answers show nothing that is stored, and wait for no journal; so do
                                  those of API_FIXED */

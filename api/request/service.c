@@ -7,10 +7,22 @@
 #include "api/request/gather.h"
 #include "api/request/keyed.h"
 #include "api/request/mesh_access.h"
+#include "api/request/rating.h"
 
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
+
+/* A file of tokens that is read later may limit them. */
+static bool make_rates(api_service *service, const api_options *options)
+{
+    const uint64_t *most = options->address_limits.most;
+    const bool addresses = most[API_LIMIT_REQUESTS] != 0 || most[API_LIMIT_BYTES] != 0;
+    service->token_rates = options->tokens == NULL ? NULL : api_rates_new(API_TOKEN_RATES);
+    service->address_rates = addresses ? api_rates_new(API_ADDRESS_RATES) : NULL;
+    return (service->token_rates != NULL || options->tokens == NULL) &&
+           (service->address_rates != NULL || !addresses);
+}
 
 api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options)
 {
@@ -20,13 +32,15 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
         service->routes = api_route_tree_new(routes);
         service->tickets = api_tickets_new();
     }
-    if (service != NULL && (service->routes == NULL || service->tickets == NULL)) {
+    if (service != NULL &&
+        !(service->routes != NULL && service->tickets != NULL && make_rates(service, options))) {
         api_service_free(service);
         service = NULL;
     }
     if (service != NULL) {
         service->store = store;
         service->options = *options;
+        service->options.limit_burst = options->limit_burst == 0 ? 1 : options->limit_burst;
         service->backfills.pool = options->pool;
         if (service->options.max_upload == 0) {
             service->options.max_upload = API_DEFAULT_UPLOAD;
@@ -34,6 +48,10 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
         if (service->options.version == NULL) {
             service->options.version = "0";
         }
+    }
+    if (service != NULL && !api_service_apply_quotas(service)) {
+        api_service_free(service);
+        service = NULL;
     }
     return service;
 }
@@ -43,8 +61,15 @@ void api_service_free(api_service *service)
     if (service != NULL) {
         api_route_tree_free(service->routes);
         api_tickets_free(service->tickets);
+        api_rates_free(service->token_rates);
+        api_rates_free(service->address_rates);
     }
     he_mem_free(service);
+}
+
+api_limited *api_service_limited(api_service *service)
+{
+    return &service->limited;
 }
 
 /* --- the end of an exchange --- */
@@ -116,7 +141,7 @@ static void answer_problem(api_exchange *x)
     if (challenge != NULL) {
         put_header(x, "WWW-Authenticate", challenge);
     }
-    const char *retry = api_problem_retry(&x->problem);
+    const char *retry = api_problem_retry(&x->problem, x->retry);
     if (retry != NULL) {
         put_header(x, "Retry-After", retry);
     }
@@ -206,6 +231,11 @@ static api_step finish(api_exchange *x)
     put_header(x, "X-Content-Type-Options", "nosniff");
     /* A tag is worth keeping: the client asks again with it. Nothing else is. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
+    if (x->rates != NULL) {
+        api_rating_fields(x);
+        put_header(x, "RateLimit-Policy", x->rate_policy);
+        put_header(x, "RateLimit", x->rate_field);
+    }
     if (api_coded_varies(x)) {
         put_header(x, "Vary", varies(x) ? "Accept, Accept-Encoding" : "Accept-Encoding");
     } else if (varies(x)) {
@@ -409,13 +439,19 @@ api_exchange *api_detach(api_exchange *x)
     answer->answer.route = x->answer.route;
     answer->prefer = x->prefer;
     answer->codings = x->codings;
+    answer->rates = x->rates;
+    answer->rate_key = x->rate_key;
+    answer->rate = x->rate;
+    answer->rate_state = x->rate_state;
     api_job job;
+    const uint64_t most = api_token_limit(x->token, API_LIMIT_JOBS);
     const api_job_work work = {.self = x,
                                .run = run_job,
                                .free = free_job,
                                .seconds = api_load_of(x).seconds,
                                .about = x->mesh,
                                .holder = x->token == NULL ? "" : x->token->name,
+                               .most = most,
                                .claims = x->write.claimed};
     const char *mesh = x->mesh_id != NULL ? x->mesh_id : api_param_text(x, "id");
     st_status status = api_job_submit(jobs, &work, x->route->name, mesh == NULL ? "" : mesh, &job);
@@ -426,6 +462,10 @@ api_exchange *api_detach(api_exchange *x)
     }
     if (status == ST_TOO_MANY) {
         api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
+    } else if (status == ST_QUOTA) {
+        api_limited_count(&answer->service->limited, API_CLIENT_TOKEN, API_LIMIT_JOBS);
+        api_fail(answer, API_TOO_MANY_JOBS_OF_TOKEN,
+                 "%llu jobs of the token may wait or run at once", (unsigned long long)most);
     } else if (status != ST_OK) {
         api_fail_store(answer, status);
     }
@@ -505,6 +545,7 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
         good = take_body(x, bytes, length);
     }
     x->arrived += *used;
+    api_rating_charge(x, *used);
     const api_step step = good ? API_MORE : finish_early(x);
     st_store_serve(NULL);
     return step;
@@ -672,6 +713,11 @@ api_step api_work(api_exchange *x)
 const api_answer *api_answer_of(const api_exchange *x)
 {
     return &x->answer;
+}
+
+void api_charge(api_exchange *x, uint64_t bytes)
+{
+    api_rating_charge(x, bytes);
 }
 
 void api_free(api_exchange *x)

@@ -45,6 +45,11 @@ bool api_role_allows(api_role has, api_role needs)
     return needs == API_ROLE_OPEN || has == API_ROLE_ADMIN || has == needs || reads;
 }
 
+uint64_t api_token_limit(const api_token *token, api_limit limit)
+{
+    return token == NULL ? 0 : atomic_load_explicit(&token->limits[limit], memory_order_relaxed);
+}
+
 bool api_token_is_current(const api_token *token, double now)
 {
     return !atomic_load_explicit(&token->revoked, memory_order_relaxed) && now < token->expires;

@@ -6,11 +6,13 @@
  * choose. Nettle hashes and compares; libmicrohttpd brings it along with GnuTLS, so that nothing
  * more is installed for it.
  *
- * Facts of a token never change. A file that is read again (token_set.h) keeps the tokens whose
- * lines say the same and makes new ones for all others; those that are gone are `revoked`, but
- * requests that hold them may still read their facts. */
+ * Facts of a token never change, but for its limits. A file that is read again (token_set.h) keeps
+ * the tokens whose lines say the same and makes new ones for all others; those that are gone are
+ * `revoked`, but requests that hold them may still read their facts. */
 #ifndef HE_API_TOKEN_TOKEN_H
 #define HE_API_TOKEN_TOKEN_H
+
+#include "api/limit/rate.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -46,6 +48,11 @@ typedef struct api_token {
     double expires; /* seconds since 1970; HUGE_VAL: never */
     unsigned char hash[API_TOKEN_HASH];
     size_t line; /* of its file */
+    /* What its line and the server's options let it have, 0 for all (limit.h). A file that is read
+     * again changes them for requests that hold the token. */
+    _Atomic uint64_t limits[API_LIMIT_COUNT];
+    unsigned own_limits;   /* of its line, a bit each: the options' are not its */
+    api_rate_key rate_key; /* of its name, whose bucket it uses */
     _Atomic uint32_t uses;
     _Atomic bool revoked;
 } api_token;
@@ -57,6 +64,9 @@ void api_token_release(api_token *token);    /* likewise */
 const char *api_role_name(api_role role);
 /* Does `has` include `needs`? */
 bool api_role_allows(api_role has, api_role needs);
+
+/* What it may have of this. NULL is the token of nobody, which may have all. */
+uint64_t api_token_limit(const api_token *token, api_limit limit);
 
 /* Is it neither revoked nor expired? `now` is in seconds since 1970. */
 bool api_token_is_current(const api_token *token, double now);

@@ -75,6 +75,9 @@ static bool read_name(const reader *r, word w, api_token *out)
                     API_TOKEN_NAME);
     }
     memcpy(out->name, w.at, w.length);
+    unsigned char hash[API_TOKEN_HASH];
+    api_token_hash(w.at, w.length, hash);
+    memcpy(&out->rate_key, hash, sizeof out->rate_key);
     return true;
 }
 
@@ -171,6 +174,36 @@ static const struct {
 } settings[] = {{"prefix=", read_prefixes}, {"expires=", read_expiry}};
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
+/* The limit of this name, API_LIMIT_COUNT where a token has none of it. */
+static api_limit find_limit(word name)
+{
+    for (api_limit limit = 0; limit < API_LIMIT_COUNT; limit++) {
+        const char *known = api_limit_name(limit);
+        if (api_limit_is_of_token(limit) && strlen(known) == name.length &&
+            memcmp(known, name.at, name.length) == 0) {
+            return limit;
+        }
+    }
+    return API_LIMIT_COUNT;
+}
+
+static bool read_limit(const reader *r, api_limit limit, word w, api_token *out)
+{
+    const bool bytes = api_limit_is_bytes(limit);
+    const uint64_t most = bytes ? API_LIMIT_MOST_BYTES : API_LIMIT_MOST;
+    uint64_t value = 0;
+    if ((out->own_limits >> limit & 1) != 0) {
+        return fail(r, "%s= is given twice", api_limit_name(limit));
+    }
+    if (!api_amount_parse(w.at, w.length, bytes, &value) || value > most) {
+        return fail(r, "%s= takes a number from 0 to %llu%s", api_limit_name(limit),
+                    (unsigned long long)most, bytes ? " (K, M, G and T are units)" : "");
+    }
+    out->own_limits |= 1U << limit;
+    atomic_init(&out->limits[limit], value);
+    return true;
+}
+
 static bool read_setting(const reader *r, word w, unsigned *seen, api_token *out)
 {
     for (size_t i = 0; i < SETTINGS; i++) {
@@ -183,7 +216,13 @@ static bool read_setting(const reader *r, word w, unsigned *seen, api_token *out
             return settings[i].read(r, (word){w.at + skipped, w.length - skipped}, out);
         }
     }
-    return fail(r, "what follows the hash is prefix= or expires=");
+    const char *equals = memchr(w.at, '=', w.length);
+    const size_t name = equals == NULL ? 0 : (size_t)(equals - w.at);
+    const api_limit limit = find_limit((word){w.at, name});
+    return limit != API_LIMIT_COUNT
+               ? read_limit(r, limit, (word){equals + 1, w.length - name - 1}, out)
+               : fail(r, "what follows the hash is prefix=, expires=, or a limit: requests=, "
+                         "bytes=, jobs=, meshes= or mesh-bytes=");
 }
 
 /* --- a line --- */
@@ -296,6 +335,9 @@ static bool add_token(reader *r, const char *at, size_t length, api_token_list *
     token->line = r->line;
     atomic_init(&token->uses, 1);
     atomic_init(&token->revoked, false);
+    for (size_t i = 0; i < API_LIMIT_COUNT; i++) {
+        atomic_init(&token->limits[i], 0);
+    }
     list->items[list->count++] = token;
     if (!read_line(r, at, length, token)) {
         return false;

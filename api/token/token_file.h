@@ -1,15 +1,18 @@
 /* token_file.h - the file that says which tokens there are: lines of text, read strictly.
  *
- *     # NAME ROLE SHA256:HASH [prefix=PREFIX,...] [expires=TIME]
+ *     # NAME ROLE SHA256:HASH [prefix=PREFIX,...] [expires=TIME] [LIMIT=N ...]
  *     alice  write   sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08
  *     lab-3  read    sha256:60303ae22b998861bce3b28f33eec1be758a213c86c93c076dbe9f558c11c752 \
- *            prefix=lab-3.,shared- expires=2027-01-01T00:00:00Z          (on one line)
+ *            prefix=lab-3.,shared- expires=2027-01-01T00:00:00Z \
+ *            requests=20 bytes=1M meshes=50                               (on one line)
  *
  * Fields are parted by blanks or tabs. A line that is empty or begins with '#' says nothing. NAME
  * is 1 to 64 of A-Z a-z 0-9 . _ - and stays with what the token makes: its jobs and
  * Idempotency-Keys are those of the name, so that a token can be replaced by another one of its
  * name. ROLE is read, write, admin or metrics. TIME is a day, which it ends with the beginning of,
- * or a day and a time of UTC. Names and hashes occur once.
+ * or a day and a time of UTC. Names and hashes occur once. LIMIT is requests, bytes, jobs, meshes
+ * or mesh-bytes (limit.h) and takes the place of the option's for this token; 0 is no limit. Those
+ * of bytes take K, M, G or T after the number.
  *
  * What a refusal says never repeats a field: it may be a token that was put in the wrong place. */
 #ifndef HE_API_TOKEN_TOKEN_FILE_H

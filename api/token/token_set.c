@@ -16,6 +16,7 @@ struct api_tokens {
     uint16_t heads[BUCKETS]; /* indices of `list`, NONE at the end */
     uint16_t nexts[API_TOKENS];
     uint64_t secret[2]; /* buckets cannot be foreseen by who makes up hashes */
+    api_limits defaults;
     api_token_watch *watches;
 };
 
@@ -56,6 +57,14 @@ static api_token *find(api_tokens *tokens, const unsigned char hash[API_TOKEN_HA
     return found;
 }
 
+void api_tokens_limit(api_tokens *tokens, const api_limits *defaults)
+{
+    pthread_mutex_lock(&tokens->lock);
+    tokens->defaults = *defaults;
+    pthread_mutex_unlock(&tokens->lock);
+}
+
+/* But for limits. */
 static bool says_the_same(const api_token *a, const api_token *b)
 {
     return strcmp(a->name, b->name) == 0 && a->role == b->role && a->expires == b->expires &&
@@ -63,12 +72,23 @@ static bool says_the_same(const api_token *a, const api_token *b)
            memcmp(a->prefixes, b->prefixes, sizeof a->prefixes) == 0;
 }
 
+static void set_limits(api_token *to, const api_token *line, const api_limits *defaults)
+{
+    for (size_t i = 0; i < API_LIMIT_COUNT; i++) {
+        const bool own = (line->own_limits >> i & 1) != 0;
+        const uint64_t most = own ? api_token_limit(line, (api_limit)i) : defaults->most[i];
+        atomic_store_explicit(&to->limits[i], most, memory_order_relaxed);
+    }
+}
+
 /* In the place of each new token that was there before, the one that requests hold. */
 static void keep_known(api_tokens *tokens, api_token_list *fresh)
 {
     for (size_t i = 0; i < fresh->count; i++) {
         api_token *known = find(tokens, fresh->items[i]->hash);
-        if (known != NULL && says_the_same(known, fresh->items[i])) {
+        const bool same = known != NULL && says_the_same(known, fresh->items[i]);
+        set_limits(same ? known : fresh->items[i], fresh->items[i], &tokens->defaults);
+        if (same) {
             api_token_release(fresh->items[i]);
             fresh->items[i] = api_token_hold(known);
         }
@@ -142,6 +162,20 @@ size_t api_tokens_count(api_tokens *tokens)
     size_t count = tokens->list.count;
     pthread_mutex_unlock(&tokens->lock);
     return count;
+}
+
+bool api_tokens_all(api_tokens *tokens, api_token_list *out)
+{
+    *out = (api_token_list){he_mem_array(NULL, API_TOKENS, sizeof *out->items), 0};
+    if (out->items == NULL) {
+        return false;
+    }
+    pthread_mutex_lock(&tokens->lock);
+    for (; out->count < tokens->list.count; out->count++) {
+        out->items[out->count] = api_token_hold(tokens->list.items[out->count]);
+    }
+    pthread_mutex_unlock(&tokens->lock);
+    return true;
 }
 
 api_token *api_tokens_find(api_tokens *tokens, const char *text, size_t length, double now)

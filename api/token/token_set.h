@@ -19,13 +19,20 @@ api_tokens *api_tokens_new(void);
 /* Nobody may watch any more. */
 void api_tokens_free(api_tokens *tokens);
 
+/* What tokens may have whose lines do not say it; from the next load on. Without this call: all. */
+void api_tokens_limit(api_tokens *tokens, const api_limits *defaults);
+
 /* Puts a file (token_file.h) in the place of the one before, whole or not at all: false with a
- * sentence in `message` where it is wrong. Tokens whose lines say what they said stay the same;
- * the others are revoked, and those who watch them are told. */
+ * sentence in `message` where it is wrong. Tokens whose lines say what they said, but for limits,
+ * stay the same, with the limits of the new line; the others are revoked, and those who watch them
+ * are told. */
 bool api_tokens_load(api_tokens *tokens, const char *bytes, size_t length,
                      char message[API_TOKENS_MESSAGE]);
 /* How many are in force. */
 size_t api_tokens_count(api_tokens *tokens);
+
+/* All that are in force, each held: for the caller to clear. False without memory. */
+bool api_tokens_all(api_tokens *tokens, api_token_list *out);
 
 /* The token of this text, for the caller to release. NULL where there is none, or it has
  * expired: no answer tells which. */

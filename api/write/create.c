@@ -123,8 +123,8 @@ static bool replace_damaged(api_exchange *x, const made *m)
     }
     st_copy_text(name, api_upload_name(x) != NULL ? api_upload_name(x) : x->info.name,
                  ST_MESH_NAME);
-    st_status status =
-        st_create_over(x->store, x->mesh, name, m->mesh, &(st_cause){x->keyed, x->own_job}, &fresh);
+    const st_cause cause = api_cause(x);
+    st_status status = st_create_over(x->store, x->mesh, name, m->mesh, &cause, &fresh);
     if (status == ST_OK) {
         st_release(x->mesh);
         x->mesh = fresh;

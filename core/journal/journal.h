@@ -45,7 +45,8 @@ typedef enum st_status {
     ST_BEHIND,    /* the disk is slow: as much is queued as may be */
     ST_FULL,      /* the disk is full */
     ST_FAILED,    /* the disk failed: no more writes until a restart */
-    ST_TOO_LARGE  /* the change takes more than ST_MOST_BODY */
+    ST_TOO_LARGE, /* the change takes more than ST_MOST_BODY */
+    ST_QUOTA      /* whose it is may have no more */
 } st_status;
 
 /* Bytes that the bodies of a group may take: SQLite refuses a row above 10^9. */
@@ -85,6 +86,9 @@ typedef struct st_journal_listener {
 
 /* Takes a key, which is borrowed for the call. False without memory. */
 typedef bool st_take_key(void *context, const st_kept_key *key);
+
+/* Takes a mesh that is somebody's: whose, and the bytes of its card. False without memory. */
+typedef bool st_take_holding(void *context, const char *holder, uint64_t bytes);
 
 enum { ST_HEALTH_TEXT = 200 };
 
@@ -159,6 +163,9 @@ typedef struct st_journal {
     /* Gives the jobs that durable notes left, in the order of their numbers; waits for the disk.
      * ST_FAILED, ST_NO_MEMORY. */
     st_status (*jobs)(void *self, st_take_job *take, void *context);
+    /* Gives the meshes of every holder, as durable records left them; waits for the disk. NULL:
+     * none is kept. ST_FAILED, ST_NO_MEMORY. */
+    st_status (*holdings)(void *self, st_take_holding *take, void *context);
     /* How many meshes there are, with what is queued. Never waits. */
     uint64_t (*count)(void *self);
     /* How the disk is. Never waits. */

@@ -21,4 +21,5 @@ void st_card_of_record(const st_record *record, st_card *card)
     card->modified = record->time;
     card->counts = record->counts;
     card->bytes = record->bytes;
+    st_copy_text(card->holder, record->holder == NULL ? "" : record->holder, ST_HOLDER);
 }

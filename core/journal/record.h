@@ -14,7 +14,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { ST_MESH_ID = 64, ST_MESH_NAME = 256, ST_JOB_ID = 22, ST_DAMAGE = 160 };
+enum {
+    ST_MESH_ID = 64,
+    ST_MESH_NAME = 256,
+    ST_JOB_ID = 22,
+    ST_DAMAGE = 160,
+    ST_HOLDER = 64 /* of the name of whose a mesh is */
+};
 
 /* What a revision did; kept in the history. */
 typedef enum st_action { ST_EDIT, ST_UNDO, ST_REDO, ST_REPLACE } st_action;
@@ -102,6 +108,7 @@ typedef struct st_record {
      * undo budget. */
     bool barrier;
     const char *id, *name;          /* the name after it */
+    const char *holder;             /* whose the mesh is; "" or NULL: nobody's in particular */
     uint64_t incarnation;           /* of the mesh: random, new for each creation of an id */
     uint64_t number;                /* of the record, from 1 for each incarnation */
     uint64_t revision;              /* of the content after it, from 1 */
@@ -129,8 +136,9 @@ typedef struct st_card {
     uint64_t incarnation, metadata, revision, record;
     double created, modified;
     st_counts counts;
-    uint64_t bytes;         /* that the content takes in memory */
-    char damage[ST_DAMAGE]; /* "", or a sentence: what is wrong with what is kept of it */
+    uint64_t bytes;             /* that the content takes in memory */
+    char holder[ST_HOLDER + 1]; /* whose it is; "": nobody's in particular */
+    char damage[ST_DAMAGE];     /* "", or a sentence: what is wrong with what is kept of it */
 } st_card;
 
 /* Copies a text, cut after `most` bytes. */

@@ -28,15 +28,30 @@ static bool is_full(const st_store *store)
     return count >= store->max_meshes;
 }
 
+/* Under the table's exclusive lock. The mesh counts for its holder from now on. */
+static st_status insert(st_store *store, st_mesh *mesh)
+{
+    const st_holding none = {NULL, 0};
+    const st_holding come = {mesh->holding.holder, he_mesh_bytes(mesh->content)};
+    st_status status = st_holders_move(&store->holders, &none, &come);
+    if (status != ST_OK) {
+        return status;
+    }
+    mesh->holding = come;
+    status = st_table_insert(store, mesh);
+    if (status != ST_OK) {
+        st_holders_note(&store->holders, &come, &none);
+    }
+    return status;
+}
+
 /* A thread that finds the mesh, or the id taken, finds its first record appended. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     pthread_rwlock_wrlock(&store->lock);
     bool found;
     (void)st_table_place(store, mesh->info.id, &found);
-    st_status status = found            ? ST_TAKEN
-                       : is_full(store) ? ST_TOO_MANY
-                                        : st_table_insert(store, mesh);
+    st_status status = found ? ST_TAKEN : is_full(store) ? ST_TOO_MANY : insert(store, mesh);
     if (status == ST_OK) {
         st_hold(mesh);
         st_record record = st_mesh_record(mesh, ST_RECORD_CONTENT, cause);
@@ -50,15 +65,15 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, 
 }
 
 /* A mesh of the content that nobody knows yet, with a place for its records. */
-static st_status prepare(st_store *store, const char *id, const char *name, he_mesh *content,
-                         size_t records, st_booking *booking, st_mesh **out)
+static st_status prepare(st_store *store, const char *id, const char *name, const st_cause *cause,
+                         he_mesh *content, size_t records, st_booking *booking, st_mesh **out)
 {
     const st_mesh_options options = st_store_mesh_options(store);
     st_status status = book(store, content, records, booking);
     if (status != ST_OK) {
         return status;
     }
-    *out = st_mesh_new(&options, id, name, content);
+    *out = st_mesh_new(&options, id, name, cause, content);
     if (*out == NULL) {
         st_booking_leave(&store->journal, booking);
         return ST_NO_MEMORY;
@@ -79,7 +94,7 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
 {
     st_booking booking = {NULL};
     st_mesh *mesh;
-    st_status status = prepare(store, id, name, content, 1, &booking, &mesh);
+    st_status status = prepare(store, id, name, cause, content, 1, &booking, &mesh);
     if (status == ST_OK) {
         /* Before it is in the table: one that was never used would be the oldest by far. */
         st_mesh_use(mesh);
@@ -167,25 +182,33 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
+/* Under the exclusive lock of the old one, which counts no more, or still where this is refused. */
+static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
+{
+    const st_holding come = {fresh->holding.holder, he_mesh_bytes(fresh->content)};
+    fresh->holding = come;
+    return st_holders_move(&store->holders, &old->holding, &come);
+}
+
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_cause *cause, st_mesh **out)
 {
     st_booking booking = {NULL};
     st_mesh *fresh;
-    st_status status = prepare(store, damaged->info.id, name, content, 2, &booking, &fresh);
+    st_status status = prepare(store, damaged->info.id, name, cause, content, 2, &booking, &fresh);
     if (status != ST_OK) {
         return status;
     }
     st_mesh_use(fresh);
     pthread_rwlock_wrlock(&damaged->lock);
-    bool there = !damaged->info.removed;
-    if (there) {
+    status = damaged->info.removed ? ST_ABSENT : count_over(store, damaged, fresh);
+    if (status == ST_OK) {
         publish_over(store, damaged, fresh, cause, &booking);
     }
     pthread_rwlock_unlock(&damaged->lock);
-    if (!there) {
+    if (status != ST_OK) {
         discard(store, fresh, &booking);
-        return ST_ABSENT;
+        return status;
     }
     st_release(damaged); /* the table's use */
     *out = fresh;

@@ -169,8 +169,8 @@ static bool is_from_lost(const st_write *w)
     return lost;
 }
 
-/* Refused where there is no place in the journal, or a claimed mesh was removed or lost
- * meanwhile. */
+/* Refused where there is no place in the journal, a claimed mesh was removed or lost meanwhile, or
+ * its holder may have no more. */
 static st_status get_ready(st_write *w)
 {
     const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;
@@ -184,6 +184,10 @@ static st_status get_ready(st_write *w)
         if (status == ST_OK && (info->removed || info->lost)) {
             status = info->lost ? ST_LOST : ST_ABSENT;
         }
+    }
+    const bool grows = w->kind != ST_WRITE_RENAME && w->kind != ST_WRITE_REMOVE;
+    if (status == ST_OK && grows) {
+        status = st_mesh_grow(w->mesh, he_mesh_bytes(w->content));
     }
     if (status != ST_OK) {
         st_write_give_up(w);

@@ -39,7 +39,7 @@ static st_status begin(st_write *w)
 
 static st_cause cause_of(const st_cause *cause)
 {
-    return cause == NULL ? (st_cause){NULL, NULL} : *cause;
+    return cause == NULL ? (st_cause){.keyed = NULL} : *cause;
 }
 
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)

@@ -33,6 +33,9 @@ static void lost(void *context, const st_loss *loss)
             st_release(batch[i]);
         }
     }
+    /* What was lost counts no more. Nothing is admitted before the last loss was told, after which
+     * all there is is what the disk has. Where it cannot be read, counts stay as they were. */
+    (void)st_holders_count(&store->holders, &store->journal);
 }
 
 st_store *st_store_new(const st_store_options *options)
@@ -53,6 +56,7 @@ st_store *st_store_new(const st_store_options *options)
     st_store_giver(store, &store->giver);
     store->base_bytes = options->base_bytes != 0 ? options->base_bytes : ST_BASE_BYTES;
     st_keys_init(&store->keys, store->journal.secret);
+    st_holders_init(&store->holders, store->journal.secret);
     st_lookups_init(&store->lookups);
     store->followers = (st_followers){
         .render = options->render,
@@ -63,8 +67,10 @@ st_store *st_store_new(const st_store_options *options)
     const st_journal *journal = &store->journal;
     bool failed = journal->keeps &&
                   journal->keys(journal->self, NULL, st_keys_restore, &store->keys) != ST_OK;
+    failed = st_holders_count(&store->holders, journal) != ST_OK || failed;
     if (store->followers.waits == NULL || failed) {
         st_keys_clear(&store->keys);
+        st_holders_clear(&store->holders);
         st_waits_free(store->followers.waits);
         st_lookups_clear(&store->lookups);
         pthread_rwlock_destroy(&store->lock);
@@ -88,6 +94,7 @@ void st_store_free(st_store *store)
     }
     he_mem_free(store->meshes);
     st_keys_clear(&store->keys);
+    st_holders_clear(&store->holders);
     st_lookups_clear(&store->lookups);
     st_waits_free(store->followers.waits);
     store->journal.close(store->journal.self);
@@ -325,6 +332,7 @@ st_mesh_options st_store_mesh_options(st_store *store)
     return (st_mesh_options){.store = store,
                              .journal = &store->journal,
                              .followers = &store->followers,
+                             .holders = &store->holders,
                              .undo_budget = store->undo_budget,
                              .secret = store->journal.secret};
 }
@@ -342,4 +350,21 @@ void st_store_shed(st_store *store)
             st_release(batch[i]);
         }
     }
+}
+
+/* --- whose meshes are --- */
+
+st_status st_limit_holders(st_store *store, const st_holder_limit *limits, size_t count)
+{
+    return st_holders_limit(&store->holders, limits, count);
+}
+
+void st_holder_usage(st_store *store, const char *name, st_usage *out)
+{
+    st_holders_usage(&store->holders, name, out);
+}
+
+const char *st_holder_of(const st_mesh *mesh)
+{
+    return mesh->holding.holder == NULL ? "" : mesh->holding.holder->name;
 }

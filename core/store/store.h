@@ -22,6 +22,7 @@
  *     derived   what a handler derived from it
  *     queue     messages for those who listen to it (broadcast_queue.h)
  *     waits     answers that wait until they are durable (durability_wait.h)
+ *     holders   how much each holder of meshes has (holder/holders.h)
  * The table of jobs (api/job/job_table.h) has a lock that is taken after a mesh's, and connections
  * that wait for events (server/http/http_live.h) one that is taken after all others. A thread that
  * holds a mesh's lock takes no other mesh's, not even shared, and not the same one twice: a waiting
@@ -31,6 +32,7 @@
 
 #include "mesh/delta.h"
 #include "store/durability_wait.h"
+#include "store/holder/holders.h"
 #include "system/thread_pool.h"
 
 typedef struct st_store st_store;
@@ -38,10 +40,11 @@ typedef struct st_mesh st_mesh;         /* a stored mesh */
 typedef struct st_snapshot st_snapshot; /* an immutable copy at one revision */
 typedef struct st_keyed st_keyed;       /* a request with an Idempotency-Key, begun and not ended */
 
-/* What a change is made for: its records carry both. A NULL pointer to one stands for neither. */
+/* What a change is made for: its records carry it. A NULL pointer to one stands for nothing. */
 typedef struct st_cause {
     const st_keyed *keyed; /* a request with a key; NULL: none */
     const char *job;       /* the job whose work it is; NULL: none */
+    const char *holder; /* whose a mesh is that it makes (holder/holders.h); "" or NULL: nobody's */
 } st_cause;
 
 /* Plain facts about a stored mesh, copied out under its lock. */
@@ -113,6 +116,16 @@ void st_store_rest(st_store *store);
  * meshes. Called without a lock. */
 void st_store_shed(st_store *store);
 
+/* --- whose meshes are --- (holder/holders.h) */
+
+/* From now on these holders may have so many meshes and bytes, and all others any number. What
+ * would be more is refused with ST_QUOTA; what is there stays. ST_NO_MEMORY, and all stays. */
+st_status st_limit_holders(st_store *store, const st_holder_limit *limits, size_t count);
+/* What a holder has, in memory or not, and may have; nothing where it was never heard of. */
+void st_holder_usage(st_store *store, const char *name, st_usage *out);
+/* Whose the mesh is; "": nobody's. As long as the mesh is. */
+const char *st_holder_of(const st_mesh *mesh);
+
 /* Where answers wait until what they show is durable. */
 st_waits *st_store_waits(st_store *store);
 /* What an answer shows that shows one mesh with these facts. */
@@ -146,7 +159,7 @@ st_mesh *st_hold(st_mesh *mesh); /* adds a reference */
 void st_release(st_mesh *mesh);  /* takes NULL */
 /* Takes `content` on success. `id` NULL lets the store choose. `cause`, or NULL, goes into the
  * record of the new mesh. Not on a worker where st_store_waits_for_disk. ST_TAKEN, ST_TOO_MANY,
- * ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
+ * ST_QUOTA, ST_BUDGET, ST_NO_MEMORY, ST_LOADING, ST_BEHIND, ST_FULL, ST_FAILED. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_cause *cause, st_mesh **out);
 /* The same of a content that was made from what `from` shows, which is lost together: ST_LOST where

@@ -50,6 +50,8 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     mesh->store = options->store;
     mesh->journal = options->journal;
     mesh->followers = options->followers;
+    mesh->holders = options->holders;
+    mesh->holding.bytes = card->bytes;
     mesh->info.incarnation = card->incarnation;
     mesh->info.metadata = card->metadata;
     mesh->info.revision = card->revision;
@@ -60,17 +62,23 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     copy_name(mesh->info.name, sizeof mesh->info.name, card->name);
     st_queue_init(&mesh->queue, (st_place){.key = card->revision});
     mesh->base = card->revision;
+    if (st_holders_find(options->holders, card->holder, &mesh->holding.holder) != ST_OK) {
+        st_release(mesh);
+        return NULL;
+    }
     return mesh;
 }
 
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
-                     he_mesh *content)
+                     const st_cause *cause, he_mesh *content)
 {
     double now = st_clock_utc();
     st_card card = {
         .incarnation = st_random(), .metadata = 1, .revision = 1, .created = now, .modified = now};
     copy_name(card.id, sizeof card.id, id);
     copy_name(card.name, sizeof card.name, name == NULL ? "" : name);
+    st_copy_text(card.holder, cause == NULL || cause->holder == NULL ? "" : cause->holder,
+                 ST_HOLDER);
     st_mesh *mesh = st_mesh_bare(options, &card);
     if (mesh != NULL) {
         const st_point begin = {.revision = 1, .state = 1, .time = now};
@@ -156,6 +164,7 @@ st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind)
         .kind = kind,
         .id = mesh->info.id,
         .name = mesh->info.name,
+        .holder = st_holder_of(mesh),
         .incarnation = mesh->info.incarnation,
         .number = mesh->info.record,
         .revision = mesh->info.revision,
@@ -188,6 +197,27 @@ static void note_base(st_mesh *mesh, const st_record *record)
     }
 }
 
+st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
+{
+    const st_holding come = {mesh->holding.holder, bytes};
+    st_status status = st_holders_move(mesh->holders, &mesh->holding, &come);
+    if (status == ST_OK) {
+        mesh->holding = come;
+    }
+    return status;
+}
+
+/* What the newest record says of the mesh counts, as it does when the journal is asked. */
+static void count_held(st_mesh *mesh, const st_record *record)
+{
+    const bool removed = record->kind == ST_RECORD_REMOVE;
+    const st_holding come = {removed ? NULL : mesh->holding.holder, record->bytes};
+    if (removed || record->bytes != mesh->holding.bytes) {
+        st_holders_note(mesh->holders, &mesh->holding, &come);
+        mesh->holding.bytes = come.bytes;
+    }
+}
+
 void st_mesh_publish(st_mesh *mesh, const st_group *group)
 {
     const st_journal *journal = mesh->journal;
@@ -195,6 +225,7 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
     mesh->info.position =
         journal->append(journal->self, group->booking->room, group->records, group->count);
     *group->booking = (st_booking){NULL};
+    count_held(mesh, &group->records[group->count - 1]);
     for (size_t i = 0; i < group->count; i++) {
         note_base(mesh, &group->records[i]);
     }

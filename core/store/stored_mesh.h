@@ -4,6 +4,7 @@
 
 #include "store/booking.h"
 #include "store/broadcast_queue.h"
+#include "store/holder/holders.h"
 #include "store/idempotency.h"
 #include "store/revision_log.h"
 
@@ -28,12 +29,14 @@ struct st_mesh {
     st_store *store;
     const st_journal *journal;
     struct st_followers *followers;
+    st_holders *holders;
 
     pthread_rwlock_t lock; /* of all down to `next_base` */
     st_mesh_info info;     /* but for undo and redo, which the log has */
     he_mesh *content;
     st_revision_log log;
-    bool claimed; /* the log's reserve is lent to a long edit */
+    st_holding holding; /* whose it is, and the bytes that it counts with */
+    bool claimed;       /* the log's reserve is lent to a long edit */
 
     uint64_t base;           /* revision of the base on the disk: it can be read from there on */
     uint64_t appended;       /* bytes of records since the last snapshot: rebase.c */
@@ -76,6 +79,7 @@ typedef struct st_mesh_options {
     st_store *store;
     const st_journal *journal;
     st_followers *followers;
+    st_holders *holders;
     uint64_t undo_budget;
     const uint64_t *secret;
 } st_mesh_options;
@@ -83,9 +87,10 @@ typedef struct st_mesh_options {
 /* A mesh with the facts of a card, but neither content nor history: those are the caller's to put
  * in. NULL when memory is out. */
 st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card);
-/* A mesh at its first revision. Takes `content`. NULL when memory is out. */
+/* A mesh at its first revision, whose is said by `cause`, or NULL. Takes `content`. NULL when
+ * memory is out. It counts for nobody yet. */
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
-                     he_mesh *content);
+                     const st_cause *cause, he_mesh *content);
 /* It was asked for now. */
 void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
@@ -115,6 +120,9 @@ typedef struct st_group {
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
 /* Under either lock: what the newest record of the mesh says, as a record of this kind. */
 st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
+/* Under the exclusive lock: it takes so many bytes from now on. ST_QUOTA, and nothing is changed.
+ */
+st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes);
 /* Under the exclusive lock: hands a group of records to the journal and tells the listeners. */
 void st_mesh_publish(st_mesh *mesh, const st_group *group);
 /* What st_mesh_publish does for the listeners, when the position is known. */

@@ -21,6 +21,7 @@ struct st_store {
     st_mesh **meshes;        /* in memory, in the order of ids, each with a use */
     size_t count, capacity;
     st_keys keys; /* of what makes a mesh */
+    st_holders holders;
 };
 
 /* What the store's meshes take over from it. */

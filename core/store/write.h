@@ -89,7 +89,8 @@ void st_write_remove(st_write *write);
 /* Makes it so and ends the write: the new facts are in `info`. `ops` names the operations of an
  * edit for the history, NULL for anything else. Where it is refused the write has ended with
  * nothing done: ST_DAMAGED, ST_NEWER (of such a mesh only the removal can be committed), ST_BEHIND,
- * ST_FULL, ST_FAILED, ST_NO_MEMORY, ST_TOO_LARGE; a claim whose mesh was removed or lost meanwhile:
+ * ST_FULL, ST_FAILED, ST_NO_MEMORY, ST_TOO_LARGE; ST_QUOTA: the mesh would take more than its
+ * holder may have (holder/holders.h); a claim whose mesh was removed or lost meanwhile:
  * ST_ABSENT, ST_LOST, which is also said where what it was made from is lost (st_write_from). A
  * claim may wait for the disk, and is not to be committed on a worker. */
 st_status st_write_commit(st_write *write, const char *ops);

@@ -45,6 +45,7 @@ bool srv_open_http(srv_parts *parts)
         .makers = parts->makers,
         .log = parts->log,
         .policy = &parts->policy,
+        .address_connections = (size_t)parts->config->address_limits.most[API_LIMIT_CONNECTIONS],
         .read_seconds = parts->config->read_seconds,
         .heartbeat_micros = parts->config->heartbeat * 1000000,
     };

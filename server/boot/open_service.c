@@ -44,6 +44,7 @@ bool srv_open_tokens(srv_parts *parts)
     if (parts->tokens == NULL) {
         return srv_open_failed("no memory to start");
     }
+    api_tokens_limit(parts->tokens, &parts->config->token_limits);
     return srv_reload(parts, message, sizeof message) || srv_open_failed(message);
 }
 
@@ -71,6 +72,8 @@ static bool open_service(srv_parts *parts)
                             .ready_context = parts,
                             .memory = count_memory,
                             .tokens = parts->tokens,
+                            .address_limits = parts->config->address_limits,
+                            .limit_burst = parts->config->limit_burst,
                             .reload = srv_reload,
                             .reload_context = parts,
                             .backup = parts->backups.folder == NULL ? NULL : srv_backup_make,

@@ -5,8 +5,18 @@
 
 static bool reload_tokens(srv_parts *parts, char *message, size_t size)
 {
-    return parts->tokens == NULL ||
-           srv_tokens_read(parts->tokens, parts->config->tokens, message, size);
+    if (parts->tokens == NULL) {
+        return true;
+    }
+    if (!srv_tokens_read(parts->tokens, parts->config->tokens, message, size)) {
+        return false;
+    }
+    /* At the start there is no service yet, which applies them when it is made. */
+    const bool applied = parts->service == NULL || api_service_apply_quotas(parts->service);
+    if (!applied) {
+        snprintf(message, size, "no memory for the quotas of the tokens");
+    }
+    return applied;
 }
 
 /* What is read again, in this order. */

@@ -57,6 +57,17 @@ static size_t keep_escapes(void *context, struct MHD_Connection *connection, cha
     return strlen(text);
 }
 
+/* One above the most that its address may have is answered that, once, and closed. The connections
+ * of a trusted proxy are those of all its clients. */
+static void count_peer(srv_http *http, srv_connection *c)
+{
+    size_t count;
+    if (http->peers != NULL && !c->is_proxy) {
+        c->of_peer = srv_peers_enter(http->peers, &c->client, &count);
+        atomic_store(&c->beyond, count > http->options.address_connections);
+    }
+}
+
 static void connection_changed(void *context, struct MHD_Connection *connection, void **slot,
                                enum MHD_ConnectionNotificationCode what)
 {
@@ -71,6 +82,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         *slot = c;
         if (c != NULL) {
             c->is_proxy = srv_proxies_has(&http->options.policy->proxies, c->peer);
+            count_peer(http, c);
         }
         if (c == NULL || !srv_recv_watch(c)) {
             /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
@@ -80,6 +92,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         srv_connection *c = *slot;
         if (c != NULL) {
             srv_recv_forget(c->socket);
+            srv_peers_leave(http->peers, c->of_peer);
         }
         srv_deadlines_remove(http->deadlines, c);
         *slot = NULL;
@@ -131,6 +144,7 @@ static void http_free(srv_http *http)
 {
     srv_live_free(http->live);
     srv_deadlines_free(http->deadlines);
+    srv_peers_free(http->peers);
     srv_gate_clear(&http->gate);
     he_mem_free(http);
 }
@@ -147,13 +161,16 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     srv_ids_init(&http->ids);
     http->deadlines = srv_deadlines_new(&options->deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
-    if (http->deadlines == NULL || http->live == NULL) {
+    /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
+    const size_t most = options->max_sockets + options->workers;
+    const bool counts = options->address_connections != 0;
+    http->peers = counts ? srv_peers_new(most) : NULL;
+    if (http->deadlines == NULL || http->live == NULL || (counts && http->peers == NULL)) {
         snprintf(message, size, "no memory or threads to start");
         http_free(http);
         return NULL;
     }
-    /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
-    if (!srv_buffers_reserve(options->max_sockets + options->workers)) {
+    if (!srv_buffers_reserve(most)) {
         snprintf(message, size, "no address space for %zu connections", options->max_sockets);
         http_free(http);
         return NULL;

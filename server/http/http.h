@@ -27,10 +27,11 @@ typedef struct srv_http_options {
     srv_access_log *log; /* NULL: none */
     const srv_policy *policy;
     srv_deadline_options deadlines;
-    size_t max_sockets;        /* above deadlines.max_connections: those between are answered 503 */
-    size_t workers;            /* threads, from 1 */
-    uint64_t read_seconds;     /* that a client may wait for what it reads */
-    uint64_t heartbeat_micros; /* of silence, after which an answer that goes on sends a comment */
+    size_t max_sockets; /* above deadlines.max_connections: those between are answered 503 */
+    size_t address_connections; /* of one address at once; 0: as many as there are */
+    size_t workers;             /* threads, from 1 */
+    uint64_t read_seconds;      /* that a client may wait for what it reads */
+    uint64_t heartbeat_micros;  /* of silence, after which an answer that goes on sends a comment */
 } srv_http_options;
 
 /* Begins to accept. NULL with a sentence in `message` when it cannot. */

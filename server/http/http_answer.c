@@ -28,6 +28,7 @@ static ssize_t pulled(srv_request *r, int64_t got)
     }
     if (got > 0) {
         r->bytes_out += (uint64_t)got;
+        api_charge(r->exchange, (uint64_t)got);
         return (ssize_t)got;
     }
     return got == 0 ? MHD_CONTENT_READER_END_OF_STREAM : MHD_CONTENT_READER_END_WITH_ERROR;
@@ -220,6 +221,9 @@ bool srv_answer_send(srv_request *r)
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;
+        if (r->exchange != NULL) {
+            api_charge(r->exchange, r->bytes_out);
+        }
     }
     enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)wire.status, response);
     MHD_destroy_response(response);

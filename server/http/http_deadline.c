@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 #include "server/http/http_buffer.h"
+#include "server/net/peers.h"
 #include "system/clock.h"
 #include "system/memory.h"
 
@@ -97,6 +98,7 @@ bool srv_connection_is_late(const srv_connection *c, const srv_deadline_options 
     uint64_t bytes = atomic_load_explicit(&c->bytes, memory_order_acquire);
     uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
     uint64_t elapsed = now > since ? now - since : 0;
+    crowded = crowded || atomic_load_explicit(&c->beyond, memory_order_relaxed);
     switch (stage) {
     case SRV_STAGE_IDLE:
         return elapsed > (crowded ? CROWDED_SECONDS : o->idle) * SECOND;
@@ -349,9 +351,11 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
         return NULL;
     }
     c->socket = socket;
+    c->of_peer = SRV_NO_PEER;
     c->buffer = buffer;
     srv_buffer_rest(buffer, st_clock_micros());
     srv_address_of_peer(socket, peer, c->peer);
+    c->client = srv_address_key(c->peer);
     srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     pthread_mutex_lock(&d->lock);
     c->next = d->first;

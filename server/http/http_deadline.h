@@ -8,7 +8,8 @@
  *       ^                                                                                       |
  *       +---------------------------------- completed ------------------------------------------+
  *
- *     IDLE    idle seconds; a short while only when there are too many connections
+ *     IDLE    idle seconds; a short while only when there are too many connections, or too many of
+ *             its address
  *     HEAD    head seconds
  *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average. Like
  *             HEAD not at all when the client has closed its side, which libmicrohttpd leaves to
@@ -68,6 +69,9 @@ typedef struct srv_connection {
     _Atomic uint64_t bytes; /* received in this stage */
     bool drain;             /* drain after closing */
     bool is_proxy;          /* a trusted one: what it tells of its client is believed */
+    api_rate_key client;    /* of its address */
+    uint32_t of_peer;       /* peers.h */
+    _Atomic bool beyond;    /* its address had as many connections as it may before */
     uint32_t buffer;        /* http_buffer.h */
     /* The worker's own. */
     srv_syntax syntax;

@@ -208,6 +208,12 @@ static void begin_exchange(srv_request *r, const srv_head *head, const srv_frami
         .has_body = framing->chunked || framing->length > 0,
         .has_consent = r->cors != NULL,
     };
+    if (r->socket != NULL) {
+        asked.client =
+            r->socket->is_proxy ? srv_address_key(srv_request_client(r)) : r->socket->client;
+        asked.is_beyond = atomic_load_explicit(&r->socket->beyond, memory_order_relaxed);
+        r->close = r->close || asked.is_beyond;
+    }
     if (srv_headers_read(head, asked.headers, &r->joined)) {
         r->exchange = api_begin(r->http->options.service, &asked, &r->step);
     }
@@ -275,6 +281,14 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
+/* What is swallowed of a body counts for its client too. */
+static void charge(const srv_request *r, uint64_t bytes)
+{
+    if (r->exchange != NULL) {
+        api_charge(r->exchange, bytes);
+    }
+}
+
 static void refuse_fault(srv_request *r)
 {
     api_problem problem = {0};
@@ -297,6 +311,7 @@ static bool read_body(srv_request *r, const char *bytes, size_t *size)
         r->step = api_body(r->exchange, bytes, *size, &used);
     } else {
         r->swallowed += used;
+        charge(r, used);
     }
     *size -= used;
     r->bytes_in += used;

@@ -37,6 +37,7 @@
 #include "server/http/http_ahead.h"
 #include "server/http/http_gate.h"
 #include "server/http/http_live.h"
+#include "server/net/peers.h"
 #include "store/durability_wait.h"
 
 #include <microhttpd.h>
@@ -49,6 +50,7 @@ struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
+    srv_peers *peers; /* NULL: addresses may have as many connections as there are */
     srv_live *live;
     unsigned port;
     srv_ids ids;

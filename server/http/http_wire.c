@@ -44,7 +44,7 @@ void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *re
     }
     srv_wire_add(wire, "Cache-Control", "no-store");
     srv_wire_add(wire, "X-Request-Id", request_id);
-    const char *retry = problem == NULL ? NULL : api_problem_retry(problem);
+    const char *retry = problem == NULL ? NULL : api_problem_retry(problem, wire->retry);
     if (retry != NULL) {
         srv_wire_add(wire, "Retry-After", retry);
     }

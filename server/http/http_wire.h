@@ -19,6 +19,7 @@ typedef struct srv_wire {
     const char *bytes;
     int64_t length; /* -1: not known */
     bool close;
+    char retry[API_RETRY];
 } srv_wire;
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value);

@@ -2,6 +2,8 @@
 
 #include "server/net/address.h"
 
+#include "base/siphash.h"
+
 #include <arpa/inet.h>
 #include <stdio.h>
 #include <string.h>
@@ -152,6 +154,25 @@ void srv_address_of_peer(int socket, const struct sockaddr *peer, char out[SRV_A
     } else {
         snprintf(out, SRV_ADDRESS_TEXT, "%s", scheme);
     }
+}
+
+api_rate_key srv_address_key(const char *text)
+{
+    static const uint64_t secret[2] = {0, 0};
+    api_rate_key key = {{0, 0}};
+    struct in6_addr v6;
+    struct in_addr v4;
+    if (inet_pton(AF_INET, text, &v4) == 1) {
+        key.words[1] = UINT64_C(1) << 32 | v4.s_addr;
+    } else if (inet_pton(AF_INET6, text, &v6) != 1) {
+        key.words[1] = he_siphash_of(secret, text, strlen(text)) | UINT64_C(1) << 63;
+    } else if (IN6_IS_ADDR_V4MAPPED(&v6)) {
+        memcpy(&v4, v6.s6_addr + 12, sizeof v4);
+        key.words[1] = UINT64_C(1) << 32 | v4.s_addr;
+    } else {
+        memcpy(&key.words[0], v6.s6_addr, sizeof key.words[0]);
+    }
+    return key;
 }
 
 bool srv_address_text_is_loopback(const char *text, size_t length)

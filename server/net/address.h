@@ -3,6 +3,8 @@
 #ifndef HE_SERVER_NET_ADDRESS_H
 #define HE_SERVER_NET_ADDRESS_H
 
+#include "api/limit/rate.h"
+
 #include <netinet/in.h>
 #include <stdbool.h>
 #include <sys/socket.h>
@@ -42,6 +44,10 @@ void srv_address_format(const struct sockaddr *address, bool with_port, char out
 /* The client at the other end of a socket: its address without a port, or "unix:uid=1000", the user
  * who runs it, on a Unix socket. */
 void srv_address_of_peer(int socket, const struct sockaddr *peer, char out[SRV_ADDRESS_TEXT]);
+/* Whose limits a client's address has (api/limit/limit.h), of its text without a port: all of it of
+ * IPv4, mapped into IPv6 or not, and of IPv6 the first 64 bits, since a client may have all others.
+ * Users of a Unix socket have one each. */
+api_rate_key srv_address_key(const char *text);
 
 /* Is `text` of this length an IPv4 or (without brackets) IPv6 loopback address? */
 bool srv_address_text_is_loopback(const char *text, size_t length);

@@ -33,8 +33,10 @@ struct api_bench {
     api_tokens *tokens; /* NULL: nobody needs one */
     const char *file;   /* of tokens, to be read by a reload; NULL: nothing is read */
     char bearer[300];   /* "": none is sent */
-    const char *kept;   /* what a backup gives */
-    bool is_lent;       /* and has not been freed */
+    uint64_t address;
+    bool is_beyond;
+    const char *kept; /* what a backup gives */
+    bool is_lent;     /* and has not been freed */
     api_service *service;
 };
 
@@ -75,7 +77,7 @@ static bool reload(void *context, char *message, size_t size)
         api_tokens_free(tokens);
     }
     snprintf(message, size, "%s", why);
-    return good;
+    return good && (b->service == NULL || api_service_apply_quotas(b->service));
 }
 
 static int64_t read_kept(void *self, uint64_t at, char *buffer, size_t size)
@@ -103,8 +105,13 @@ static st_status back_up(void *context, api_blob *out, char *message, size_t siz
     return ST_OK;
 }
 
+typedef struct bench_limits {
+    api_limits addresses;
+    uint64_t burst;
+} bench_limits;
+
 static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget, uint64_t upload,
-                                 const char *file)
+                                 const char *file, const bench_limits *limits)
 {
     api_bench *b = calloc(1, sizeof *b);
     assert_non_null(b);
@@ -134,6 +141,8 @@ static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget
                                  &(api_options){.version = "0.0.0-test",
                                                 .max_upload = upload == 0 ? 8 << 20 : upload,
                                                 .tokens = b->tokens,
+                                                .address_limits = limits->addresses,
+                                                .limit_burst = limits->burst,
                                                 .reload = reload,
                                                 .reload_context = b,
                                                 .jobs = b->jobs,
@@ -142,6 +151,8 @@ static api_bench *bench_new_with(const st_journal *journal, uint64_t undo_budget
     return b;
 }
 
+static const bench_limits unlimited = {.burst = 0};
+
 api_bench *bench_new(void)
 {
     return bench_new_within(64 << 20, 0);
@@ -149,19 +160,32 @@ api_bench *bench_new(void)
 
 api_bench *bench_new_over(const st_journal *journal)
 {
-    return bench_new_with(journal, 64 << 20, 0, NULL);
+    return bench_new_with(journal, 64 << 20, 0, NULL, &unlimited);
 }
 
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload)
 {
     const st_journal journal = st_journal_memory();
-    return bench_new_with(&journal, undo_budget, upload, NULL);
+    return bench_new_with(&journal, undo_budget, upload, NULL, &unlimited);
 }
 
 api_bench *bench_new_guarded(const char *file)
 {
     const st_journal journal = st_journal_memory();
-    return bench_new_with(&journal, 64 << 20, 0, file);
+    return bench_new_with(&journal, 64 << 20, 0, file, &unlimited);
+}
+
+api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst)
+{
+    const st_journal journal = st_journal_memory();
+    const bench_limits limits = {*addresses, burst};
+    return bench_new_with(&journal, 64 << 20, 0, file, &limits);
+}
+
+void bench_use_address(api_bench *b, uint64_t address, bool is_beyond)
+{
+    b->address = address;
+    b->is_beyond = is_beyond;
 }
 
 void bench_keep(api_bench *b, const char *text)
@@ -318,6 +342,8 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
                            .path = path,
                            .query = mark == NULL ? "" : mark + 1,
                            .request_id = "test",
+                           .client = {{b->address, 0}},
+                           .is_beyond = b->is_beyond,
                            .has_length = body != NULL,
                            .length = length,
                            .has_body = body != NULL};
@@ -346,6 +372,7 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     }
     r.header_count = answer->header_count;
     read_all(b, answer, &r);
+    api_charge(r.exchange, r.length);
     *out = r;
     return true;
 }

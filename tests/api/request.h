@@ -17,6 +17,12 @@ api_bench *bench_new_over(const st_journal *journal);
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 /* A service that asks for tokens, those of `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
+/* The same with limits for clients without a token, and of `burst` seconds; `file` NULL: no tokens
+ * are asked for. */
+api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
+/* Requests come from this address from now on, 0 at first; `is_beyond`: by a connection that is one
+ * more than that may have. */
+void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
 /* What POST /v1/admin/reload reads from now on. */
 void bench_change_tokens(api_bench *b, const char *file);
 /* POST /v1/admin/backup gives a file with this text from now on; NULL: nothing is kept. */

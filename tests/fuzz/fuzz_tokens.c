@@ -22,6 +22,12 @@ static void check_token(const api_token *token)
         FUZZ_REQUIRE(token->prefixes[i][0] != '\0', "a prefix is empty");
         FUZZ_REQUIRE(api_token_sees(token, token->prefixes[i]), "a prefix is not seen");
     }
+    for (api_limit limit = 0; limit < API_LIMIT_COUNT; limit++) {
+        const bool own = (token->own_limits >> limit & 1) != 0;
+        const uint64_t most = api_limit_is_bytes(limit) ? API_LIMIT_MOST_BYTES : API_LIMIT_MOST;
+        FUZZ_REQUIRE(api_token_limit(token, limit) <= (own ? most : 0), "a limit is too large");
+        FUZZ_REQUIRE(!own || api_limit_is_of_token(limit), "a limit is none of tokens");
+    }
     FUZZ_REQUIRE(token->prefix_count == 0 || !api_token_sees(token, "/"), "all is seen");
 }
 

@@ -593,8 +593,8 @@ static void other_files_are_refused_by_name(void **state)
     make_two();
     run_sql("PRAGMA user_version = 7");
     expect_refused(folder,
-                   "has version 7 of the tables, and this hedged 1.2.3 knows them up to version 2");
-    run_sql("PRAGMA user_version = 2; PRAGMA application_id = 5");
+                   "has version 7 of the tables, and this hedged 1.2.3 knows them up to version 3");
+    run_sql("PRAGMA user_version = 3; PRAGMA application_id = 5");
     expect_refused(folder, "is no store of hedged");
     run_sql("PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");
     expect_refused(folder, "is damaged");

@@ -77,7 +77,17 @@ static void each_refusal_names_the_line_and_repeats_nothing(void **state)
         {"a read " HASH "0", "line 1: the hash (field 3)"},
         {"a read sha256:9F86D081884C7D659A2FEAA0C55AD015A3BF4F1B2B0B822CD15D6C15B0F00A08",
          "line 1: the hash (field 3)"},
-        {"a read " HASH " secret", "line 1: what follows the hash is prefix= or expires="},
+        {"a read " HASH " requests=", "line 1: requests= takes a number from 0 to 1000000000"},
+        {"a read " HASH " requests=1k", "line 1: requests= takes a number"},
+        {"a read " HASH " requests=-1", "line 1: requests= takes a number"},
+        {"a read " HASH " jobs=1000000001", "line 1: jobs= takes a number"},
+        {"a read " HASH " bytes=2T", "line 1: bytes= takes a number from 0 to 1099511627776 (K, M"},
+        {"a read " HASH " bytes=1.5M", "line 1: bytes= takes a number"},
+        {"a read " HASH " meshes=1 meshes=1", "line 1: meshes= is given twice"},
+        {"a read " HASH " connections=4", "line 1: what follows the hash is"},
+        {"a read " HASH " =4", "line 1: what follows the hash is"},
+        {"a read " HASH " secret",
+         "line 1: what follows the hash is prefix=, expires=, or a limit"},
         {"a read " HASH " prefix=", "line 1: prefix 1 is not"},
         {"a read " HASH " prefix=a,", "line 1: prefix 2 is not"},
         {"a read " HASH " prefix=a/", "line 1: prefix 1 is not"},
@@ -249,6 +259,50 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     api_tokens_free(tokens);
 }
 
+static void a_line_may_set_limits_of_its_own(void **state)
+{
+    (void)state;
+    const api_limits defaults = {
+        .most = {[API_LIMIT_REQUESTS] = 7, [API_LIMIT_BYTES] = 99, [API_LIMIT_MESHES] = 3}};
+    api_tokens *tokens = api_tokens_new();
+    assert_non_null(tokens);
+    api_tokens_limit(tokens, &defaults);
+    assert_true(load(tokens, "a read " HASH " requests=20 bytes=10M mesh-bytes=2g prefix=x "
+                             "jobs=4 meshes=0\nb write " OTHER));
+    api_token *a = api_tokens_find(tokens, "test", 4, 0);
+    assert_non_null(a);
+    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 20);
+    assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 10 << 20);
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESH_BYTES), UINT64_C(2) << 30);
+    assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 4);
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* as many as it likes */
+    assert_int_equal(api_token_limit(NULL, API_LIMIT_REQUESTS), 0);
+
+    /* Other limits make no other token: what it began goes on, with the new limits. */
+    listener watcher = {.watch = {.token = a, .gone = tell}};
+    api_tokens_watch(tokens, &watcher.watch);
+    assert_false(load(tokens, "a read " HASH " prefix=x requests=1 requests=2"));
+    assert_true(load(tokens, "a read " HASH " prefix=x bytes=5"));
+    api_token *again = api_tokens_find(tokens, "test", 4, 0);
+    assert_ptr_equal(again, a);
+    assert_int_equal(watcher.told, 0);
+    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the option's again */
+    assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 5);
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
+    assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
+
+    /* A token of the same name uses the same bucket; one of another name does not. */
+    api_token_list list;
+    assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
+    assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);
+    assert_memory_not_equal(&list.items[1]->rate_key, &a->rate_key, sizeof a->rate_key);
+    api_token_list_clear(&list);
+    api_tokens_unwatch(tokens, &watcher.watch);
+    api_token_release(again);
+    api_token_release(a);
+    api_tokens_free(tokens);
+}
+
 static void without_memory_the_tokens_before_stay(void **state)
 {
     (void)state;
@@ -384,6 +438,7 @@ int main(void)
         cmocka_unit_test(roles_include_each_other_as_documented),
         cmocka_unit_test(prefixes_say_which_meshes_there_are),
         cmocka_unit_test(a_file_takes_the_place_of_another_whole_or_not_at_all),
+        cmocka_unit_test(a_line_may_set_limits_of_its_own),
         cmocka_unit_test(without_memory_the_tokens_before_stay),
         cmocka_unit_test(a_ticket_is_good_once_for_its_path_and_a_minute),
         cmocka_unit_test(a_new_token_is_in_its_line),

@@ -397,6 +397,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .list = st_sqlite_list,
                         .keys = st_sqlite_keys,
                         .jobs = st_sqlite_jobs,
+                        .holdings = st_sqlite_holdings,
                         .count = st_sqlite_count,
                         .health = st_sqlite_health,
                         .begun = st_sqlite_begun,

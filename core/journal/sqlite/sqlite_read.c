@@ -7,10 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CARD, CARDS, SNAPSHOT, PARTS, BASE, RECORDS, BEGIN, COMMIT, STATEMENTS };
+enum { CARD, CARDS, HOLDINGS, SNAPSHOT, PARTS, BASE, RECORDS, BEGIN, COMMIT, STATEMENTS };
 static const char *const texts[STATEMENTS] = {
     [CARD] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id = ?1",
     [CARDS] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE id > ?1 ORDER BY id LIMIT ?2",
+    [HOLDINGS] = "SELECT holder, bytes FROM mesh WHERE holder <> ''",
     [SNAPSHOT] = "SELECT " ST_SNAPSHOT_COLUMNS " FROM snapshot WHERE mesh = ?1 AND number = ?2",
     [PARTS] = "SELECT part, bytes FROM part WHERE snapshot = ?1 ORDER BY part",
     [BASE] = "SELECT bytes FROM record WHERE mesh = ?1 AND number = ?2",
@@ -163,6 +164,30 @@ st_status st_sqlite_list(void *context, const char *after, st_card *out, size_t 
     }
     *count = found;
     return ST_OK;
+}
+
+st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
+{
+    st_sqlite *self = context;
+    sqlite3_stmt *s;
+    bool taken = true;
+    if (self->only_reads) {
+        return ST_OK; /* nothing is made, so that nobody asks how much there is */
+    }
+    pthread_mutex_lock(&self->cards_lock);
+    st_sql outcome = st_db_find(&self->cards, HOLDINGS, &s, "");
+    while (outcome == ST_SQL_ROW && taken) {
+        char holder[ST_HOLDER + 1];
+        st_db_text(s, 0, holder, sizeof holder);
+        taken = take(to, holder, st_db_word(s, 1));
+        if (taken) {
+            outcome = st_db_step(&self->cards, s);
+        } else {
+            st_db_reset(s);
+        }
+    }
+    pthread_mutex_unlock(&self->cards_lock);
+    return !taken ? ST_NO_MEMORY : outcome == ST_SQL_DONE ? ST_OK : status_of(outcome);
 }
 
 /* --- damage --- */

@@ -10,7 +10,7 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_MESH] = "SELECT " ST_MESH_COLUMNS " FROM mesh WHERE incarnation = ?1",
     [ST_SQL_MESH_MAKE] = "INSERT INTO mesh(" ST_MESH_COLUMNS ") VALUES "
                          "(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, "
-                         "?17, ?18, ?19)",
+                         "?17, ?18, ?19, ?20)",
     [ST_SQL_MESH_PUT] = "UPDATE mesh SET name = ?2, metadata = ?3, revision = ?4, record = ?5, "
                         "chain = ?6, modified = ?7, vertices = ?8, edges = ?9, faces = ?10, "
                         "boundary = ?11, bytes = ?12, base = ?13, damage = ?14, sum = ?15 "
@@ -62,12 +62,12 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
 static st_sql make_row(st_sqlite *self, const st_mesh_row *row)
 {
     const st_card *c = &row->card;
-    return st_db_do(&self->db, ST_SQL_MESH_MAKE, "ittiiiiiiddiiiiiiti", row->key, c->id, c->name,
+    return st_db_do(&self->db, ST_SQL_MESH_MAKE, "ittiiiiiiddiiiiiitit", row->key, c->id, c->name,
                     c->incarnation, row->origin, c->metadata, c->revision, c->record, row->chain,
                     c->created, c->modified, (uint64_t)c->counts.vertices,
                     (uint64_t)c->counts.edges, (uint64_t)c->counts.faces,
                     (uint64_t)c->counts.boundary, c->bytes, row->base, c->damage,
-                    (uint64_t)st_mesh_row_sum(row));
+                    (uint64_t)st_mesh_row_sum(row), c->holder);
 }
 
 static st_sql put_row(st_sqlite *self, const st_mesh_row *row)

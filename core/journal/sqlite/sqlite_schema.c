@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* A key is one incarnation's and is never used again. `fence`, `node` and a mesh's
-     * `holder` have no other values than these in version 1. */
+    /* A key is one incarnation's and is never used again. `fence` and `node` have no other values
+     * than these. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -46,7 +46,8 @@ static const char *const tables[] = {
 enum { TABLES = sizeof tables / sizeof *tables };
 
 /* How many of the tables each version has. */
-static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {[1] = TABLES - 2, [2] = TABLES};
+static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {
+    [1] = TABLES - 2, [2] = TABLES, [3] = TABLES};
 
 /* --- sums --- */
 
@@ -88,7 +89,9 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row)
     sum = add_word(add_word(sum, card->counts.vertices), card->counts.edges);
     sum = add_word(add_word(sum, card->counts.faces), card->counts.boundary);
     sum = add_word(add_word(sum, card->bytes), row->base);
-    return add_text(sum, card->damage);
+    sum = add_text(sum, card->damage);
+    /* Meshes of before version 3 are nobody's and have the sums of rows without a holder. */
+    return card->holder[0] == '\0' ? sum : add_text(sum, card->holder);
 }
 
 uint32_t st_snapshot_row_sum(const st_snapshot_row *row)
@@ -167,6 +170,7 @@ bool st_mesh_row_read(sqlite3_stmt *s, st_mesh_row *out)
     card->bytes = st_db_word(s, 15);
     out->base = st_db_word(s, 16);
     st_db_text(s, 17, card->damage, sizeof card->damage);
+    st_db_text(s, 19, card->holder, sizeof card->holder);
     return sum_is(s, 18, st_mesh_row_sum(out));
 }
 
@@ -228,7 +232,7 @@ bool st_job_read(sqlite3_stmt *s, st_job *out)
 
 /* --- the whole database --- */
 
-#define SET_VERSION "PRAGMA user_version = 2"
+#define SET_VERSION "PRAGMA user_version = 3"
 
 enum { META_PUT, META_GET, STATE_PUT, STATE_GET, TABLE_GET, STATEMENTS };
 static const char *const texts[STATEMENTS] = {

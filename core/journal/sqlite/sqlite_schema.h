@@ -1,4 +1,4 @@
-/* sqlite_schema.h - the tables of hedge.db, version 2, and the sums of their rows.
+/* sqlite_schema.h - the tables of hedge.db, version 3, and the sums of their rows.
  *
  * Every row but those of record and part, whose bytes carry sums of their own, has a column `sum`:
  * CRC-32C over its table's name and its values, keys included. A flipped bit in a number would
@@ -10,7 +10,7 @@
 #include "journal/sqlite/sqlite_db.h"
 
 enum {
-    ST_SCHEMA_VERSION = 2,              /* 1 had no jobs */
+    ST_SCHEMA_VERSION = 3,              /* 1 had no jobs, 2 no holders of meshes */
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
     ST_KEY_TEXT = 255,                  /* of an Idempotency-Key, at most */
@@ -91,7 +91,7 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 
 #define ST_MESH_COLUMNS                                                                          \
     "key, id, name, incarnation, origin, metadata, revision, record, chain, created, modified, " \
-    "vertices, edges, faces, boundary, bytes, base, damage, sum"
+    "vertices, edges, faces, boundary, bytes, base, damage, sum, holder"
 #define ST_SNAPSHOT_COLUMNS "key, mesh, number, revision, parts, process, chain, facts, sum"
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
 #define ST_KEPT_COLUMNS \

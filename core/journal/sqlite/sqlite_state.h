@@ -331,6 +331,7 @@ st_status st_sqlite_read(st_reader *reader, st_piece *out);
 void st_sqlite_shut(st_reader *reader);
 void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
+st_status st_sqlite_holdings(void *self, st_take_holding *take, void *context);
 /* ST_DAMAGED where the card says so, or its row's sum is wrong. */
 st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row);
 /* --- sqlite_salvage.c, under the lock of cards --- */
