@@ -15,8 +15,6 @@
 #define KIB                 (UINT64_C(1) << 10)
 #define TIB                 (UINT64_C(1) << 40)
 
-const char *const srv_log_kinds[] = {"off", "access", "auto", NULL}; /* by st_log_kind */
-
 const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
      "read settings from a file, a line each, as --print-config shows them"},
@@ -67,7 +65,15 @@ const srv_option srv_options[] = {
     {"samples", SRV_FLAG, MEMBER(samples), "0", NULL, 0, 0,
      "put a few meshes into a store that is new"},
     {"log", SRV_CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
-     "access: a line of JSON on stderr for each request; auto: only if stderr is no terminal"},
+     "access: a line on stderr for each request; auto: only if stderr is no terminal"},
+    {"log-format", SRV_CHOICE, MEMBER(log_format), "auto", "auto|text|json", 0, 0,
+     "of the lines on stderr; auto: text on a terminal, json elsewhere. The line that says where "
+     "hedged listens is plain text in both"},
+    {"log-level", SRV_CHOICE, MEMBER(log_level), "info", "error|warning|info|debug", 0, 0,
+     "the least of what is said on stderr, beside the lines of --log"},
+    {"slow", SRV_COUNT, MEMBER(slow), "0", "MS", 0, 86400000,
+     "a line on stderr for each request that took longer than so many milliseconds, with where the "
+     "time went; 0: none"},
     {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
      "largest mesh document or file"},
     {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
@@ -225,13 +231,27 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
     case SRV_CHOICE:
         break;
     }
-    for (number = 0; srv_log_kinds[number] != NULL; number++) {
-        if (strcmp(srv_log_kinds[number], text) == 0) {
-            memcpy(member, &number, sizeof number);
-            return true;
-        }
+    if (srv_option_choice(row, text, &number)) {
+        memcpy(member, &number, sizeof number);
+        return true;
     }
     snprintf(message, size, "%s takes %s, not \"%s\"", source, row->argument, text);
+    return false;
+}
+
+/* The words are parted by '|' in what --help shows. */
+bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out)
+{
+    const size_t length = strlen(text);
+    uint64_t number = 0;
+    for (const char *word = row->argument; word != NULL; number++) {
+        const size_t size = strcspn(word, "|");
+        if (size == length && memcmp(word, text, size) == 0) {
+            *out = number;
+            return true;
+        }
+        word = word[size] == '|' ? word + size + 1 : NULL;
+    }
     return false;
 }
 
@@ -430,15 +450,18 @@ bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size)
 {
     bool ok = read_places(config, NULL, argc, argv, environment, message, size);
+    uint64_t format = config->log_format;
     if (ok && config->config[0] != '\0') {
         const char *file = config->config;
         srv_config_clear(config);
         ok = read_places(config, file, argc, argv, environment, message, size);
+        format = ok ? config->log_format : format;
     }
     ok = ok && (config->help || config->version ||
                 (check(config, message, size) && find_proxies(config, message, size)));
     if (!ok) {
         srv_config_clear(config);
+        config->log_format = format;
     }
     return ok;
 }

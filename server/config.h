@@ -16,9 +16,12 @@
 /* Times that an option which is a list may be given, all of them together. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
- * reader wants to see. */
-typedef enum st_log_kind { SRV_LOG_OFF, SRV_LOG_ACCESS, SRV_LOG_AUTO } st_log_kind;
+/* The words of choices, in the order in which their rows of the table name them.
+ *
+ * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
+ * reader wants to see. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
+typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_kind;
+typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
 typedef struct srv_config {
     const char *config; /* a file; "": none */
@@ -30,7 +33,10 @@ typedef struct srv_config {
     const char *web;   /* "": look beside the executable */
     const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
     bool samples;
-    uint64_t log; /* st_log_kind */
+    uint64_t log;        /* srv_log_kind */
+    uint64_t log_format; /* srv_log_format */
+    uint64_t log_level;  /* srv_level of server/log/line.h */
+    uint64_t slow;       /* milliseconds; 0: no request is slow */
 
     uint64_t max_upload;    /* bytes */
     uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
@@ -64,7 +70,8 @@ typedef struct srv_config {
 } srv_config;
 
 /* Fill `config` from arguments (without the program's name) and `environment` (getenv, or a test's
- * own). Texts are borrowed from both. False with a sentence in `message` otherwise. */
+ * own). Texts are borrowed from both. False with a sentence in `message` otherwise; then `config`
+ * is empty but for log_format, in which the sentence is to be written. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size);
 void srv_config_clear(srv_config *config);
@@ -73,10 +80,10 @@ void srv_config_clear(srv_config *config);
 const char *srv_config_folder(const srv_config *config);
 
 /* The variables of `environment` ("NAME=value", the last NULL) whose names begin with HEDGE_ and
- * are no option's, in one line on `out`; nothing where there are none. A misspelt one would
- * otherwise be ignored in silence; Kubernetes sets HEDGE_PORT for a service that is called hedge.
- */
-void srv_config_tell_unknown(char *const *environment, FILE *out);
+ * are no option's: how many there are, and their names with ", " between them, cut to `size`
+ * bytes. A misspelt one would otherwise be ignored in silence; Kubernetes sets HEDGE_PORT for a
+ * service that is called hedge. */
+size_t srv_config_find_unknown(char *const *environment, char *names, size_t size);
 
 void srv_config_help(FILE *out);
 /* Each option as `name = value`, as a configuration would set it. */

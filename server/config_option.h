@@ -2,6 +2,7 @@
 #ifndef HE_SERVER_CONFIG_OPTION_H
 #define HE_SERVER_CONFIG_OPTION_H
 
+#include "api/json/text.h"
 #include "server/config.h"
 
 #include <stddef.h>
@@ -35,15 +36,17 @@ enum { SRV_VARIABLE_TEXT = 64, SRV_MOST_OPTIONS = 96 };
 extern const srv_option srv_options[];
 extern const size_t srv_option_count;
 
-/* The words of SRV_CHOICE, by st_log_kind; the last is NULL. */
-extern const char *const srv_log_kinds[];
-
 const srv_option *srv_option_find(const char *name, size_t length);
 void srv_option_variable(const srv_option *row, char out[SRV_VARIABLE_TEXT]);
 /* Settings may stand in a file. */
 bool srv_option_is_setting(const srv_option *row);
 /* It may stand alone: "--samples". */
 bool srv_option_is_switch(const srv_option *row);
+
+/* Which of the words of an SRV_CHOICE the text is, from 0; false where it is none. */
+bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
+/* The value of a setting or a source, as a configuration would set it, added to `out`. */
+void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
 /* Give an option its value. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or
  * "hedged.conf:3: listen"; it begins the sentence in `message` when the value is refused. Of one

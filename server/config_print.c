@@ -9,10 +9,10 @@ static const void *member_in(const srv_config *config, const srv_option *row)
     return (const char *)config + row->member;
 }
 
-void srv_config_tell_unknown(char *const *environment, FILE *out)
+size_t srv_config_find_unknown(char *const *environment, char *names, size_t size)
 {
     static const char prefix[] = "HEDGE_";
-    bool any = false;
+    size_t count = 0, at = 0;
     for (size_t v = 0; environment[v] != NULL; v++) {
         const char *name = environment[v];
         const size_t length = strcspn(name, "=");
@@ -24,14 +24,13 @@ void srv_config_tell_unknown(char *const *environment, FILE *out)
             known = (srv_option_is_setting(row) || row->kind == SRV_SOURCE) &&
                     strlen(variable) == length && memcmp(variable, name, length) == 0;
         }
-        if (!known) {
-            fprintf(out, "%s%.*s",
-                    any ? ", " : "hedged: variables that no option has are ignored: ", (int)length,
-                    name);
-            any = true;
+        if (!known && at < size) {
+            at += (size_t)snprintf(names + at, size - at, "%s%.*s", count == 0 ? "" : ", ",
+                                   (int)length, name);
         }
+        count += known ? 0 : 1;
     }
-    fputs(any ? "; --help lists those there are\n" : "", out);
+    return count;
 }
 
 void srv_config_help(FILE *out)
@@ -57,48 +56,59 @@ void srv_config_help(FILE *out)
     }
 }
 
+void srv_option_write(const srv_option *row, const srv_config *config, api_text *out)
+{
+    const void *member = member_in(config, row);
+    const char *text;
+    const srv_names *names;
+    uint64_t number;
+    bool on;
+    switch (row->kind) {
+    case SRV_TEXT:
+    case SRV_SOURCE:
+        memcpy(&text, member, sizeof text);
+        api_text_add_string(out, text);
+        break;
+    case SRV_LIST:
+        names = member;
+        for (size_t n = 0; n < names->count; n++) {
+            api_text_add_string(out, n == 0 ? "" : ",");
+            api_text_add_string(out, names->items[n]);
+        }
+        break;
+    case SRV_BYTES:
+    case SRV_COUNT:
+        memcpy(&number, member, sizeof number);
+        api_text_add_format(out, "%" PRIu64, number);
+        break;
+    case SRV_FLAG:
+        memcpy(&on, member, sizeof on);
+        api_text_add_char(out, on ? '1' : '0');
+        break;
+    case SRV_CHOICE:
+        memcpy(&number, member, sizeof number);
+        text = row->argument;
+        for (; number > 0; number--) {
+            text = strchr(text, '|') + 1;
+        }
+        api_text_add(out, text, strcspn(text, "|"));
+        break;
+    case SRV_ACTION:
+    case SRV_COMMAND:
+        break;
+    }
+}
+
 void srv_config_print(const srv_config *config, FILE *out)
 {
+    api_text text = {0};
     for (size_t i = 0; i < srv_option_count; i++) {
         const srv_option *row = &srv_options[i];
-        const void *member = member_in(config, row);
-        const char *text;
-        const srv_names *names;
-        uint64_t number;
-        bool on;
-        if (!srv_option_is_setting(row)) {
-            continue;
+        if (srv_option_is_setting(row)) {
+            api_text_empty(&text);
+            srv_option_write(row, config, &text);
+            fprintf(out, "%s = %.*s\n", row->name, (int)text.length, text.bytes);
         }
-        fprintf(out, "%s = ", row->name);
-        switch (row->kind) {
-        case SRV_TEXT:
-            memcpy(&text, member, sizeof text);
-            fputs(text, out);
-            break;
-        case SRV_LIST:
-            names = member;
-            for (size_t n = 0; n < names->count; n++) {
-                fprintf(out, "%s%s", n == 0 ? "" : ",", names->items[n]);
-            }
-            break;
-        case SRV_BYTES:
-        case SRV_COUNT:
-            memcpy(&number, member, sizeof number);
-            fprintf(out, "%" PRIu64, number);
-            break;
-        case SRV_FLAG:
-            memcpy(&on, member, sizeof on);
-            fputc(on ? '1' : '0', out);
-            break;
-        case SRV_CHOICE:
-            memcpy(&number, member, sizeof number);
-            fputs(srv_log_kinds[number], out);
-            break;
-        case SRV_ACTION:
-        case SRV_COMMAND:
-        case SRV_SOURCE:
-            break;
-        }
-        fputc('\n', out);
     }
+    api_text_clear(&text);
 }

@@ -30,7 +30,8 @@
     X("WWW-Authenticate", ", ")          \
     X("X-Accel-Buffering", ", ")         \
     X("X-Content-Type-Options", ", ")    \
-    X("X-Request-Id", "")
+    X("X-Request-Id", ", ")              \
+    X("traceparent", "")
 
 /* "Accept-Encoding, Allow, ..." */
 extern const char api_exposed_headers[];

@@ -1,5 +1,6 @@
 /* Meshes come into the store: under a free id, or in the place of one that is damaged. */
 #include "store/table.h"
+#include "system/lock.h"
 #include "system/memory.h"
 #include "system/random.h"
 
@@ -48,7 +49,7 @@ static st_status insert(st_store *store, st_mesh *mesh)
 /* A thread that finds the mesh, or the id taken, finds its first record appended. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
-    pthread_rwlock_wrlock(&store->lock);
+    st_lock_write(&store->lock);
     bool found;
     (void)st_table_place(store, mesh->info.id, &found);
     st_status status = found ? ST_TAKEN : is_full(store) ? ST_TOO_MANY : insert(store, mesh);
@@ -166,7 +167,7 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     const st_change changes[2] = {{.action = ST_REPLACE, .removed = true},
                                   {.action = ST_REPLACE, .content = fresh->content}};
     bool found;
-    pthread_rwlock_wrlock(&store->lock);
+    st_lock_write(&store->lock);
     size_t place = st_table_place(store, old->info.id, &found);
     store->meshes[place] = st_hold(fresh);
     old->info.removed = true;
@@ -200,7 +201,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         return status;
     }
     st_mesh_use(fresh);
-    pthread_rwlock_wrlock(&damaged->lock);
+    st_lock_write(&damaged->lock);
     status = damaged->info.removed ? ST_ABSENT : count_over(store, damaged, fresh);
     if (status == ST_OK) {
         publish_over(store, damaged, fresh, cause, &booking);

@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "store/stored_mesh.h"
+#include "system/lock.h"
 
 #include <stddef.h>
 
@@ -124,7 +125,7 @@ st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since,
         atomic_fetch_sub(&followers->count, 1);
         return ST_LISTENERS;
     }
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     st_mesh_facts(mesh, info);
     if (info->removed || info->lost) {
         status = info->lost ? ST_LOST : ST_ABSENT;

@@ -2,6 +2,7 @@
 
 #include "store/mesh_load.h"
 #include "store/stored_mesh.h"
+#include "system/lock.h"
 #include "system/memory.h"
 
 /* Bytes of deltas that are replayed before writers get their turn: some milliseconds. */
@@ -46,7 +47,7 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     st_status status;
     uint64_t most = TURN_BYTES;
     do {
-        pthread_rwlock_rdlock(&mesh->lock);
+        st_lock_read(&mesh->lock);
         he_status walked = HE_OK;
         status = bounds(&mesh->log, revision);
         if (status == ST_OK) {
@@ -141,7 +142,7 @@ st_status st_cursor_next(st_cursor *cursor, st_cursor_step *out)
     st_action action = ST_EDIT;
     st_step_release(cursor->held);
     cursor->held = NULL;
-    pthread_rwlock_rdlock(&cursor->mesh->lock);
+    st_lock_read(&cursor->mesh->lock);
     st_status status = advance(cursor, &action);
     pthread_rwlock_unlock(&cursor->mesh->lock);
     if (status == ST_OK) {

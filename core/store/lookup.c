@@ -3,6 +3,7 @@
 #include "store/mesh_load.h"
 #include "store/table.h"
 #include "system/clock.h"
+#include "system/lock.h"
 
 #include <string.h>
 
@@ -65,11 +66,13 @@ static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
 /* Waits until another thread's lookup has ended. ST_OK: look in the table again. */
 static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
 {
+    const uint64_t since = st_clock_micros();
     bool in_time = true;
     lookup->uses++;
     while (!lookup->ended && in_time) {
         in_time = st_clock_wait(&lookups->ended, &lookups->lock, until);
     }
+    st_lock_count(since);
     st_status status = lookup->ended ? lookup->status : ST_LOADING;
     release(lookup);
     return status;
@@ -214,7 +217,7 @@ st_status st_salvage(st_store *store, const char *id, st_mesh **out, char damage
 
 static st_status put_in(st_store *store, st_mesh *mesh)
 {
-    pthread_rwlock_wrlock(&store->lock);
+    st_lock_write(&store->lock);
     st_status status = st_table_insert(store, mesh);
     if (status == ST_OK) {
         st_hold(mesh);

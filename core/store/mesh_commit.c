@@ -3,6 +3,7 @@
 #include "store/mesh_commit.h"
 
 #include "system/clock.h"
+#include "system/lock.h"
 
 #include <assert.h>
 #include <string.h>
@@ -179,7 +180,7 @@ static st_status get_ready(st_write *w)
         status = ST_LOST;
     }
     if (w->claimed) {
-        pthread_rwlock_wrlock(&w->mesh->lock);
+        st_lock_write(&w->mesh->lock);
         const st_mesh_info *info = &w->mesh->info;
         if (status == ST_OK && (info->removed || info->lost)) {
             status = info->lost ? ST_LOST : ST_ABSENT;

@@ -2,6 +2,7 @@
 #include "store/mesh_commit.h"
 
 #include "store/table.h"
+#include "system/lock.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -47,7 +48,7 @@ st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
     /* What is only kept for later makes room for what is done now. */
     st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
-    pthread_rwlock_wrlock(&mesh->lock);
+    st_lock_write(&mesh->lock);
     st_status status = begin(out);
     if (status != ST_OK) {
         pthread_rwlock_unlock(&mesh->lock);
@@ -59,7 +60,7 @@ st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause), .claimed = true};
-    pthread_rwlock_wrlock(&mesh->lock);
+    st_lock_write(&mesh->lock);
     st_status status = begin(out);
     if (status == ST_OK) {
         mesh->claimed = true;
@@ -74,7 +75,7 @@ st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out)
 
 void st_claimed_by(st_mesh *mesh, const char *id)
 {
-    pthread_rwlock_wrlock(&mesh->lock);
+    st_lock_write(&mesh->lock);
     if (mesh->claimed) {
         snprintf(mesh->info.job, sizeof mesh->info.job, "%s", id);
     }
@@ -339,7 +340,7 @@ void st_write_give_up(st_write *w)
 void st_write_abort(st_write *w)
 {
     if (w->claimed) {
-        pthread_rwlock_wrlock(&w->mesh->lock);
+        st_lock_write(&w->mesh->lock);
     }
     st_write_give_up(w);
 }

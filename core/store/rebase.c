@@ -12,6 +12,7 @@
  * ends the history, such as a PUT: that is the base itself. One that waits is dropped when its mesh
  * leaves memory. */
 #include "store/table.h"
+#include "system/lock.h"
 
 #include <string.h>
 
@@ -94,14 +95,14 @@ static void take(void *context)
     st_next_base *next = mesh->next_base;
     st_snapshot *snapshot = NULL;
     st_stage *stage = NULL;
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     st_status status = begin(mesh, &snapshot);
     pthread_rwlock_unlock(&mesh->lock);
     if (status == ST_OK) {
         status = journal->stage(journal->self, st_snapshot_content(snapshot, NULL), &stage);
         st_snapshot_release(snapshot);
     }
-    pthread_rwlock_wrlock(&mesh->lock);
+    st_lock_write(&mesh->lock);
     next->taking = false;
     if (status == ST_OK) {
         next->stage = stage;

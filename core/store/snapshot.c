@@ -3,6 +3,7 @@
 #include "store/history_cursor.h"
 #include "store/mesh_load.h"
 #include "store/table.h"
+#include "system/lock.h"
 #include "system/memory.h"
 
 /* What one caller holds: a copy that many may share, and the facts as they were when it asked. */
@@ -79,7 +80,7 @@ st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out)
     if (snapshot == NULL) {
         return ST_NO_MEMORY;
     }
-    pthread_mutex_lock(&mesh->snapshot_lock);
+    st_lock_mutex(&mesh->snapshot_lock);
     snapshot->copy = present_copy(mesh);
     if (snapshot->copy != NULL) {
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
@@ -96,7 +97,7 @@ st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out)
 
 st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
 {
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     st_status status = st_snapshot_held(mesh, out);
     pthread_rwlock_unlock(&mesh->lock);
     return status;
@@ -125,7 +126,7 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
 {
     const st_copy *copy = mesh->past;
     st_point point;
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     st_status status = revision > st_log_head(&mesh->log) ? ST_AHEAD
                        : revision < mesh->log.oldest      ? ST_GONE
                                                           : ST_OK;
@@ -197,7 +198,7 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     if (snapshot == NULL) {
         return ST_NO_MEMORY;
     }
-    pthread_mutex_lock(&mesh->past_lock);
+    st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
         /* The facts of now, but for the revision and its time. */
@@ -243,7 +244,7 @@ static void shed(st_copy **copy)
 
 void st_copy_shed(st_mesh *mesh)
 {
-    pthread_mutex_lock(&mesh->snapshot_lock);
+    st_lock_mutex(&mesh->snapshot_lock);
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);

@@ -4,6 +4,7 @@
 #include "store/limits.h"
 #include "store/table.h"
 #include "system/clock.h"
+#include "system/lock.h"
 
 #include <assert.h>
 #include <string.h>
@@ -126,7 +127,7 @@ size_t st_table_place(const st_store *store, const char *id, bool *found)
 st_status st_find(st_store *store, const char *id, st_mesh **out)
 {
     bool found;
-    pthread_rwlock_rdlock(&store->lock);
+    st_lock_read(&store->lock);
     size_t i = st_table_place(store, id, &found);
     if (found) {
         *out = st_hold(store->meshes[i]);
@@ -188,7 +189,7 @@ void st_store_unstage(const st_store *store, st_stage *stage)
 void st_store_take_out(st_store *store, st_mesh *mesh)
 {
     bool found;
-    pthread_rwlock_wrlock(&store->lock);
+    st_lock_write(&store->lock);
     size_t place = st_table_place(store, mesh->info.id, &found);
     assert(found && store->meshes[place] == mesh);
     store->count--;
@@ -202,7 +203,7 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
 {
     bool found;
     size_t given = 0;
-    pthread_rwlock_rdlock(&store->lock);
+    st_lock_read(&store->lock);
     size_t i = st_table_place(store, after, &found);
     for (i += found ? 1 : 0; i < store->count && given < limit; i++) {
         out[given++] = st_hold(store->meshes[i]);
@@ -308,7 +309,7 @@ uint64_t st_store_count(st_store *store)
     if (store->journal.keeps) {
         return store->journal.count(store->journal.self);
     }
-    pthread_rwlock_rdlock(&store->lock);
+    st_lock_read(&store->lock);
     size_t count = store->count;
     pthread_rwlock_unlock(&store->lock);
     return count;

@@ -1,5 +1,6 @@
 #include "store/stored_mesh.h"
 #include "system/clock.h"
+#include "system/lock.h"
 #include "system/random.h"
 
 #include <string.h>
@@ -243,11 +244,11 @@ static bool is_lost(const st_mesh_info *info, const st_loss *loss)
 
 void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
 {
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     bool found = is_lost(&mesh->info, loss);
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
-        pthread_rwlock_wrlock(&mesh->lock);
+        st_lock_write(&mesh->lock);
         /* Asked again: it may have been removed meanwhile, which is lost too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
@@ -260,7 +261,7 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
 
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info)
 {
-    pthread_rwlock_rdlock(&mesh->lock);
+    st_lock_read(&mesh->lock);
     if (info != NULL) {
         st_mesh_facts(mesh, info);
     }
@@ -348,8 +349,10 @@ void st_derived_end(st_mesh *mesh, st_derived_kind kind)
 
 void st_derived_wait(st_mesh *mesh, st_derived_kind kind)
 {
+    const uint64_t since = st_clock_micros();
     (void)st_clock_wait(&mesh->derived[kind].ended, &mesh->derived[kind].lock,
-                        st_clock_micros() + ST_DERIVED_MILLIS * 1000);
+                        since + ST_DERIVED_MILLIS * 1000);
+    st_lock_count(since);
 }
 
 const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision)

@@ -4,28 +4,64 @@
 #include "server/boot/reload.h"
 #include "server/boot/resources.h"
 #include "server/boot/signals.h"
+#include "server/boot/start.h"
 #include "server/boot/watch.h"
 #include "server/net/notify.h"
 
 #include <time.h>
 #include <unistd.h>
 
-enum { STOP_MILLIS = 4000 /* of the five seconds a stop may take */ };
+enum {
+    LOG_RING = 8192,
+    STOP_MILLIS = 4000 /* of the five seconds a stop may take */
+};
 
 /* The main thread serves nobody, and keeps house until it is told to stop. */
-static void wait_for_stop(srv_parts *parts, const sigset_t *signals)
+static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *reason)
 {
     const struct timespec second = {.tv_sec = 1};
     srv_watch watch = {.health.status = ST_OK};
+    char message[320];
     int number;
     do {
         srv_watch_look(&watch, parts);
-        number = sigtimedwait(signals, NULL, &second);
+        number = sigtimedwait(signals, reason, &second);
         if (number == SIGHUP) {
-            srv_reload_told(parts);
+            srv_log_tell(parts->log, SRV_LEVEL_DEBUG, "SIGHUP from process %ld",
+                         (long)reason->si_pid);
+            (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
     srv_watch_look(&watch, parts); /* a disk that failed in the last second is told too */
+}
+
+static void tell_stop(srv_log *log, const char *reason)
+{
+    srv_line line;
+    srv_log_begin(log, &line, SRV_LEVEL_INFO, "hedged stops");
+    srv_line_text(&line, "reason", reason);
+    srv_log_end(log, &line);
+}
+
+/* False when work did not end: then nothing that it may use can be freed. */
+static bool stop(srv_parts *parts, const siginfo_t *reason)
+{
+    char text[64];
+    snprintf(text, sizeof text, "%s from process %ld",
+             reason->si_signo == SIGINT ? "SIGINT" : "SIGTERM", (long)reason->si_pid);
+    tell_stop(parts->log, text);
+    srv_notify("STOPPING=1\nSTATUS=stopping");
+    atomic_store(&parts->ready, false);
+    api_job_table_stop(parts->job_table);
+    if (srv_http_stop(parts->http, STOP_MILLIS)) {
+        return true;
+    }
+    srv_log_tell(parts->log, SRV_LEVEL_ERROR, "work that did not end within %d s was given up%s",
+                 STOP_MILLIS / 1000,
+                 srv_config_folder(parts->config) == NULL
+                     ? ""
+                     : "; every change that was answered is on the disk");
+    return false;
 }
 
 static void close_parts(srv_parts *parts)
@@ -37,37 +73,43 @@ static void close_parts(srv_parts *parts)
     api_service_free(parts->service);
     st_store_free(parts->store);
     srv_assets_free(parts->assets);
-    srv_access_log_free(parts->log);
     api_tokens_free(parts->tokens);
 }
 
-int srv_daemon_run(const srv_config *config)
+int srv_daemon_run(const srv_started *started)
 {
-    srv_parts parts = {.config = config};
+    const srv_log_settings settings = srv_start_log_settings(started->config);
+    srv_parts parts = {.started = started, .config = started->config};
     sigset_t signals;
     srv_signals_begin(&signals);
-    srv_choose_budget(config);
+    parts.log = srv_log_new(STDERR_FILENO, LOG_RING, &settings);
+    if (parts.log == NULL) {
+        srv_line_write(STDERR_FILENO, settings.json, SRV_LEVEL_ERROR,
+                       "no memory or threads to start");
+        return 1;
+    }
+    srv_start_tell(parts.log, started->config, started->environment);
+    srv_choose_budget(parts.log, started->config);
 
-    bool started = srv_open_tokens(&parts) && srv_open_store(&parts) && srv_open_service(&parts) &&
-                   srv_open_http(&parts);
-    if (started) {
-        srv_notify("READY=1");
-        wait_for_stop(&parts, &signals);
-        srv_notify("STOPPING=1");
-        atomic_store(&parts.ready, false);
-        api_job_table_stop(parts.job_table);
-        if (!srv_http_stop(parts.http, STOP_MILLIS)) {
+    bool open = srv_open_tokens(&parts) && srv_open_store(&parts) && srv_open_service(&parts) &&
+                srv_open_http(&parts);
+    if (open) {
+        char text[SRV_ADDRESS_TEXT + 32];
+        siginfo_t reason;
+        snprintf(text, sizeof text, "READY=1\nSTATUS=listening on %s", parts.address);
+        srv_notify(text);
+        wait_for_stop(&parts, &signals, &reason);
+        if (!stop(&parts, &reason)) {
             /* It is in the middle of its work, on memory that must stay. The journal is left as by
              * a kill, which it is made for. */
-            fprintf(stderr, "hedged: work that did not end within %d s was given up%s\n",
-                    STOP_MILLIS / 1000,
-                    srv_config_folder(config) == NULL
-                        ? ""
-                        : "; every change that was answered is on the disk");
-            srv_access_log_free(parts.log);
+            srv_log_free(parts.log);
             _exit(1);
         }
+    } else {
+        tell_stop(parts.log, "it could not start");
     }
     close_parts(&parts);
-    return started ? 0 : 1;
+    srv_log_tell(parts.log, SRV_LEVEL_INFO, "hedged has stopped");
+    srv_log_free(parts.log);
+    return open ? 0 : 1;
 }

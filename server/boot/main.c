@@ -1,4 +1,5 @@
 #include "server/boot/daemon.h"
+#include "server/boot/start.h"
 #include "server/config.h"
 #include "server/maintenance.h"
 #include "server/net/healthcheck.h"
@@ -19,7 +20,7 @@ int main(int argc, char **argv, char **environment)
     int status = 0;
     st_memory_install(0);
     if (!srv_config_read(&config, argc - 1, argv + 1, getenv, message, sizeof message)) {
-        fprintf(stderr, "hedged: %s\n", message);
+        srv_line_write(STDERR_FILENO, srv_start_is_json(&config), SRV_LEVEL_ERROR, message);
         return MISUSE;
     }
     if (config.help) {
@@ -40,8 +41,8 @@ int main(int argc, char **argv, char **environment)
     } else if (srv_maintenance_asked(&config)) {
         status = srv_maintenance_run(&config);
     } else {
-        srv_config_tell_unknown(environment, stderr);
-        status = srv_daemon_run(&config);
+        status = srv_daemon_run(&(srv_started){
+            .config = &config, .argc = argc - 1, .argv = argv + 1, .environment = environment});
     }
     srv_config_clear(&config);
     return status;

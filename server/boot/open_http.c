@@ -24,15 +24,16 @@ static void tell_ready(const srv_parts *parts)
 {
     char port[SRV_ADDRESS_TEXT];
     const char *text = parts->address;
-    fprintf(stderr, "hedged " SRV_VERSION ": listening on http://%s\n", text);
-    if (isatty(STDERR_FILENO) == 0) {
+    srv_log_plain(parts->log, "hedged " SRV_VERSION ": listening on http://%s", text);
+    if (srv_log_get(parts->log).json || isatty(STDERR_FILENO) == 0) {
         return;
     }
     if (strcmp(parts->own_host, "0.0.0.0") == 0 || strcmp(parts->own_host, "::") == 0) {
         snprintf(port, sizeof port, "localhost:%u", srv_http_port(parts->http));
         text = port;
     }
-    fprintf(stderr, "hedge is at http://%s/ - open it in a browser; Ctrl-C stops it\n", text);
+    srv_log_plain(parts->log, "hedge is at http://%s/ - open it in a browser; Ctrl-C stops it",
+                  text);
 }
 
 bool srv_open_http(srv_parts *parts)
@@ -50,7 +51,7 @@ bool srv_open_http(srv_parts *parts)
         .heartbeat_micros = parts->config->heartbeat * 1000000,
     };
     if (!srv_address_parse(parts->config->listen, &options.address)) {
-        return srv_open_failed("no address to listen on");
+        return srv_open_failed(parts, "no address to listen on");
     }
     parts->policy = parts->config->policy;
     allow_own_host(parts, &options.address);
@@ -58,7 +59,7 @@ bool srv_open_http(srv_parts *parts)
     atomic_store(&parts->ready, true);
     parts->http = srv_http_start(&options, message, sizeof message);
     if (parts->http == NULL) {
-        return srv_open_failed(message);
+        return srv_open_failed(parts, message);
     }
     srv_address_set_port(&options.address, srv_http_port(parts->http));
     srv_address_format(&options.address.socket.any, true, parts->address);

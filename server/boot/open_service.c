@@ -2,13 +2,11 @@
 
 #include "api/describe/routes.h"
 #include "server/boot/reload.h"
+#include "server/tokens.h"
 #include "server/version.h"
 #include "system/memory.h"
 
 #include <limits.h>
-#include <unistd.h>
-
-enum { LOG_RING = 8192 };
 
 static bool is_ready(void *context)
 {
@@ -22,10 +20,10 @@ static bool load_page(srv_parts *parts)
     bool found = srv_assets_folder(parts->config->web, folder, sizeof folder);
     parts->assets = srv_assets_load(found ? folder : NULL, message, sizeof message);
     if (parts->assets == NULL) {
-        return srv_open_failed("no memory for the page");
+        return srv_open_failed(parts, "no memory for the page");
     }
     /* Asked for by name, the page must be there; otherwise serving without it is fine. */
-    return message[0] == '\0' || parts->config->web[0] == '\0' || srv_open_failed(message);
+    return message[0] == '\0' || parts->config->web[0] == '\0' || srv_open_failed(parts, message);
 }
 
 static void count_memory(uint64_t *used, uint64_t *budget)
@@ -42,10 +40,11 @@ bool srv_open_tokens(srv_parts *parts)
     }
     parts->tokens = api_tokens_new();
     if (parts->tokens == NULL) {
-        return srv_open_failed("no memory to start");
+        return srv_open_failed(parts, "no memory to start");
     }
     api_tokens_limit(parts->tokens, &parts->config->token_limits);
-    return srv_reload(parts, message, sizeof message) || srv_open_failed(message);
+    return srv_tokens_read(parts->tokens, parts->config->tokens, message, sizeof message) ||
+           srv_open_failed(parts, message);
 }
 
 static bool submit_job(void *pool, const st_task *task)
@@ -58,7 +57,7 @@ static bool open_service(srv_parts *parts)
     parts->job_table = api_job_table_new(&(api_job_table_options){
         .store = parts->store, .submit = submit_job, .pool = parts->pool, .keep = API_JOB_SECONDS});
     if (parts->job_table == NULL) {
-        return srv_open_failed("no memory to start");
+        return srv_open_failed(parts, "no memory to start");
     }
     parts->backups.folder = srv_config_folder(parts->config);
     parts->service =
@@ -83,13 +82,7 @@ static bool open_service(srv_parts *parts)
                             .plain_answers = parts->config->no_compression,
                             .exec = st_parallel_exec(parts->parallel),
                         });
-    bool logs = parts->config->log == SRV_LOG_ACCESS ||
-                (parts->config->log == SRV_LOG_AUTO && isatty(STDERR_FILENO) == 0);
-    if (logs) {
-        parts->log = srv_access_log_new(STDERR_FILENO, LOG_RING);
-    }
-    return (parts->service != NULL && (parts->log != NULL || !logs)) ||
-           srv_open_failed("no memory or threads to start");
+    return parts->service != NULL || srv_open_failed(parts, "no memory or threads to start");
 }
 
 bool srv_open_service(srv_parts *parts)

@@ -11,9 +11,9 @@ enum {
     MAKER_QUEUE = 1024 /* pieces of answers; beyond it workers make them */
 };
 
-bool srv_open_failed(const char *why)
+bool srv_open_failed(const srv_parts *parts, const char *why)
 {
-    fprintf(stderr, "hedged: %s\n", why);
+    srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s", why);
     return false;
 }
 
@@ -27,13 +27,13 @@ static bool open_threads(srv_parts *parts)
     parts->makers = st_pool_new("hedged-answers", srv_cores(), MAKER_QUEUE);
     parts->parallel = st_parallel_new(srv_cores() - 1);
     return (parts->pool != NULL && parts->makers != NULL && parts->parallel != NULL) ||
-           srv_open_failed("no memory or threads to start");
+           srv_open_failed(parts, "no memory or threads to start");
 }
 
 /* *made: the store is new, so that samples may be put into it. */
-static bool open_journal(const srv_config *config, st_journal *out, bool *made)
+static bool open_journal(const srv_parts *parts, st_journal *out, bool *made)
 {
-    const char *folder = srv_config_folder(config);
+    const char *folder = srv_config_folder(parts->config);
     st_sqlite_opened opened;
     if (folder == NULL) {
         *out = st_journal_memory();
@@ -41,10 +41,11 @@ static bool open_journal(const srv_config *config, st_journal *out, bool *made)
         return true;
     }
     if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = SRV_VERSION}, &opened)) {
-        return srv_open_failed(opened.message);
+        return srv_open_failed(parts, opened.message);
     }
-    fprintf(stderr, "hedged: meshes are kept in %s%s%s\n", folder,
-            opened.message[0] == '\0' ? "" : "; ", opened.message);
+    const bool doubtful = opened.message[0] != '\0';
+    srv_log_tell(parts->log, doubtful ? SRV_LEVEL_WARNING : SRV_LEVEL_INFO,
+                 "meshes are kept in %s%s%s", folder, doubtful ? "; " : "", opened.message);
     *out = opened.journal;
     *made = opened.made;
     return true;
@@ -54,7 +55,7 @@ static bool open_store(srv_parts *parts)
 {
     st_journal journal;
     bool made = false;
-    if (!open_journal(parts->config, &journal, &made)) {
+    if (!open_journal(parts, &journal, &made)) {
         return false;
     }
     parts->store = st_store_new(&(st_store_options){
@@ -68,11 +69,11 @@ static bool open_store(srv_parts *parts)
     });
     if (parts->store == NULL) {
         journal.close(journal.self);
-        return srv_open_failed("no memory to start");
+        return srv_open_failed(parts, "no memory to start");
     }
     he_error err;
     if (parts->config->samples && made && srv_samples_add(parts->store, &err) != HE_OK) {
-        return srv_open_failed(err.text);
+        return srv_open_failed(parts, err.text);
     }
     if (made && journal.keeps) {
         journal.begun(journal.self);

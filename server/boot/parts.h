@@ -8,15 +8,17 @@
 #include "api/job/job_table.h"
 #include "server/assets.h"
 #include "server/backup.h"
-#include "server/config.h"
+#include "server/boot/daemon.h"
 #include "server/http/http.h"
 #include "system/parallel.h"
 
 #include <stdatomic.h>
 
 typedef struct srv_parts {
-    const srv_config *config;
-    st_pool *pool, *makers; /* for long work, and for answers that are made while they are sent */
+    const srv_started *started;
+    const srv_config *config; /* of `started` */
+    srv_log *log;             /* opened first, closed last */
+    st_pool *pool, *makers;   /* for long work, and for answers that are made while they are sent */
     st_parallel *parallel;
     st_store *store;
     srv_assets *assets;
@@ -24,7 +26,6 @@ typedef struct srv_parts {
     api_job_table *job_table;
     srv_backups backups;
     api_service *service;
-    srv_access_log *log; /* NULL: requests are not logged */
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
     srv_http *http;
@@ -32,14 +33,14 @@ typedef struct srv_parts {
     _Atomic bool ready;             /* what /readyz answers */
 } srv_parts;
 
-/* Each opens its parts from `parts->config`. False, with a line on stderr that says why, when one
+/* Each opens its parts from `parts->config`. False, with a line in the log that says why, when one
  * cannot be opened; what was opened stays in `parts`, to be closed by daemon.c. */
 bool srv_open_tokens(srv_parts *parts);  /* from their file, if there is one */
 bool srv_open_store(srv_parts *parts);   /* thread pools, journal, store, samples */
-bool srv_open_service(srv_parts *parts); /* page, jobs, service, access log */
+bool srv_open_service(srv_parts *parts); /* page, jobs, service */
 bool srv_open_http(srv_parts *parts);    /* the address; tells that the daemon is ready */
 
-/* Prints `why` on stderr and returns false. */
-bool srv_open_failed(const char *why);
+/* Tells the log `why`, and returns false. */
+bool srv_open_failed(const srv_parts *parts, const char *why);
 
 #endif

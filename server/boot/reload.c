@@ -1,7 +1,15 @@
 #include "server/boot/reload.h"
 
 #include "server/boot/parts.h"
+#include "server/boot/start.h"
+#include "server/config_option.h"
+#include "server/net/notify.h"
 #include "server/tokens.h"
+#include "system/clock.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
 
 static bool reload_tokens(srv_parts *parts, char *message, size_t size)
 {
@@ -11,37 +19,102 @@ static bool reload_tokens(srv_parts *parts, char *message, size_t size)
     if (!srv_tokens_read(parts->tokens, parts->config->tokens, message, size)) {
         return false;
     }
-    /* At the start there is no service yet, which applies them when it is made. */
-    const bool applied = parts->service == NULL || api_service_apply_quotas(parts->service);
-    if (!applied) {
+    if (parts->service != NULL && !api_service_apply_quotas(parts->service)) {
         snprintf(message, size, "no memory for the quotas of the tokens");
+        return false;
     }
-    return applied;
+    srv_log_tell(parts->log, SRV_LEVEL_INFO, "%zu tokens are in force, read again from %s",
+                 api_tokens_count(parts->tokens), parts->config->tokens);
+    return true;
+}
+
+/* The settings that a running daemon can change. */
+static bool is_reloaded(const srv_option *row)
+{
+    static const char *const names[] = {"log", "log-format", "log-level", "slow"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        found = found || strcmp(names[i], row->name) == 0;
+    }
+    return found;
+}
+
+static bool differs(const srv_option *row, const srv_config *one, const srv_config *other)
+{
+    api_text a = {0}, b = {0};
+    srv_option_write(row, one, &a);
+    srv_option_write(row, other, &b);
+    const bool differ =
+        a.length != b.length || (a.length > 0 && memcmp(a.bytes, b.bytes, a.length) != 0);
+    api_text_clear(&a);
+    api_text_clear(&b);
+    return differ;
+}
+
+/* Only a file can have changed since the start, but what flags and variables say still weighs
+ * more. */
+static bool reload_settings(srv_parts *parts, char *message, size_t size)
+{
+    const srv_started *started = parts->started;
+    const char *file = parts->config->config;
+    srv_config fresh;
+    if (file[0] == '\0') {
+        return true;
+    }
+    if (!srv_config_read(&fresh, started->argc, started->argv, getenv, message, size)) {
+        return false;
+    }
+    for (size_t i = 0; i < srv_option_count; i++) {
+        const srv_option *row = &srv_options[i];
+        if (srv_option_is_setting(row) && !is_reloaded(row) &&
+            differs(row, parts->config, &fresh)) {
+            srv_log_tell(parts->log, SRV_LEVEL_WARNING,
+                         "%s has another %s than hedged was started with: that takes a restart",
+                         file, row->name);
+        }
+    }
+    const srv_log_settings settings = srv_start_log_settings(&fresh);
+    srv_log_set(parts->log, &settings);
+    srv_log_tell(parts->log, SRV_LEVEL_INFO, "the settings of the log are read again from %s",
+                 file);
+    srv_config_clear(&fresh);
+    return true;
 }
 
 /* What is read again, in this order. */
 static bool (*const reloads[])(srv_parts *parts, char *message, size_t size) = {
+    reload_settings,
     reload_tokens,
 };
 
-bool srv_reload(void *context, char *message, size_t size)
+/* systemd wants to know when it began, so that it can tell this reload from one before. */
+static void tell_systemd_begun(void)
 {
-    char later[320]; /* messages of failures after the first, which is the one that is told */
-    bool ok = true;
-    for (size_t i = 0; i < sizeof reloads / sizeof *reloads; i++) {
-        ok = reloads[i](context, ok ? message : later, ok ? size : sizeof later) && ok;
-    }
-    return ok;
+    char text[64];
+    snprintf(text, sizeof text, "RELOADING=1\nMONOTONIC_USEC=%" PRIu64, st_clock_micros());
+    srv_notify(text);
 }
 
-void srv_reload_told(void *context)
+bool srv_reload(void *context, char *message, size_t size)
 {
-    const srv_parts *parts = context;
-    char message[320];
-    if (!srv_reload(context, message, sizeof message)) {
-        fprintf(stderr, "hedged: %s; those before stay in force\n", message);
-    } else if (parts->tokens != NULL) {
-        fprintf(stderr, "hedged: %zu tokens are in force, read again from %s\n",
-                api_tokens_count(parts->tokens), parts->config->tokens);
+    srv_parts *parts = context;
+    char why[320], state[512];
+    bool ok = true;
+    tell_systemd_begun();
+    for (size_t i = 0; i < sizeof reloads / sizeof *reloads; i++) {
+        if (!reloads[i](parts, why, sizeof why)) {
+            srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; what was in force before still is", why);
+            if (ok) { /* the first is told */
+                snprintf(message, size, "%s", why);
+            }
+            ok = false;
+        }
     }
+    if (ok) {
+        snprintf(state, sizeof state, "READY=1\nSTATUS=listening on %s", parts->address);
+    } else {
+        snprintf(state, sizeof state, "READY=1\nSTATUS=not reloaded: %s", why);
+    }
+    srv_notify(state);
+    return ok;
 }

@@ -57,26 +57,27 @@ void srv_choose_connections(const srv_config *config, srv_http_options *options)
     options->workers = config->workers == 0 ? srv_cores() : (size_t)config->workers;
 }
 
-void srv_choose_budget(const srv_config *config)
+void srv_choose_budget(srv_log *log, const srv_config *config)
 {
     const uint64_t mib = UINT64_C(1) << 20;
     const st_memory_limit limit = st_memory_limit_find("", st_memory_limit_machine());
     uint64_t budget = config->memory_budget;
     if (budget == 0 && limit.bytes == UINT64_MAX) {
-        fprintf(stderr, "hedged: no memory budget: the system does not say what the machine has\n");
+        srv_log_tell(log, SRV_LEVEL_WARNING,
+                     "no memory budget: the system does not say what the machine has");
     } else if (budget == 0) {
         budget = limit.bytes / 4 * 3;
-        fprintf(stderr,
-                "hedged: memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
-                " MiB that %s allows\n",
-                budget / mib, limit.bytes / mib, limit.source);
+        srv_log_tell(log, SRV_LEVEL_INFO,
+                     "memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
+                     " MiB that %s allows",
+                     budget / mib, limit.bytes / mib, limit.source);
     } else if (budget > limit.bytes) {
-        fprintf(stderr,
-                "hedged: memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
-                " MiB that %s allows: the kernel may end the daemon before it is used up\n",
-                budget / mib, limit.bytes / mib, limit.source);
+        srv_log_tell(log, SRV_LEVEL_WARNING,
+                     "memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
+                     " MiB that %s allows: the kernel may end the daemon before it is used up",
+                     budget / mib, limit.bytes / mib, limit.source);
     } else {
-        fprintf(stderr, "hedged: memory budget %" PRIu64 " MiB as told\n", budget / mib);
+        srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB as told", budget / mib);
     }
     st_memory_set_budget(budget);
 }

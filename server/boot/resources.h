@@ -11,7 +11,7 @@ size_t srv_cores(void); /* one at least */
  * this process may have, whose limit is raised to the most that the system allows. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options);
 
-/* Puts the memory budget in force and says on stderr what it is and why. */
-void srv_choose_budget(const srv_config *config);
+/* Puts the memory budget in force and tells the log what it is and why. */
+void srv_choose_budget(srv_log *log, const srv_config *config);
 
 #endif

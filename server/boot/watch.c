@@ -15,24 +15,26 @@ static uint64_t processor_micros(void)
 
 /* A line when the disk is found full, when it has space again, and when it failed. What began and
  * ended between two looks is told all the same; what ended and began again is not. */
-static void tell_health(const st_health *before, const st_health *now, const char *folder)
+static void tell_health(srv_log *log, const st_health *before, const st_health *now,
+                        const char *folder)
 {
     const bool was_full = before->status == ST_FULL;
     const bool found_full = !was_full && now->fulls != before->fulls;
     if (found_full) {
-        fprintf(stderr,
-                "hedged: the disk of %s is full: changes are refused, reads and DELETE go on. Make "
-                "space there, or delete meshes\n",
-                folder);
+        srv_log_tell(log, SRV_LEVEL_ERROR,
+                     "the disk of %s is full: changes are refused, reads and DELETE go on. Make "
+                     "space there, or delete meshes",
+                     folder);
     }
     if ((was_full || found_full) && now->status == ST_OK) {
-        fprintf(stderr, "hedged: the disk of %s has space again: changes are taken\n", folder);
+        srv_log_tell(log, SRV_LEVEL_INFO, "the disk of %s has space again: changes are taken",
+                     folder);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {
-        fprintf(stderr,
-                "hedged: the disk of %s failed%s%s: reads go on, no change is taken any more. Look "
-                "at the disk and start hedged again: what was acknowledged is there\n",
-                folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
+        srv_log_tell(log, SRV_LEVEL_ERROR,
+                     "the disk of %s failed%s%s: reads go on, no change is taken any more. Look at "
+                     "the disk and start hedged again: what was acknowledged is there",
+                     folder, now->reason[0] == '\0' ? "" : ", ", now->reason);
     }
 }
 
@@ -48,7 +50,7 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
     if (srv_healthcheck(NULL, parts->address, message, sizeof message)) {
         srv_notify("WATCHDOG=1");
     } else {
-        fprintf(stderr, "hedged: asked itself for /livez, and %s\n", message);
+        srv_log_tell(parts->log, SRV_LEVEL_WARNING, "asked itself for /livez, and %s", message);
     }
 }
 
@@ -59,5 +61,5 @@ void srv_watch_look(srv_watch *watch, const srv_parts *parts)
     st_memory_rests(&watch->rest, processor_micros());
     st_store_rest(parts->store);
     st_store_health(parts->store, &watch->health);
-    tell_health(&before, &watch->health, srv_config_folder(parts->config));
+    tell_health(parts->log, &before, &watch->health, srv_config_folder(parts->config));
 }

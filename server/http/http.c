@@ -159,6 +159,7 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     http->options = *options;
     srv_gate_init(&http->gate);
     srv_ids_init(&http->ids);
+    srv_spans_init(&http->spans);
     http->deadlines = srv_deadlines_new(&options->deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
     /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
@@ -212,4 +213,9 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     MHD_stop_daemon(http->daemon);
     http_free(http);
     return true;
+}
+
+const char *srv_http_library(void)
+{
+    return MHD_get_version();
 }

@@ -10,7 +10,7 @@
 #include "api/request/api.h"
 #include "server/http/http_deadline.h"
 #include "server/http/http_policy.h"
-#include "server/net/access_log.h"
+#include "server/log/log.h"
 #include "server/net/address.h"
 #include "store/store.h"
 #include "system/thread_pool.h"
@@ -23,8 +23,8 @@ typedef struct srv_http_options {
     api_service *service;
     st_store *store;
     st_pool *pool;
-    st_pool *makers;     /* for answers that are made while they are sent: http_ahead.h */
-    srv_access_log *log; /* NULL: none */
+    st_pool *makers; /* for answers that are made while they are sent: http_ahead.h */
+    srv_log *log;    /* NULL: none */
     const srv_policy *policy;
     srv_deadline_options deadlines;
     size_t max_sockets; /* above deadlines.max_connections: those between are answered 503 */
@@ -41,5 +41,8 @@ unsigned srv_http_port(const srv_http *http);
  * `millis`. True when all has ended and the server is freed; false when work still runs: then
  * nothing it may use can be freed, and the process should exit. */
 bool srv_http_stop(srv_http *http, unsigned millis);
+
+/* The version of libmicrohttpd that the process was given; static. */
+const char *srv_http_library(void);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "server/http/http_framing.h"
 #include "server/http/http_policy.h"
-#include "server/net/access_log.h"
+#include "server/log/access.h"
 #include "server/net/address.h"
 
 #include <stdatomic.h>

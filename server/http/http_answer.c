@@ -57,7 +57,10 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     srv_request *r = context;
     widen_after(r, position);
     const api_answer *answer = api_answer_of(r->exchange);
-    return pulled(r, answer->read(answer->context, buffer, size));
+    srv_timing_enter(&r->timing, SRV_PART_WORK);
+    const int64_t got = answer->read(answer->context, buffer, size);
+    srv_timing_enter(&r->timing, SRV_PART_SEND);
+    return pulled(r, got);
 }
 
 static void resume_ahead(srv_ahead *ahead)
@@ -66,21 +69,33 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
+/* By the thread that makes a piece ahead, while the request is suspended. */
+static int64_t read_ahead(void *context, char *buffer, size_t size)
+{
+    srv_request *r = context;
+    const api_answer *answer = api_answer_of(r->exchange);
+    srv_timing_enter(&r->timing, SRV_PART_WORK);
+    const int64_t got = answer->read(answer->context, buffer, size);
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE);
+    return got;
+}
+
 /* Takes what another thread makes. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
     srv_request *r = context;
     widen_after(r, position);
-    const api_answer *answer = api_answer_of(r->exchange);
     srv_request_resumed(r);
-    r->ahead.read = answer->read;
-    r->ahead.context = answer->context;
+    r->ahead.read = read_ahead;
+    r->ahead.context = r;
     r->ahead.resume = resume_ahead;
     int64_t got = srv_ahead_take(&r->ahead, buffer, size);
     if (got == SRV_AHEAD_WAIT && srv_request_suspend(r)) {
+        srv_timing_enter(&r->timing, SRV_PART_QUEUE);
         srv_ahead_make(&r->ahead, r->http->options.makers);
         return 0;
     }
+    srv_timing_enter(&r->timing, SRV_PART_SEND);
     return pulled(r, got);
 }
 
@@ -139,6 +154,9 @@ static void describe(srv_request *r, srv_wire *wire)
     }
     if (r->client.told_name) {
         srv_wire_add(wire, "Strict-Transport-Security", "max-age=31536000");
+    }
+    if (r->trace.answered[0] != '\0') {
+        srv_wire_add(wire, "traceparent", r->trace.answered);
     }
     if (r->cors != NULL) {
         srv_wire_cors(wire, r->cors, r->preflight);
@@ -225,6 +243,7 @@ bool srv_answer_send(srv_request *r)
             api_charge(r->exchange, r->bytes_out);
         }
     }
+    srv_timing_enter(&r->timing, SRV_PART_SEND);
     enum MHD_Result queued = MHD_queue_response(r->connection, (unsigned)wire.status, response);
     MHD_destroy_response(response);
     return queued == MHD_YES;

@@ -9,6 +9,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     SWALLOW = 256 * 1024, /* of a refused body, rather than close the connection */
@@ -37,6 +38,7 @@ static bool begin_wait(srv_request *r, srv_state why)
 /* The worker serves its other connections before it comes back to this one. */
 static bool give_way(srv_request *r)
 {
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     if (!begin_wait(r, r->state)) {
         return false;
     }
@@ -52,6 +54,7 @@ static bool answer_when_durable(srv_request *r)
     if (answer == NULL || st_waits_is_durable(waits, &answer->shown)) {
         return srv_answer_send(r);
     }
+    srv_timing_enter(&r->timing, SRV_PART_STORE);
     r->hold = (st_wait){.shown = answer->shown, .resume = resume_held};
     if (!begin_wait(r, SRV_HELD)) {
         return false;
@@ -64,6 +67,7 @@ static bool answer_when_durable(srv_request *r)
 
 static bool answer_held(srv_request *r)
 {
+    srv_timing_enter(&r->timing, SRV_PART_WORK);
     if (r->hold.end != ST_WAIT_DURABLE) {
         api_problem problem = {0};
         api_problem_set_lost(&problem, &r->hold, api_answer_of(r->exchange)->changed);
@@ -116,6 +120,7 @@ static bool is_awaited(void *context, const char *phase, double done)
 static void do_work(void *context)
 {
     srv_request *r = context;
+    srv_timing_enter(&r->timing, SRV_PART_WORK);
     if (r->work_until != UINT64_MAX) {
         r->work_until = st_clock_micros() + r->http->options.read_seconds * 1000000;
     }
@@ -123,11 +128,13 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* a worker comes back to it */
     MHD_resume_connection(r->connection);
 }
 
 static bool begin_work(srv_request *r)
 {
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE);
     if (!begin_wait(r, SRV_WORK)) {
         return false;
     }
@@ -236,6 +243,20 @@ static bool answer_early(srv_request *r, bool expects)
     return answer_when_durable(r);
 }
 
+static void read_trace(srv_request *r, const srv_head *head)
+{
+    static const char name[] = "traceparent";
+    const srv_field *first = srv_head_find(head, name);
+    size_t count = first == NULL ? 0 : 1;
+    for (size_t i = first == NULL ? head->field_count : (size_t)(first - head->fields) + 1;
+         i < head->field_count; i++) {
+        const srv_field *field = &head->fields[i];
+        count += field->name_length == sizeof name - 1 &&
+                 strncasecmp(field->name, name, sizeof name - 1) == 0;
+    }
+    srv_trace_read(&r->http->spans, first == NULL ? NULL : first->value, count, &r->trace);
+}
+
 static bool read_head(srv_request *r, const char *method, const char *version)
 {
     srv_head head;
@@ -246,6 +267,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     MHD_get_connection_values_n(r->connection, MHD_HEADER_KIND, gather_field, &head);
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
     srv_admit_name(&head, &r->http->ids, r->request_id);
+    read_trace(r, &head);
     srv_gate_enter(&r->http->gate);
     r->counted = true;
     r->state = SRV_BODY;
@@ -352,20 +374,29 @@ static bool end_body(srv_request *r)
 bool srv_request_handle(srv_request *r, const char *method, const char *version, const char *upload,
                         size_t *size)
 {
+    bool goes_on = false;
     srv_request_resumed(r);
     switch (r->state) {
     case SRV_FRESH:
-        return read_head(r, method, version);
+        srv_timing_enter(&r->timing, SRV_PART_WORK);
+        goes_on = read_head(r, method, version);
+        break;
     case SRV_BODY:
-        return *size > 0 ? read_body(r, upload, size) : end_body(r);
+        srv_timing_enter(&r->timing, SRV_PART_WORK);
+        goes_on = *size > 0 ? read_body(r, upload, size) : end_body(r);
+        break;
     case SRV_WORK:
+        srv_timing_enter(&r->timing, SRV_PART_WORK);
         return answer_when_durable(r);
     case SRV_HELD:
         return answer_held(r);
     case SRV_DONE:
         return true;
     case SRV_CUT:
-        break;
+        return false;
     }
-    return false;
+    if (r->state == SRV_BODY && !r->aside) {
+        srv_timing_enter(&r->timing, SRV_PART_RECEIVE);
+    }
+    return goes_on;
 }

@@ -34,6 +34,9 @@ srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Conne
     r->socket = socket;
     r->number = socket->requests;
     r->started = st_clock_micros();
+    if (http->options.log != NULL && srv_log_get(http->options.log).slow_us > 0) {
+        srv_timing_begin(&r->timing, r->started);
+    }
     srv_buffer_use(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer);
     return r;
 }
@@ -45,20 +48,38 @@ static void copy_text(char *out, size_t size, const char *text)
     out[length] = '\0';
 }
 
-static void write_log(const srv_request *r, uint64_t now)
+/* An answer that goes on lasts as long as its client listens: that is not slow. */
+static bool is_slow(const srv_request *r, uint64_t took)
 {
+    const uint64_t slow_us = srv_log_get(r->http->options.log).slow_us;
+    const bool live = r->exchange != NULL && api_answer_of(r->exchange)->live != NULL;
+    return r->timing.on && slow_us > 0 && took > slow_us && !live;
+}
+
+static void tell_log(srv_request *r, uint64_t now)
+{
+    srv_log *log = r->http->options.log;
+    const bool slow = is_slow(r, now - r->started);
     srv_access access; /* not zeroed: most of it is room for a long path */
+    if (!slow && !srv_log_get(log).requests) {
+        return;
+    }
+    srv_timing_end(&r->timing, now);
     access.time = st_clock_utc();
-    access.route = r->exchange == NULL ? "-" : api_answer_of(r->exchange)->route;
+    access.route = r->exchange == NULL ? NULL : api_answer_of(r->exchange)->route;
     access.status = r->status;
     access.bytes_in = r->bytes_in;
     access.bytes_out = r->bytes_out;
     access.duration_us = now - r->started;
+    memcpy(access.parts, r->timing.parts, sizeof access.parts);
     copy_text(access.request_id, sizeof access.request_id, r->request_id);
     copy_text(access.method, sizeof access.method, r->method);
     copy_text(access.path, sizeof access.path, r->path == NULL ? r->target : r->path);
     copy_text(access.peer, sizeof access.peer, srv_request_client(r));
-    srv_access_log_add(r->http->options.log, &access);
+    memcpy(access.trace_id, r->trace.trace_id, sizeof access.trace_id);
+    memcpy(access.parent_id, r->trace.parent_id, sizeof access.parent_id);
+    memcpy(access.span_id, r->trace.span_id, sizeof access.span_id);
+    srv_log_request(log, &access, slow);
 }
 
 bool srv_request_suspend(srv_request *r)
@@ -87,7 +108,7 @@ void srv_request_end(srv_request *r)
     srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
     if (r->counted && http->options.log != NULL) {
-        write_log(r, now);
+        tell_log(r, now);
     }
     bool counted = r->counted;
     srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */

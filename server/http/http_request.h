@@ -37,6 +37,8 @@
 #include "server/http/http_ahead.h"
 #include "server/http/http_gate.h"
 #include "server/http/http_live.h"
+#include "server/log/timing.h"
+#include "server/log/trace.h"
 #include "server/net/peers.h"
 #include "store/durability_wait.h"
 
@@ -54,6 +56,7 @@ struct srv_http {
     srv_live *live;
     unsigned port;
     srv_ids ids;
+    srv_spans spans;
     _Atomic bool stopping;
     srv_gate gate;
     _Atomic size_t downloads; /* answers that are sent piece by piece, but for those that go on */
@@ -89,6 +92,8 @@ typedef struct srv_request {
     srv_ahead ahead;
     size_t block; /* bytes libmicrohttpd holds for a download, 0: it is none */
     int status;
+    srv_trace trace;
+    srv_timing timing;
 
     char method[SRV_METHOD + 1];
     const char *path; /* NULL until the headers were read */
@@ -98,7 +103,7 @@ typedef struct srv_request {
 /* The request line has arrived. NULL when memory is out, or when its bytes were not checked
  * (http_recv.h): then the connection is closed without an answer. */
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection);
-/* Answered, or its client was lost: writes the line of the access log and frees the request. The
+/* Answered, or its client was lost: tells the log and frees the request. The
  * server may be freed at once after that. */
 void srv_request_end(srv_request *r);
 

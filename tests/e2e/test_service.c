@@ -11,6 +11,7 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -36,12 +37,32 @@ static int be_systemd(const char *name)
     return fd;
 }
 
+/* The next message that is no sign of life; `text` has room for 512 bytes. */
+static void hear(int fd, char *text)
+{
+    do {
+        ssize_t length = recv(fd, text, 511, 0);
+        assert_true(length > 0);
+        text[length] = '\0';
+    } while (strcmp(text, "WATCHDOG=1") == 0);
+}
+
 static void expect_message(int fd, const char *expected)
 {
-    char text[256];
+    char text[512];
     ssize_t length = recv(fd, text, sizeof text - 1, 0);
     assert_true(length > 0);
     text[length] = '\0';
+    assert_string_equal(text, expected);
+}
+
+/* systemd shows the last STATUS. */
+static void expect_ready(int fd, const daemon_process *d)
+{
+    char expected[256], text[512];
+    snprintf(expected, sizeof expected, "READY=1\nSTATUS=listening on %s",
+             strstr(daemon_url(d), "://") + 3);
+    hear(fd, text);
     assert_string_equal(text, expected);
 }
 
@@ -57,18 +78,14 @@ static void systemd_hears_of_start_life_and_stop(void **state)
     for (size_t i = 0; i < 2; i++) {
         int fd = be_systemd(names[i]);
         daemon_process *d = daemon_start(ARGUMENTS("--log", "access"));
-        expect_message(fd, "READY=1");
+        expect_ready(fd, d);
         expect_message(fd, "WATCHDOG=1");
         expect_message(fd, "WATCHDOG=1");
         free(daemon_wait_log(d, "/livez", 2));
         kill(daemon_pid(d), SIGTERM);
-        char text[256];
-        ssize_t length;
-        do { /* some more of it may be on the way */
-            length = recv(fd, text, sizeof text, 0);
-        } while (length == sizeof "WATCHDOG=1" - 1 && memcmp(text, "WATCHDOG=1", 10) == 0);
-        assert_int_equal(length, sizeof "STOPPING=1" - 1);
-        assert_memory_equal(text, "STOPPING=1", 10);
+        char text[512];
+        hear(fd, text);
+        assert_string_equal(text, "STOPPING=1\nSTATUS=stopping");
         assert_int_equal(daemon_stop(d), 0);
         close(fd);
     }
@@ -88,9 +105,9 @@ static void a_watchdog_of_another_process_is_not_fed(void **state)
     setenv("WATCHDOG_USEC", "1000", 1);
     setenv("WATCHDOG_PID", "1", 1);
     daemon_process *d = daemon_start(NULL);
-    expect_message(fd, "READY=1");
+    expect_ready(fd, d);
     assert_int_equal(daemon_stop(d), 0);
-    expect_message(fd, "STOPPING=1");
+    expect_message(fd, "STOPPING=1\nSTATUS=stopping");
     unsetenv("WATCHDOG_PID");
     unsetenv("WATCHDOG_USEC");
     unsetenv("NOTIFY_SOCKET");
@@ -125,11 +142,52 @@ static void a_file_holds_the_settings(void **state)
     assert_int_equal(daemon_stop(d), 0);
 
     write_file(file, "samples\nmax-meshs = 2\n");
-    assert_int_equal(daemon_run(ARGUMENTS("--print-config"), output, sizeof output), 2);
+    assert_int_equal(
+        daemon_run(ARGUMENTS("--print-config", "--log-format=text"), output, sizeof output), 2);
     snprintf(expected, sizeof expected, "%s:2: there is no setting \"max-meshs\"", file);
     assert_non_null(strstr(output, expected));
     unsetenv("HEDGE_CONFIG");
     unlink(file);
+}
+
+#define TOKEN_LINE \
+    "me read sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08\n"
+
+/* systemd hears when a reload begins, by its clock, and when it has ended and how. */
+static void systemd_hears_of_a_reload(void **state)
+{
+    (void)state;
+    char tokens[] = "/tmp/notify-tokens-XXXXXX", name[64], text[512], expected[256];
+    int file = mkstemp(tokens);
+    assert_true(file >= 0);
+    close(file);
+    write_file(tokens, TOKEN_LINE);
+    snprintf(name, sizeof name, "@hedge-reload-%d", (int)getpid());
+    int fd = be_systemd(name);
+    daemon_process *d = daemon_start(ARGUMENTS("--tokens", tokens));
+    expect_ready(fd, d);
+    for (int round = 0; round < 3; round++) {
+        struct timespec before;
+        unsigned long long when = 0;
+        clock_gettime(CLOCK_MONOTONIC, &before);
+        write_file(tokens, round == 1 ? "no token at all\n" : TOKEN_LINE);
+        kill(daemon_pid(d), SIGHUP);
+        hear(fd, text);
+        assert_int_equal(sscanf(text, "RELOADING=1\nMONOTONIC_USEC=%llu", &when), 1);
+        assert_true(when >= (unsigned long long)before.tv_sec * 1000000);
+        if (round == 1) {
+            hear(fd, text);
+            snprintf(expected, sizeof expected, "READY=1\nSTATUS=not reloaded: the tokens of %s",
+                     tokens);
+            assert_int_equal(strncmp(text, expected, strlen(expected)), 0);
+        } else {
+            expect_ready(fd, d);
+        }
+    }
+    assert_int_equal(daemon_stop(d), 0);
+    close(fd);
+    unsetenv("NOTIFY_SOCKET");
+    unlink(tokens);
 }
 
 static void variables_that_no_option_has_are_named(void **state)
@@ -157,6 +215,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(systemd_hears_of_start_life_and_stop),
         cmocka_unit_test(a_watchdog_of_another_process_is_not_fed),
+        cmocka_unit_test(systemd_hears_of_a_reload),
         cmocka_unit_test(a_file_holds_the_settings),
         cmocka_unit_test(variables_that_no_option_has_are_named),
     };

@@ -100,7 +100,7 @@ static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)
 static void a_wrong_file_is_no_start(void **state)
 {
     (void)state;
-    char said[1000];
+    char said[8192];
     write_file("alice read sha256:", "");
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", "127.0.0.1:0", "--store", "memory", "--tokens", path),

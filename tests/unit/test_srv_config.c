@@ -353,6 +353,37 @@ static void test_addresses(void **state)
     }
 }
 
+static void a_choice_is_one_of_its_words(void **state)
+{
+    (void)state;
+    srv_config config;
+    variables = NULL;
+    assert_true(READ(&config, "--log-format", "json", "--log-level=warning", "--log", "access",
+                     "--slow", "250"));
+    assert_int_equal(config.log_format, SRV_FORMAT_JSON);
+    assert_int_equal(config.log_level, 1);
+    assert_int_equal(config.log, SRV_LOG_ACCESS);
+    assert_int_equal(config.slow, 250);
+    srv_config_clear(&config);
+    static const char *const wrong[] = {"", "warn", "warnings", "error|warning", "|", "INFO"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        assert_false(READ(&config, "--log-level", wrong[i]));
+        assert_non_null(strstr(message, "--log-level takes error|warning|info|debug"));
+    }
+}
+
+/* So that the refusal itself is written in it. */
+static void the_format_of_the_log_outlives_a_refusal(void **state)
+{
+    (void)state;
+    srv_config config;
+    variables = NULL;
+    assert_false(READ(&config, "--log-format", "json", "--workers", "many"));
+    assert_int_equal(config.log_format, SRV_FORMAT_JSON);
+    assert_false(READ(&config, "--log-format", "text", "--config", "/nowhere/at/all"));
+    assert_int_equal(config.log_format, SRV_FORMAT_TEXT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -365,6 +396,8 @@ int main(void)
         cmocka_unit_test(test_addresses),
         cmocka_unit_test(a_file_weighs_less_than_variables_and_flags),
         cmocka_unit_test(a_line_that_is_wrong_is_named),
+        cmocka_unit_test(a_choice_is_one_of_its_words),
+        cmocka_unit_test(the_format_of_the_log_outlives_a_refusal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

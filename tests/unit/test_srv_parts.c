@@ -1,9 +1,8 @@
-/* The server's small parts: job pool, access log, the page's files, deadlines. */
+/* The server's small parts: job pool, the page's files, deadlines. */
 #include "tests/unit/fixture.h"
 
 #include "server/assets.h"
 #include "server/http/http_deadline.h"
-#include "server/net/access_log.h"
 #include "system/clock.h"
 #include "system/random.h"
 #include "system/thread_pool.h"
@@ -41,105 +40,6 @@ static void test_jobs_run_in_order_and_to_the_end(void **state)
     for (int i = 0; i < JOBS; i++) {
         assert_int_equal(order[i], i);
     }
-}
-
-/* --- access log --- */
-
-static const srv_access sample = {
-    .time = 1714564800.25,
-    .request_id = "r-1",
-    .method = "GET",
-    .path = "/a\"b\\c\x01\xe9",
-    .route = "/v1/meshes/{mesh}",
-    .status = 200,
-    .bytes_in = 1,
-    .bytes_out = 22,
-    .duration_us = 333,
-    .peer = "::1",
-};
-
-static void test_access_line(void **state)
-{
-    (void)state;
-    char line[SRV_LOG_LINE];
-    size_t length = srv_access_format(&sample, line);
-    assert_string_equal(line, "{\"time\":\"2024-05-01T12:00:00.250Z\",\"request_id\":\"r-1\","
-                              "\"method\":\"GET\",\"path\":\"/a\\u0022b\\u005cc\\u0001\\u00e9\","
-                              "\"route\":\"/v1/meshes/{mesh}\",\"status\":200,\"bytes_in\":1,"
-                              "\"bytes_out\":22,\"duration_us\":333,\"peer\":\"::1\"}\n");
-    assert_int_equal(length, strlen(line));
-
-    srv_access longest = sample;
-    memset(longest.path, 1, sizeof longest.path - 1);
-    memset(longest.request_id, 'x', SRV_REQUEST_ID);
-    memset(longest.method, 'M', SRV_METHOD);
-    longest.route = NULL;
-    length = srv_access_format(&longest, line);
-    assert_true(length < SRV_LOG_LINE);
-    assert_int_equal(length, strlen(line));
-    assert_int_equal(line[length - 1], '\n');
-    assert_non_null(strstr(line, "\"route\":\"-\""));
-}
-
-static void *free_log(void *log)
-{
-    srv_access_log_free(log);
-    return NULL;
-}
-
-/* Nobody reads until the ring has overflowed: lines and drops together are what was logged. */
-static void test_access_log_drops_and_counts(void **state)
-{
-    (void)state;
-    enum { RECORDS = 5000, RING = 4 };
-    static char text[2 << 20];
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    srv_access_log *log = srv_access_log_new(ends[1], RING);
-    for (int i = 0; i < RECORDS; i++) {
-        srv_access_log_add(log, &sample);
-    }
-    /* Freeing waits for the writer, and the writer for room in the pipe. */
-    pthread_t thread;
-    assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
-    size_t got = 0;
-    unsigned long lines = 0, dropped = 0;
-    while (lines + dropped < RECORDS) {
-        ssize_t more = read(ends[0], text + got, sizeof text - 1 - got);
-        assert_true(more > 0);
-        got += (size_t)more;
-        text[got] = '\0';
-        lines = dropped = 0;
-        for (char *line = text, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
-            char *drop = strstr(line, "\"dropped\":");
-            if (drop != NULL && drop < end) {
-                dropped += strtoul(drop + 10, NULL, 10);
-            } else {
-                lines++;
-            }
-        }
-    }
-    pthread_join(thread, NULL);
-    assert_int_equal(lines + dropped, RECORDS);
-    assert_true(lines >= 1);
-    close(ends[0]);
-    close(ends[1]);
-}
-
-/* Nobody reads at all: the daemon must end all the same. */
-static void test_access_log_ends_without_a_reader(void **state)
-{
-    (void)state;
-    enum { RECORDS = 4000 };
-    int ends[2];
-    assert_int_equal(pipe(ends), 0);
-    srv_access_log *log = srv_access_log_new(ends[1], RECORDS);
-    for (int i = 0; i < RECORDS; i++) {
-        srv_access_log_add(log, &sample);
-    }
-    srv_access_log_free(log);
-    close(ends[0]);
-    close(ends[1]);
 }
 
 /* --- the page --- */
@@ -365,9 +265,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_jobs_run_in_order_and_to_the_end),
-        cmocka_unit_test(test_access_line),
-        cmocka_unit_test(test_access_log_drops_and_counts),
-        cmocka_unit_test(test_access_log_ends_without_a_reader),
         cmocka_unit_test(test_assets),
         cmocka_unit_test(test_deadlines),
         cmocka_unit_test(test_slow_readers),

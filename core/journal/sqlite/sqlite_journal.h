@@ -36,4 +36,7 @@ typedef struct st_sqlite_opened {
  * or no store, what was acknowledged is not all there, the system refuses. */
 bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out);
 
+/* The version of SQLite that the process was given; static. */
+const char *st_sqlite_library(void);
+
 #endif

@@ -421,3 +421,8 @@ bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out)
     out->journal = st_sqlite_filled(self);
     return true;
 }
+
+const char *st_sqlite_library(void)
+{
+    return sqlite3_libversion();
+}

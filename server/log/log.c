@@ -1,0 +1,309 @@
+#include "server/log/log.h"
+
+#include "base/mem.h"
+#include "system/clock.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <poll.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    GATHER_MILLIS = 20, /* the line of a request is written at most this late */
+    BATCH = 16,         /* entries formatted at once */
+    POLL_MILLIS = 100,
+    ENDING_MILLIS = 500
+};
+
+/* A line of the daemon's own, or the record of a request. */
+typedef struct entry {
+    char *line; /* owned by the ring; NULL: `access` */
+    size_t length;
+    srv_access access;
+    bool usual, slow; /* its lines */
+} entry;
+
+struct srv_log {
+    int fd;
+    _Atomic int level;
+    _Atomic bool json, requests;
+    _Atomic uint64_t slow_us;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    _Atomic bool ending;
+    bool urgent; /* a line of the daemon's own waits: nothing is gathered */
+    entry *ring;
+    size_t capacity, first, count;
+    uint64_t dropped;
+    int waited; /* polls in vain while it ends; the thread's own */
+    pthread_t thread;
+};
+
+/* A log that cannot be written to is not a reason to stop serving, and a reader that takes nothing
+ * is none to go on for ever: once the log ends, it has a moment. A pipe that is ready takes
+ * PIPE_BUF bytes without blocking. */
+static void write_all(srv_log *log, const char *bytes, size_t length)
+{
+    while (length > 0 && log->waited < ENDING_MILLIS / POLL_MILLIS) {
+        struct pollfd out = {.fd = log->fd, .events = POLLOUT};
+        if (poll(&out, 1, POLL_MILLIS) == 0) {
+            log->waited += atomic_load(&log->ending) ? 1 : 0;
+            continue;
+        }
+        ssize_t written = write(log->fd, bytes, length < PIPE_BUF ? length : PIPE_BUF);
+        if (written < 0 && errno != EINTR && errno != EAGAIN) {
+            return;
+        }
+        if (written > 0) {
+            bytes += written;
+            length -= (size_t)written;
+        }
+    }
+}
+
+static void write_dropped(srv_log *log, uint64_t dropped)
+{
+    char time[ST_TIMESTAMP], line[160];
+    st_clock_format(st_clock_utc(), time);
+    int length =
+        snprintf(line, sizeof line,
+                 atomic_load(&log->json)
+                     ? "{\"time\":\"%s\",\"level\":\"warning\",\"event\":\"dropped\","
+                       "\"dropped\":%" PRIu64 "}\n"
+                     : "%s warning %" PRIu64 " lines were dropped, which nobody read in time\n",
+                 time, dropped);
+    write_all(log, line, (size_t)length);
+}
+
+/* Waking a thread costs a request more than its record does, so the thread is woken for the first
+ * one and then lets others gather. Under the lock; false when all is written and the log ends. */
+static bool wait_for_entries(srv_log *log)
+{
+    while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
+        pthread_cond_wait(&log->wake, &log->lock);
+    }
+    const uint64_t until = st_clock_micros() + GATHER_MILLIS * 1000;
+    bool in_time = true;
+    while (in_time && !log->urgent && log->count < log->capacity / 2 &&
+           !atomic_load(&log->ending)) {
+        in_time = st_clock_wait(&log->wake, &log->lock, until);
+    }
+    log->urgent = false;
+    return log->count > 0 || log->dropped > 0;
+}
+
+/* Lines of the daemon's own are as long as they are; those of requests are formatted into `room`,
+ * for two. */
+static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], size_t *at)
+{
+    const bool json = atomic_load(&log->json);
+    if (e->line != NULL) {
+        write_all(log, room, *at);
+        *at = 0;
+        write_all(log, e->line, e->length);
+        he_mem_free(e->line);
+        e->line = NULL;
+        return;
+    }
+    *at += e->usual ? srv_access_format(&e->access, json, room + *at) : 0;
+    *at += e->slow ? srv_access_format_slow(&e->access, json, room + *at) : 0;
+}
+
+/* What is in the ring is not touched by others until `count` says that it was taken. */
+static void *run(void *context)
+{
+    srv_log *log = context;
+    char lines[2 * BATCH * SRV_ACCESS_LINE];
+    pthread_mutex_lock(&log->lock);
+    while (wait_for_entries(log)) {
+        size_t count = log->count, first = log->first;
+        uint64_t dropped = log->dropped;
+        log->dropped = 0;
+        pthread_mutex_unlock(&log->lock);
+        for (size_t taken = 0; taken < count;) {
+            size_t at = 0, batch = 0;
+            for (; batch < BATCH && taken + batch < count; batch++) {
+                write_entry(log, &log->ring[(first + taken + batch) % log->capacity], lines, &at);
+            }
+            write_all(log, lines, at);
+            taken += batch;
+            pthread_mutex_lock(&log->lock);
+            log->first = (first + taken) % log->capacity;
+            log->count -= batch;
+            pthread_mutex_unlock(&log->lock);
+        }
+        if (dropped > 0) {
+            write_dropped(log, dropped);
+        }
+        pthread_mutex_lock(&log->lock);
+    }
+    pthread_mutex_unlock(&log->lock);
+    return NULL;
+}
+
+srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings)
+{
+    srv_log *log = he_mem_zero(1, sizeof *log);
+    if (log == NULL) {
+        return NULL;
+    }
+    log->fd = fd;
+    log->capacity = capacity;
+    log->ring = he_mem_zero(capacity, sizeof *log->ring);
+    srv_log_set(log, settings);
+    pthread_mutex_init(&log->lock, NULL);
+    st_clock_condition(&log->wake);
+    if (log->ring == NULL || pthread_create(&log->thread, NULL, run, log) != 0) {
+        pthread_mutex_destroy(&log->lock);
+        pthread_cond_destroy(&log->wake);
+        he_mem_free(log->ring);
+        he_mem_free(log);
+        return NULL;
+    }
+    return log;
+}
+
+void srv_log_free(srv_log *log)
+{
+    if (log == NULL) {
+        return;
+    }
+    pthread_mutex_lock(&log->lock);
+    atomic_store(&log->ending, true);
+    pthread_cond_signal(&log->wake);
+    pthread_mutex_unlock(&log->lock);
+    pthread_join(log->thread, NULL);
+    pthread_mutex_destroy(&log->lock);
+    pthread_cond_destroy(&log->wake);
+    he_mem_free(log->ring);
+    he_mem_free(log);
+}
+
+void srv_log_set(srv_log *log, const srv_log_settings *settings)
+{
+    atomic_store(&log->level, settings->level);
+    atomic_store(&log->json, settings->json);
+    atomic_store(&log->requests, settings->requests);
+    atomic_store(&log->slow_us, settings->slow_us);
+}
+
+srv_log_settings srv_log_get(const srv_log *log)
+{
+    return (srv_log_settings){
+        .level = (srv_level)atomic_load(&log->level),
+        .json = atomic_load(&log->json),
+        .requests = atomic_load(&log->requests),
+        .slow_us = atomic_load(&log->slow_us),
+    };
+}
+
+/* A free entry, or NULL: then one more was dropped. Under the lock. */
+static entry *take_entry(srv_log *log)
+{
+    if (log->count == log->capacity) {
+        log->dropped++;
+        return NULL;
+    }
+    return &log->ring[(log->first + log->count++) % log->capacity];
+}
+
+static void wake(srv_log *log)
+{
+    if (log->urgent || log->count == 1 || log->count == log->capacity / 2 || log->dropped == 1) {
+        pthread_cond_signal(&log->wake);
+    }
+}
+
+/* Takes the text, which is a whole line or failed for memory. */
+static void add_line(srv_log *log, api_text *text)
+{
+    pthread_mutex_lock(&log->lock);
+    if (text->failed) {
+        log->dropped++;
+    } else {
+        entry *e = take_entry(log);
+        if (e != NULL) {
+            e->line = text->bytes;
+            e->length = text->length;
+            *text = (api_text){0};
+        }
+    }
+    log->urgent = true;
+    wake(log);
+    pthread_mutex_unlock(&log->lock);
+    api_text_clear(text);
+}
+
+static void begin(const srv_log *log, srv_line *line, srv_level level, const char *format,
+                  va_list values)
+{
+    srv_line_begin(line, atomic_load(&log->json), level, format, values);
+}
+
+void srv_log_tell(srv_log *log, srv_level level, const char *format, ...)
+{
+    srv_line line;
+    va_list values;
+    va_start(values, format);
+    begin(log, &line, level, format, values);
+    va_end(values);
+    srv_log_end(log, &line);
+}
+
+__attribute__((format(printf, 4, 5))) static void
+begin_with(const srv_log *log, srv_line *line, srv_level level, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    begin(log, line, level, format, values);
+    va_end(values);
+}
+
+void srv_log_begin(const srv_log *log, srv_line *line, srv_level level, const char *message)
+{
+    begin_with(log, line, level, "%s", message);
+}
+
+void srv_log_end(srv_log *log, srv_line *line)
+{
+    srv_line_end(line);
+    if ((int)line->level <= atomic_load(&log->level)) {
+        add_line(log, &line->text);
+    }
+    srv_line_clear(line);
+}
+
+void srv_log_plain(srv_log *log, const char *format, ...)
+{
+    char bytes[SRV_MESSAGE];
+    api_text text = {0};
+    va_list values;
+    va_start(values, format);
+    vsnprintf(bytes, sizeof bytes, format, values);
+    va_end(values);
+    api_text_add_string(&text, bytes);
+    api_text_add_char(&text, '\n');
+    add_line(log, &text);
+}
+
+void srv_log_request(srv_log *log, const srv_access *access, bool slow)
+{
+    const bool usual = atomic_load(&log->requests);
+    if (!usual && !slow) {
+        return;
+    }
+    pthread_mutex_lock(&log->lock);
+    entry *e = take_entry(log);
+    if (e != NULL) {
+        e->access = *access;
+        e->usual = usual;
+        e->slow = slow;
+    }
+    wake(log);
+    pthread_mutex_unlock(&log->lock);
+}
