@@ -1,11 +1,12 @@
 #!/bin/sh
 # fresh.sh - does each command of the README's table work on a machine where nothing was done before?
 #
-# A bare Debian is made once with debootstrap; make is all that is added. For each command in turn it
-# is copied, the last commit of this tree is put inside, and the command runs there alone, as root,
-# with the few rounds below. TARGETS narrows, as in TARGETS="lint bench-http"; TESTS narrows what
-# make test runs. Each command leaves build/fresh/NAME.log. The copies, of 1 to 4 GB, are made in
-# FRESH_DIR or beside the logs, and removed. The last line is `N passed, N failed`.
+# A bare Debian is made with debootstrap; make is all that is added. It stays in build/fresh/bare, where
+# it serves for a day. For each command in turn it is copied, the last commit of this tree is put
+# inside, and the command runs there alone, as root, with the few rounds below. TARGETS narrows, as in
+# TARGETS="lint bench-http"; TESTS narrows what make test runs. Each command leaves
+# build/fresh/NAME.log. The copies, of 1 to 4 GB, are made in FRESH_DIR or beside the logs, and removed.
+# The last line is `N passed, N failed`.
 #
 # What this machine needs to reach its mirrors is taken along: the sources and settings of apt,
 # the settings of npm, and the proxies and certificates that the environment names.
@@ -118,10 +119,15 @@ work=$(mktemp -d -p "${FRESH_DIR:-$logs}" tree.XXXXXX) || give_up 'there is no p
 trap 'rm -rf --one-file-system "$work"' EXIT
 trap 'exit 1' INT TERM
 
-{ bare_debian "$work/bare" make && settings "$work/bare"; } >"$logs/bare.log" 2>&1 || {
-    tail -n 40 "$logs/bare.log"
-    give_up 'a bare Debian could not be made'
-}
+# The date of bare.made tells that the folder is whole and how old it is. No command runs in it.
+bare=$logs/bare
+if [ -z "$(find "$bare.made" -mtime -1 2>/dev/null)" ]; then
+    rm -rf --one-file-system "$bare" "$bare.made"
+    { bare_debian "$bare" make && touch "$bare.made"; } >"$bare.log" 2>&1 || {
+        tail -n 40 "$bare.log"
+        give_up 'a bare Debian could not be made'
+    }
+fi
 passed=0
 failed=0
 for target in $targets; do
@@ -131,7 +137,7 @@ for target in $targets; do
     esac
     log=$logs/$(basename "$target").log
     start=$(date +%s)
-    if cp -a --reflink=auto "$work/bare" "$work/root" &&
+    if cp -a --reflink=auto "$bare" "$work/root" && settings "$work/root" &&
         git clone -q --no-hardlinks . "$work/root/src/hedge" &&
         unshare --mount --pid --fork --kill-child sh tests/fresh.sh --enter "$work/root" "$target" \
             "$downloads" >"$log" 2>&1 </dev/null; then
