@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define MEMBER(m)           offsetof(srv_config, m)
-#define LIMIT(whose, limit) (MEMBER(whose.most) + API_LIMIT_##limit * sizeof(uint64_t))
+#define LIMIT(whose, limit) (MEMBER(whose) + offsetof(api_limits, most[API_LIMIT_##limit]))
 #define KIB                 (UINT64_C(1) << 10)
 #define TIB                 (UINT64_C(1) << 40)
 
