@@ -41,23 +41,23 @@ static void the_access_log_names_whom_a_trusted_proxy_names(void **state)
     daemon_process *d = daemon_start(ARGUMENTS(
         "--log", "access", "--trusted-proxy", "127.0.0.0/8,unix", "--trusted-proxy", "10.0.0.0/8"));
     client *c = client_new(d);
+    reply_done(reply_expect(200, client_send(c, "GET", "/livez", NULL, 0,
+                                             ARGUMENTS("X-Request-Id: the-first-one",
+                                                       "X-Forwarded-For: 6.6.6.6, 192.0.2.1"))));
     reply_done(reply_expect(
         200, client_send(c, "GET", "/livez", NULL, 0,
-                         ARGUMENTS("X-Request-Id: first", "X-Forwarded-For: 6.6.6.6, 192.0.2.1"))));
-    reply_done(reply_expect(
-        200, client_send(c, "GET", "/livez", NULL, 0,
-                         ARGUMENTS("X-Request-Id: second",
+                         ARGUMENTS("X-Request-Id: the-second-one",
                                    "Forwarded: for=\"[2001:db8::7]:80\", for=10.0.0.9"))));
-    reply r =
-        reply_expect(400, client_send(c, "GET", "/livez", NULL, 0,
-                                      ARGUMENTS("X-Request-Id: third", "Forwarded: for=6.6.6.6",
-                                                "X-Forwarded-For: 192.0.2.1")));
+    reply r = reply_expect(
+        400, client_send(c, "GET", "/livez", NULL, 0,
+                         ARGUMENTS("X-Request-Id: the-third-one", "Forwarded: for=6.6.6.6",
+                                   "X-Forwarded-For: 192.0.2.1")));
     assert_string_equal(reply_string(&r, "code"), "bad_header");
     reply_done(r);
     client_free(c);
     char *log = daemon_stop_and_tell(d);
-    assert_peer(log, "first", "192.0.2.1");
-    assert_peer(log, "second", "2001:db8::7");
+    assert_peer(log, "the-first-one", "192.0.2.1");
+    assert_peer(log, "the-second-one", "2001:db8::7");
     free(log);
 }
 
@@ -68,14 +68,14 @@ static void nobody_else_is_believed(void **state)
                                                "--allow-host", "mesh.example"));
     client *c = client_new(d);
     char value[100];
-    reply r =
-        reply_expect(200, client_send(c, "GET", "/livez", NULL, 0,
-                                      ARGUMENTS("X-Request-Id: first", "X-Forwarded-For: 192.0.2.1",
-                                                "Forwarded: for=\"", "X-Forwarded-Proto: https")));
+    reply r = reply_expect(
+        200, client_send(c, "GET", "/livez", NULL, 0,
+                         ARGUMENTS("X-Request-Id: the-first-one", "X-Forwarded-For: 192.0.2.1",
+                                   "Forwarded: for=\"", "X-Forwarded-Proto: https")));
     reply_done(r);
     client_free(c);
     char *log = daemon_stop_and_tell(d);
-    const char *line = line_of(log, "first");
+    const char *line = line_of(log, "the-first-one");
     snprintf(value, sizeof value, "%.*s", (int)strcspn(strstr(line, "\"peer\""), ",}"),
              strstr(line, "\"peer\""));
     assert_true(strcmp(value, "\"peer\":\"127.0.0.1\"") == 0 ||
@@ -124,7 +124,7 @@ static void a_proxy_that_is_no_address_stops_the_start(void **state)
     assert_int_equal(daemon_run(ARGUMENTS("--trusted-proxy", "proxy.example"), said, sizeof said),
                      2);
     assert_non_null(strstr(said, "--trusted-proxy takes an address"));
-    assert_non_null(strstr(said, "\"proxy.example\""));
+    assert_non_null(strstr(said, "proxy.example"));
 }
 
 int main(void)
