@@ -31,7 +31,7 @@ DEBUG    := $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # Lazy: evaluated when a program is linked, after .ci/deps has run.
-DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle) -lmeshoptimizer -lm
+DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
 
 # Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.

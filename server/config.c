@@ -18,8 +18,9 @@
 const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
      "read settings from a file, a line each, as --print-config shows them"},
-    {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT", 0, 0,
-     "address to listen on; port 0 takes a free one"},
+    {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT|unix:PATH", 0, 0,
+     "address to listen on; port 0 takes a free one. Or a Unix socket, whose file the daemon makes "
+     "(mode 0660) and removes"},
     {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
      "listen beyond loopback although nobody needs a token"},
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
@@ -48,6 +49,11 @@ const srv_option srv_options[] = {
      "closed"},
     {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
      "of requests and bytes that a client may have at once when it had none before"},
+    {"tls-cert", SRV_TEXT, MEMBER(tls_cert), "", "FILE", 0, 0,
+     "speak TLS alone, with the certificate in this file (PEM, those that vouch for it after it). "
+     "SIGHUP and POST /v1/admin/reload read it again"},
+    {"tls-key", SRV_TEXT, MEMBER(tls_key), "", "FILE", 0, 0,
+     "the certificate's key (PEM, not encrypted)"},
     {"allow-host", SRV_LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
      "answer requests for this Host too; may be repeated or a comma list"},
     {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
@@ -400,6 +406,37 @@ static bool find_proxies(srv_config *config, char *message, size_t size)
     return true;
 }
 
+void srv_config_url(const srv_config *config, const char *listen, char out[SRV_URL_TEXT])
+{
+    listen = listen == NULL ? config->listen : listen;
+    const char *scheme = strncmp(listen, "unix:", 5) == 0 ? ""
+                         : config->tls_cert[0] != '\0'    ? "https://"
+                                                          : "http://";
+    snprintf(out, SRV_URL_TEXT, "%s%s", scheme, listen);
+}
+
+static bool check_listen(const srv_config *config, srv_address *address, char *message, size_t size)
+{
+    const bool tls = config->tls_cert[0] != '\0';
+    if (!srv_address_parse(config->listen, address)) {
+        snprintf(message, size,
+                 "--listen takes an address and a port such as 127.0.0.1:8080 or [::1]:0, or unix: "
+                 "and a path of 1 to %d bytes, not \"%s\"",
+                 SRV_MAX_PATH, config->listen);
+        return false;
+    }
+    if (tls != (config->tls_key[0] != '\0')) {
+        snprintf(message, size, "%s needs %s: a certificate and its key belong together",
+                 tls ? "--tls-cert" : "--tls-key", tls ? "--tls-key" : "--tls-cert");
+        return false;
+    }
+    if (tls && srv_address_path(address) != NULL) {
+        snprintf(message, size, "--tls-cert is for an address: a Unix socket is not encrypted");
+        return false;
+    }
+    return true;
+}
+
 static bool check(const srv_config *config, char *message, size_t size)
 {
     srv_address address;
@@ -408,11 +445,7 @@ static bool check(const srv_config *config, char *message, size_t size)
         snprintf(message, size, "--store takes memory or sqlite:DIR, not \"%s\"", config->store);
         return false;
     }
-    if (!srv_address_parse(config->listen, &address)) {
-        snprintf(message, size,
-                 "--listen takes an address and a port such as 127.0.0.1:8080 or [::1]:0, "
-                 "not \"%s\"",
-                 config->listen);
+    if (!check_listen(config, &address, message, size)) {
         return false;
     }
     const bool serves = !config->healthcheck && !config->print_config && !config->verify &&

@@ -27,8 +27,9 @@ typedef struct srv_config {
     const char *config; /* a file; "": none */
     const char *listen;
     bool insecure;
-    const char *tokens; /* a file; "": nobody needs a token */
-    srv_policy policy;  /* its proxies are those of `trusted_proxies` */
+    const char *tokens;             /* a file; "": nobody needs a token */
+    const char *tls_cert, *tls_key; /* files; both "": plain HTTP */
+    srv_policy policy;              /* its proxies are those of `trusted_proxies` */
     srv_names trusted_proxies;
     const char *web;   /* "": look beside the executable */
     const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
@@ -78,6 +79,12 @@ void srv_config_clear(srv_config *config);
 
 /* The folder of the store; NULL where meshes are kept in memory alone. */
 const char *srv_config_folder(const srv_config *config);
+
+/* Where a daemon of these options is reached on this machine: "http://127.0.0.1:8080",
+ * "https://...", "unix:/run/hedge/socket". `listen` is NULL, or the address with the port that was
+ * taken. */
+enum { SRV_URL_TEXT = 8 + SRV_ADDRESS_TEXT };
+void srv_config_url(const srv_config *config, const char *listen, char out[SRV_URL_TEXT]);
 
 /* The variables of `environment` ("NAME=value", the last NULL) whose names begin with HEDGE_ and
  * are no option's: how many there are, and their names with ", " between them, cut to `size`

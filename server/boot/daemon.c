@@ -53,7 +53,9 @@ static bool stop(srv_parts *parts, const siginfo_t *reason)
     srv_notify("STOPPING=1\nSTATUS=stopping");
     atomic_store(&parts->ready, false);
     api_job_table_stop(parts->job_table);
-    if (srv_http_stop(parts->http, STOP_MILLIS)) {
+    bool ended = srv_http_stop(parts->http, STOP_MILLIS);
+    srv_unix_remove(&parts->socket);
+    if (ended) {
         return true;
     }
     srv_log_tell(parts->log, SRV_LEVEL_ERROR, "work that did not end within %d s was given up%s",
@@ -74,6 +76,7 @@ static void close_parts(srv_parts *parts)
     st_store_free(parts->store);
     srv_assets_free(parts->assets);
     api_tokens_free(parts->tokens);
+    srv_certificates_free(parts->certificates);
 }
 
 int srv_daemon_run(const srv_started *started)
@@ -91,12 +94,12 @@ int srv_daemon_run(const srv_started *started)
     srv_start_tell(parts.log, started->config, started->environment);
     srv_choose_budget(parts.log, started->config);
 
-    bool open = srv_open_tokens(&parts) && srv_open_store(&parts) && srv_open_service(&parts) &&
-                srv_open_http(&parts);
+    bool open = srv_open_tokens(&parts) && srv_open_certificates(&parts) &&
+                srv_open_store(&parts) && srv_open_service(&parts) && srv_open_http(&parts);
     if (open) {
-        char text[SRV_ADDRESS_TEXT + 32];
+        char text[SRV_URL_TEXT + 32];
         siginfo_t reason;
-        snprintf(text, sizeof text, "READY=1\nSTATUS=listening on %s", parts.address);
+        snprintf(text, sizeof text, "READY=1\nSTATUS=listening on %s", parts.url);
         srv_notify(text);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {

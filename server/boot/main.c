@@ -16,7 +16,7 @@ enum { MISUSE = 2 };
 int main(int argc, char **argv, char **environment)
 {
     srv_config config;
-    char message[320];
+    char message[320], url[SRV_URL_TEXT];
     int status = 0;
     st_memory_install(0);
     if (!srv_config_read(&config, argc - 1, argv + 1, getenv, message, sizeof message)) {
@@ -31,7 +31,9 @@ int main(int argc, char **argv, char **environment)
     } else if (config.print_config) {
         srv_config_print(&config, stdout);
     } else if (config.healthcheck) {
-        if (!srv_healthcheck(config.healthcheck_url, config.listen, message, sizeof message)) {
+        srv_config_url(&config, NULL, url);
+        if (!srv_healthcheck(config.healthcheck_url == NULL ? url : config.healthcheck_url, message,
+                             sizeof message)) {
             fprintf(stderr, "hedged: %s\n", message);
             status = 1;
         }

@@ -81,10 +81,26 @@ static bool reload_settings(srv_parts *parts, char *message, size_t size)
     return true;
 }
 
+static bool reload_certificates(srv_parts *parts, char *message, size_t size)
+{
+    const srv_config *config = parts->config;
+    if (parts->certificates == NULL) {
+        return true;
+    }
+    if (!srv_certificates_read(parts->certificates, config->tls_cert, config->tls_key, message,
+                               size)) {
+        return false;
+    }
+    srv_log_tell(parts->log, SRV_LEVEL_INFO,
+                 "new connections get the certificate read again from %s", config->tls_cert);
+    return true;
+}
+
 /* What is read again, in this order. */
 static bool (*const reloads[])(srv_parts *parts, char *message, size_t size) = {
     reload_settings,
     reload_tokens,
+    reload_certificates,
 };
 
 /* systemd wants to know when it began, so that it can tell this reload from one before. */
@@ -111,7 +127,7 @@ bool srv_reload(void *context, char *message, size_t size)
         }
     }
     if (ok) {
-        snprintf(state, sizeof state, "READY=1\nSTATUS=listening on %s", parts->address);
+        snprintf(state, sizeof state, "READY=1\nSTATUS=listening on %s", parts->url);
     } else {
         snprintf(state, sizeof state, "READY=1\nSTATUS=not reloaded: %s", why);
     }

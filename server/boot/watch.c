@@ -47,7 +47,7 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
         return;
     }
     *fed = st_clock_micros();
-    if (srv_healthcheck(NULL, parts->address, message, sizeof message)) {
+    if (srv_healthcheck(parts->url, message, sizeof message)) {
         srv_notify("WATCHDOG=1");
     } else {
         srv_log_tell(parts->log, SRV_LEVEL_WARNING, "asked itself for /livez, and %s", message);

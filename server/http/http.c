@@ -13,8 +13,6 @@
 #include <string.h>
 #include <sys/socket.h>
 
-enum { BACKLOG = 1024 };
-
 _Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES, "a head that passes leaves room");
 
 /* --- what libmicrohttpd calls --- */
@@ -78,9 +76,16 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
         const struct sockaddr *peer =
             MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
-        srv_connection *c = srv_deadlines_add(http->deadlines, fd, peer, srv_buffer_taken());
+        gnutls_session_t session = NULL;
+        if (http->options.certificates != NULL) {
+            session = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_GNUTLS_SESSION)
+                          ->tls_session;
+        }
+        srv_connection *c =
+            srv_deadlines_add(http->deadlines, fd, peer, session, srv_buffer_taken());
         *slot = c;
         if (c != NULL) {
+            c->certificates = http->options.certificates;
             c->is_proxy = srv_proxies_has(&http->options.policy->proxies, c->peer);
             count_peer(http, c);
         }
@@ -93,6 +98,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         if (c != NULL) {
             srv_recv_forget(c->socket);
             srv_peers_leave(http->peers, c->of_peer);
+            srv_certificate_release(c->certificate);
         }
         srv_deadlines_remove(http->deadlines, c);
         *slot = NULL;
@@ -111,6 +117,27 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
 }
 
+/* A handshake asks for the certificate, perhaps twice. It shows the pair that it holds already. */
+static int show_certificate(gnutls_session_t session, const struct gnutls_cert_retr_st *info,
+                            gnutls_pcert_st **chain, unsigned int *length,
+                            gnutls_ocsp_data_st **ocsp, unsigned int *ocsp_length,
+                            gnutls_privkey_t *key, unsigned int *flags)
+{
+    (void)info;
+    srv_connection *c = srv_recv_find(session);
+    if (c == NULL) {
+        return -1;
+    }
+    if (c->certificate == NULL) {
+        c->certificate = srv_certificates_hold(c->certificates);
+    }
+    srv_certificate_show(c->certificate, chain, length, key);
+    *ocsp = NULL;
+    *ocsp_length = 0;
+    *flags = 0;
+    return 0;
+}
+
 /* --- the daemon --- */
 
 static struct MHD_Daemon *start_daemon(srv_http *http)
@@ -120,6 +147,10 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
     if (o->address.socket.any.sa_family == AF_INET6) {
         flags |= MHD_USE_IPv6;
     }
+    const bool tls = o->certificates != NULL;
+    if (tls) {
+        flags |= MHD_USE_TLS;
+    }
     struct MHD_OptionItem numbers[] = {
         /* Strict, it would refuse with pages of its own what http_syntax.h has refused already. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
@@ -127,17 +158,26 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         /* Divided among the workers, which connections are not: each may hold them all. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
-        {MHD_OPTION_LISTEN_BACKLOG_SIZE, BACKLOG, NULL},
-        /* A pool of one is not a pool. */
-        {o->workers > 1 ? MHD_OPTION_THREAD_POOL_SIZE : MHD_OPTION_END, (intptr_t)o->workers, NULL},
+        {MHD_OPTION_LISTEN_BACKLOG_SIZE, SRV_BACKLOG, NULL},
+        {MHD_OPTION_END, 0, NULL},
+        {MHD_OPTION_END, 0, NULL},
         {MHD_OPTION_END, 0, NULL},
     };
-    return MHD_start_daemon(flags, 0, accept_policy, http, handle, http, MHD_OPTION_ARRAY, numbers,
-                            MHD_OPTION_SOCK_ADDR, &o->address.socket.any,
-                            MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes, NULL,
-                            MHD_OPTION_URI_LOG_CALLBACK, request_begin, http,
-                            MHD_OPTION_NOTIFY_COMPLETED, request_completed, NULL,
-                            MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http, MHD_OPTION_END);
+    struct MHD_OptionItem *last = numbers + sizeof numbers / sizeof *numbers - 3;
+    if (o->workers > 1) { /* a pool of one is not a pool */
+        *last++ = (struct MHD_OptionItem){MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)o->workers, NULL};
+    }
+    if (o->listening >= 0) {
+        *last++ = (struct MHD_OptionItem){MHD_OPTION_LISTEN_SOCKET, o->listening, NULL};
+    }
+    return MHD_start_daemon(
+        flags, 0, accept_policy, http, handle, http, MHD_OPTION_ARRAY, numbers,
+        MHD_OPTION_SOCK_ADDR, &o->address.socket.any, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes,
+        NULL, MHD_OPTION_URI_LOG_CALLBACK, request_begin, http, MHD_OPTION_NOTIFY_COMPLETED,
+        request_completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http,
+        /* The last ones: what follows an end is not read. */
+        tls ? MHD_OPTION_HTTPS_CERT_CALLBACK2 : MHD_OPTION_END, show_certificate,
+        MHD_OPTION_HTTPS_PRIORITIES, srv_tls_priorities, MHD_OPTION_END);
 }
 
 static void http_free(srv_http *http)
@@ -186,7 +226,9 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
         http_free(http);
         return NULL;
     }
-    http->port = MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+    http->port = options->listening >= 0
+                     ? 0
+                     : MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
     return http;
 }
 

@@ -1,6 +1,6 @@
 /* http.h - sockets on one side, exchanges of api/request/api.h on the other.
  *
- * Only the sources server/http*.c know libmicrohttpd, through http_request.h, where the states of a
+ * Only the sources of server/http know libmicrohttpd, through http_request.h, where the states of a
  * request and who moves it are drawn. Workers never block: what api calls long work runs on the
  * pool while the connection is suspended, and so waits an answer whose revision is not yet durable
  * (D1). */
@@ -20,6 +20,8 @@ typedef struct srv_http srv_http;
 /* Everything is borrowed and outlives the server. */
 typedef struct srv_http_options {
     srv_address address;
+    int listening; /* a socket that listens on a path already; -1: `address` is bound here */
+    srv_certificates *certificates; /* a pair is in force; NULL: no TLS */
     api_service *service;
     st_store *store;
     st_pool *pool;
@@ -33,6 +35,9 @@ typedef struct srv_http_options {
     uint64_t read_seconds;      /* that a client may wait for what it reads */
     uint64_t heartbeat_micros;  /* of silence, after which an answer that goes on sends a comment */
 } srv_http_options;
+
+/* The connections that wait to be accepted. */
+enum { SRV_BACKLOG = 1024 };
 
 /* Begins to accept. NULL with a sentence in `message` when it cannot. */
 srv_http *srv_http_start(const srv_http_options *options, char *message, size_t size);

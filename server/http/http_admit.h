@@ -3,7 +3,7 @@
 #ifndef HE_SERVER_HTTP_HTTP_ADMIT_H
 #define HE_SERVER_HTTP_HTTP_ADMIT_H
 
-#include "server/http/http_framing.h"
+#include "server/http/syntax/http_framing.h"
 #include "server/http/http_policy.h"
 #include "server/log/access.h"
 #include "server/net/address.h"

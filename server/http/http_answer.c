@@ -250,7 +250,7 @@ bool srv_answer_send(srv_request *r)
 }
 
 /* libmicrohttpd takes no response while a body is arriving. So that a client who sends without end
- * learns why it is cut off, the answer is written to the socket as it is; closing it then drains
+ * learns why it is cut off, the answer is written past libmicrohttpd; closing it then drains
  * the rest of the body. */
 void srv_answer_cut_off(srv_request *r)
 {
@@ -259,8 +259,7 @@ void srv_answer_cut_off(srv_request *r)
     describe(r, &wire);
     if (r->socket != NULL && !is_streamed(r)) {
         r->socket->drain = true;
-        if (srv_wire_send(&wire, MHD_get_reason_phrase_for((unsigned)wire.status),
-                          r->socket->socket)) {
+        if (srv_wire_send(&wire, MHD_get_reason_phrase_for((unsigned)wire.status), r->socket)) {
             r->status = wire.status;
             r->bytes_out = (uint64_t)wire.length;
         }

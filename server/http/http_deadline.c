@@ -100,6 +100,8 @@ bool srv_connection_is_late(const srv_connection *c, const srv_deadline_options 
     uint64_t elapsed = now > since ? now - since : 0;
     crowded = crowded || atomic_load_explicit(&c->beyond, memory_order_relaxed);
     switch (stage) {
+    case SRV_STAGE_HANDSHAKE:
+        return elapsed > (crowded ? CROWDED_SECONDS : o->head) * SECOND;
     case SRV_STAGE_IDLE:
         return elapsed > (crowded ? CROWDED_SECONDS : o->idle) * SECOND;
     case SRV_STAGE_HEAD:
@@ -138,14 +140,33 @@ static void count_kept(srv_connection *c, uint64_t kept)
     c->kept = kept;
 }
 
-/* What the kernel holds of an answer, with its own records; 0 where it does not say. */
-static uint64_t kept_by_kernel(int socket)
+/* What the kernel holds of an answer, with its own records; 0 where it does not say. A Unix socket
+ * queues nothing of its own: all is with the reader. */
+static uint64_t kept_by_kernel(const srv_connection *c)
 {
     uint32_t info[SK_MEMINFO_VARS] = {0};
     socklen_t length = sizeof info;
-    return getsockopt(socket, SOL_SOCKET, SO_MEMINFO, info, &length) == 0
-               ? info[SK_MEMINFO_WMEM_QUEUED]
+    return getsockopt(c->socket, SOL_SOCKET, SO_MEMINFO, info, &length) == 0
+               ? info[c->counts_sent ? SK_MEMINFO_WMEM_ALLOC : SK_MEMINFO_WMEM_QUEUED]
                : 0;
+}
+
+/* Of all that was ever sent, what has arrived. What waits in a Unix socket (`outstanding`) is told
+ * with the kernel's own records, so that less seems to have arrived while more waits: it never
+ * counts backwards. False where the kernel does not say. */
+static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
+{
+    struct tcp_info info = {0};
+    socklen_t length = sizeof info;
+    if (c->counts_sent) {
+        uint64_t sent = atomic_load_explicit(&c->sent, memory_order_relaxed);
+        uint64_t acked = sent > outstanding ? sent - outstanding : 0;
+        c->acked = acked > c->acked ? acked : c->acked;
+        return true;
+    }
+    bool told = getsockopt(c->socket, IPPROTO_TCP, TCP_INFO, &info, &length) == 0;
+    c->acked = told ? info.tcpi_bytes_acked : c->acked;
+    return told;
 }
 
 /* May bytes of an answer wait? While IDLE, no longer than until once none did. */
@@ -157,8 +178,6 @@ static bool may_wait(const srv_connection *c, int stage, uint64_t since)
 
 static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, uint64_t now)
 {
-    struct tcp_info info = {0};
-    socklen_t length = sizeof info;
     int outstanding = 0;
     int stage = atomic_load_explicit(&c->stage, memory_order_acquire);
     uint64_t since = atomic_load_explicit(&c->since, memory_order_relaxed);
@@ -167,14 +186,14 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
         return false;
     }
     if (ioctl(c->socket, SIOCOUTQ, &outstanding) != 0 ||
-        getsockopt(c->socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) {
+        !find_acknowledged(c, (uint64_t)outstanding)) {
         return false;
     }
     c->taken = stage == SRV_STAGE_IDLE && outstanding == 0 ? since : 0;
-    count_kept(c, outstanding == 0 ? 0 : kept_by_kernel(c->socket));
+    count_kept(c, outstanding == 0 ? 0 : kept_by_kernel(c));
     const srv_deadline_options patient = {.grace = o->total, .min_rate = 1};
     return srv_connection_is_stuck(c, stage == SRV_STAGE_LIVE ? &patient : o, (uint64_t)outstanding,
-                                   info.tcpi_bytes_acked, now);
+                                   c->acked, now);
 }
 
 /* Has the client closed before its request was complete? Seen twice without a move in between: what
@@ -344,19 +363,22 @@ void srv_deadlines_free(srv_deadlines *d)
 }
 
 srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct sockaddr *peer,
-                                  uint32_t buffer)
+                                  gnutls_session_t session, uint32_t buffer)
 {
     srv_connection *c = he_mem_zero(1, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
     c->socket = socket;
+    c->session = session;
+    c->counts_sent = peer->sa_family == AF_UNIX;
     c->of_peer = SRV_NO_PEER;
     c->buffer = buffer;
     srv_buffer_rest(buffer, st_clock_micros());
     srv_address_of_peer(socket, peer, c->peer);
     c->client = srv_address_key(c->peer);
-    srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
+    srv_connection_enter(c, session == NULL ? SRV_STAGE_IDLE : SRV_STAGE_HANDSHAKE,
+                         st_clock_micros());
     pthread_mutex_lock(&d->lock);
     c->next = d->first;
     if (c->next != NULL) {

@@ -4,10 +4,13 @@
  * thread of this module looks at every connection twice a second and shuts down the socket of one
  * that outstays its stage; libmicrohttpd then sees the end and cleans up.
  *
+ *     HANDSHAKE                       of TLS; a plain connection begins with IDLE
+ *         |
  *     IDLE    --first byte-->  HEAD  --headers-->  BODY  --all of it-->  WORK  --queued--> ANSWER
  *       ^                                                                                       |
  *       +---------------------------------- completed ------------------------------------------+
  *
+ *     HANDSHAKE  head seconds; like IDLE a short while only when there are too many connections
  *     IDLE    idle seconds; a short while only when there are too many connections, or too many of
  *             its address
  *     HEAD    head seconds
@@ -18,10 +21,10 @@
  *             work for a client that was reset ends at once, for one that closed its side after a
  *             second, before which it gets its answer
  *     ANSWER  while bytes wait to be taken: min_rate bytes a second, over `grace` seconds. What
- *             counts is what the client's side has acknowledged, not what fits the socket's buffer.
- *             So it goes on while IDLE, when all of an answer is in that buffer
- *     LIVE    an answer that goes on (http_live.h), in place of ANSWER: while bytes wait to be
- *             taken, one a second over `total` seconds
+ *             counts is what the client's side has acknowledged, not what fits the socket's buffer;
+ *             on a Unix socket, which acknowledges nothing, what the client has read. So it goes on
+ * while IDLE, when all of an answer is in that buffer LIVE    an answer that goes on (http_live.h),
+ * in place of ANSWER: while bytes wait to be taken, one a second over `total` seconds
  *
  * Closing costs the workers, who clean up, and the clients' side. So that a thousand slow clients
  * who came together do not keep others waiting when they are closed together, at most SRV_CLOSES
@@ -33,8 +36,9 @@
 #ifndef HE_SERVER_HTTP_HTTP_DEADLINE_H
 #define HE_SERVER_HTTP_HTTP_DEADLINE_H
 
-#include "server/http/http_syntax.h"
+#include "server/http/syntax/http_syntax.h"
 #include "server/net/address.h"
+#include "server/tls/certificate.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -47,7 +51,8 @@ typedef enum srv_stage {
     SRV_STAGE_BODY,
     SRV_STAGE_WORK,
     SRV_STAGE_ANSWER,
-    SRV_STAGE_LIVE
+    SRV_STAGE_LIVE,
+    SRV_STAGE_HANDSHAKE
 } srv_stage;
 
 typedef struct srv_deadline_options {
@@ -65,21 +70,27 @@ typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
     _Atomic int stage;
-    _Atomic uint64_t since; /* microseconds of the monotonic clock */
-    _Atomic uint64_t bytes; /* received in this stage */
-    bool drain;             /* drain after closing */
-    bool is_proxy;          /* a trusted one: what it tells of its client is believed */
-    api_rate_key client;    /* of its address */
-    uint32_t of_peer;       /* peers.h */
-    _Atomic bool beyond;    /* its address had as many connections as it may before */
-    uint32_t buffer;        /* http_buffer.h */
+    _Atomic uint64_t since;   /* microseconds of the monotonic clock */
+    _Atomic uint64_t bytes;   /* received in this stage */
+    bool drain;               /* drain after closing */
+    gnutls_session_t session; /* NULL: plain */
+    srv_certificates *certificates;
+    srv_certificate *certificate; /* held from the handshake on; NULL: none is */
+    bool is_proxy;                /* a trusted one: what it tells of its client is believed */
+    api_rate_key client;          /* of its address */
+    uint32_t of_peer;             /* peers.h */
+    _Atomic bool beyond;          /* its address had as many connections as it may before */
+    uint32_t buffer;              /* http_buffer.h */
     /* The worker's own. */
     srv_syntax syntax;
     uint64_t requests;   /* begun so far, as libmicrohttpd sees it */
     bool widened;        /* the socket has SRV_SEND_BUFFER, not SRV_FIRST_SEND_BUFFER */
     bool tells_end;      /* the kernel says with what is read whether there is more: http_recv.h */
     bool may_have_ended; /* it said so of what was read last */
+    bool counts_sent;    /* of a Unix socket the kernel does not say how much was sent */
+    _Atomic uint64_t sent; /* bytes, as far as they are counted; also read by the thread */
     /* The thread's own. */
+    uint64_t acked;                /* the most that it ever found acknowledged */
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
     uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */
     uint64_t kept;                 /* bytes the kernel had for it, as they were counted last */
@@ -93,9 +104,9 @@ srv_deadlines *srv_deadlines_new(const srv_deadline_options *options);
 /* No connection may be left. */
 void srv_deadlines_free(srv_deadlines *deadlines);
 
-/* NULL when memory is out: then the socket is not watched. */
+/* `session` NULL: no TLS. NULL when memory is out: then the socket is not watched. */
 srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket, const struct sockaddr *peer,
-                                  uint32_t buffer);
+                                  gnutls_session_t session, uint32_t buffer);
 /* The socket is about to be closed. Accepts NULL. */
 void srv_deadlines_remove(srv_deadlines *deadlines, srv_connection *connection);
 size_t srv_deadlines_count(const srv_deadlines *deadlines);

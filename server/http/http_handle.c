@@ -180,6 +180,9 @@ static bool find_client(srv_request *r, const srv_head *head)
 {
     snprintf(r->client.address, sizeof r->client.address, "%s",
              r->socket == NULL ? "-" : r->socket->peer);
+    if (r->socket != NULL && r->socket->session != NULL) {
+        r->client.scheme = SRV_SCHEME_HTTPS;
+    }
     return r->socket == NULL || !r->socket->is_proxy ||
            srv_admit_proxied(r->http->options.policy, head, &r->client, &r->refusal);
 }

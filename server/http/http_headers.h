@@ -7,7 +7,7 @@
 #define HE_SERVER_HTTP_HTTP_HEADERS_H
 
 #include "api/header/request_header.h"
-#include "server/http/http_framing.h"
+#include "server/http/syntax/http_framing.h"
 
 /* Points each of `values` into the head, or into `*joined` where lines were joined, or sets it to
  * NULL where the header is absent. `*joined` is the caller's, is as long needed as the values are,

@@ -1,5 +1,6 @@
 #include "server/http/http_recv.h"
 
+#include "server/tls/tls_record.h"
 #include "system/clock.h"
 
 #include <errno.h>
@@ -8,6 +9,8 @@
 #include <stdatomic.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 /* Zero pages until a descriptor of their range is used. */
 static _Atomic(srv_connection *) watched[SRV_MAX_DESCRIPTORS];
@@ -17,13 +20,26 @@ static bool fits(int socket)
     return socket >= 0 && socket < SRV_MAX_DESCRIPTORS;
 }
 
+/* NULL where the socket is not watched. */
+static srv_connection *find(int socket)
+{
+    return fits(socket) ? atomic_load_explicit(&watched[socket], memory_order_acquire) : NULL;
+}
+
+srv_connection *srv_recv_find(gnutls_session_t session)
+{
+    srv_connection *c = find(gnutls_transport_get_int(session));
+    return c != NULL && c->session == session ? c : NULL;
+}
+
 bool srv_recv_watch(srv_connection *c)
 {
     const int on = 1;
     if (!fits(c->socket)) {
         return false;
     }
-    c->tells_end = setsockopt(c->socket, IPPROTO_TCP, TCP_INQ, &on, sizeof on) == 0;
+    c->tells_end =
+        c->session == NULL && setsockopt(c->socket, IPPROTO_TCP, TCP_INQ, &on, sizeof on) == 0;
     atomic_store_explicit(&watched[c->socket], c, memory_order_release);
     return true;
 }
@@ -80,9 +96,16 @@ static ssize_t receive(void *context, char *buffer, size_t size)
     return got;
 }
 
+static ssize_t receive_tls(void *context, char *buffer, size_t size)
+{
+    const srv_connection *c = context;
+    return srv_tls_receive(c->session, buffer, size);
+}
+
 static ssize_t receive_watched(srv_connection *c, char *buffer, size_t size)
 {
-    ssize_t got = srv_recv_checked(&c->syntax, buffer, size, receive, c);
+    ssize_t got =
+        srv_recv_checked(&c->syntax, buffer, size, c->session == NULL ? receive : receive_tls, c);
     if (got > 0 && c->syntax.requests > c->requests &&
         atomic_load_explicit(&c->stage, memory_order_relaxed) == SRV_STAGE_IDLE) {
         srv_connection_enter(c, SRV_STAGE_HEAD, st_clock_micros());
@@ -97,12 +120,51 @@ bool srv_recv_has_ended(const srv_connection *c)
            recvfrom(c->socket, &byte, 1, MSG_PEEK | MSG_DONTWAIT, NULL, NULL) == 0;
 }
 
+bool srv_recv_send(srv_connection *c, const char *bytes, size_t length)
+{
+    return c->session != NULL
+               ? srv_tls_send(c->session, bytes, length)
+               : send(c->socket, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)length;
+}
+
+/* --- in place of the libraries' --- */
+
 ssize_t recv(int socket, void *buffer, size_t size, int flags)
 {
-    srv_connection *c = NULL;
-    if (flags == 0 && fits(socket)) {
-        c = atomic_load_explicit(&watched[socket], memory_order_acquire);
+    srv_connection *c = flags == 0 ? find(socket) : NULL;
+    return c == NULL || c->session != NULL ? recvfrom(socket, buffer, size, flags, NULL, NULL)
+                                           : receive_watched(c, buffer, size);
+}
+
+ssize_t gnutls_record_recv(gnutls_session_t session, void *buffer, size_t size)
+{
+    srv_connection *c = srv_recv_find(session);
+    if (c == NULL) {
+        return srv_tls_receive(session, buffer, size);
     }
-    return c == NULL ? recvfrom(socket, buffer, size, flags, NULL, NULL)
-                     : receive_watched(c, buffer, size);
+    if (atomic_load_explicit(&c->stage, memory_order_relaxed) == SRV_STAGE_HANDSHAKE) {
+        srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
+    }
+    ssize_t got = receive_watched(c, buffer, size);
+    /* What srv_recv_checked says is none of gnutls' codes. */
+    return got == -1 ? GNUTLS_E_AGAIN : got;
+}
+
+static ssize_t counted(int socket, ssize_t sent)
+{
+    srv_connection *c = sent > 0 ? find(socket) : NULL;
+    if (c != NULL && c->counts_sent) {
+        atomic_fetch_add_explicit(&c->sent, (uint64_t)sent, memory_order_relaxed);
+    }
+    return sent;
+}
+
+ssize_t send(int socket, const void *bytes, size_t size, int flags)
+{
+    return counted(socket, sendto(socket, bytes, size, flags, NULL, 0));
+}
+
+ssize_t sendmsg(int socket, const struct msghdr *message, int flags)
+{
+    return counted(socket, syscall(SYS_sendmsg, socket, message, flags));
 }

@@ -1,13 +1,15 @@
-/* http_recv.h - what libmicrohttpd gets when it calls recv().
+/* http_recv.h - what libmicrohttpd gets when it calls recv() or gnutls_record_recv().
  *
- * This module defines recv() for the whole program, and the dynamic linker binds libmicrohttpd's
- * calls to it, as it does with an allocator of one's own. A call for a watched socket with no
+ * This module defines both for the whole program, and the dynamic linker binds libmicrohttpd's
+ * calls to them, as it does with an allocator of one's own. A call for a watched socket with no
  * flags, as libmicrohttpd makes it, hands the bytes through the socket's state machine
- * (http_syntax.h). All other calls, of other sockets or with flags, are the system's, unchanged.
+ * (http_syntax.h); over TLS it is gnutls_record_recv() that does, and recv(), by which gnutls
+ * reads what is encrypted, does not. All other calls, of other sockets or with flags, are those of
+ * the system and of gnutls, unchanged.
  *
  *   R1  A recv() makes at most one system call: recvmsg(), or recvfrom() where the socket is not
  *       watched. It goes through the C library's function of that name, so that the sanitizers see
- *       it.
+ *       it. A gnutls_record_recv() is one gnutls_record_recv_seq().
  *   R2  After a fault nothing more is read from the socket: the ending that the machine puts in
  *       place of the rest is handed out, then nothing (EAGAIN), until the handler's answer closes
  *       the connection.
@@ -21,13 +23,12 @@
  *       further event tells of it, and so libmicrohttpd would wait for the next request until the
  *       connection is idle for too long. The kernel says with the bytes whether there is more to
  *       read (TCP_INQ), which an end is.
- *   R6  A connection enters SRV_STAGE_HEAD with the first byte of a request.
+ *       Over TLS libmicrohttpd itself reads on until there is no more, and finds the end.
+ *   R6  A connection enters SRV_STAGE_HEAD with the first byte of a request, and a TLS connection
+ *       SRV_STAGE_IDLE when it is first read from, which libmicrohttpd does after the handshake.
  *
- * A TLS listener needs gnutls_record_recv() beside it, which libmicrohttpd imports as well: defined
- * here, with srv_recv_checked and a `receive` that calls the library's own, found by
- * dlsym(RTLD_NEXT). Its sockets must not be in this table, since gnutls calls recv() to read what
- * is still encrypted: their machine is found by session. Until that is written, no request that
- * came over TLS would be served: the machine has not counted it (S4). */
+ * It also defines send() and sendmsg(), which are the system's but for a count: of a Unix socket
+ * the kernel does not say how much was ever sent, which http_deadline.h wants to know. */
 #ifndef HE_SERVER_HTTP_HTTP_RECV_H
 #define HE_SERVER_HTTP_HTTP_RECV_H
 
@@ -43,9 +44,15 @@ enum { SRV_MAX_DESCRIPTORS = 1 << 20 };
 bool srv_recv_watch(srv_connection *connection);
 /* To be called before the socket is closed. */
 void srv_recv_forget(int socket);
+/* The connection of a TLS session; NULL where it is not watched. */
+srv_connection *srv_recv_find(gnutls_session_t session);
 /* Has the client closed its side, and is no request begun beside the one that is served? Then its
  * answer is the last. For the worker of the connection. Accepts NULL: false. */
 bool srv_recv_has_ended(const srv_connection *connection);
+
+/* Writes to the client past libmicrohttpd, which must not be in the middle of an answer. False when
+ * the socket, which does not block, would not take all of it. */
+bool srv_recv_send(srv_connection *connection, const char *bytes, size_t length);
 
 /* Reads by `receive`, which returns like recv(), and checks what came. Like recv(), -1 with EAGAIN
  * after the end of a fault. */

@@ -1,10 +1,10 @@
 #include "server/http/http_wire.h"
 
 #include "api/request/answer_headers.h"
+#include "server/http/http_recv.h"
 
 #include <assert.h>
 #include <string.h>
-#include <sys/socket.h>
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value)
 {
@@ -66,7 +66,7 @@ void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight)
     }
 }
 
-bool srv_wire_send(const srv_wire *wire, const char *reason, int socket)
+bool srv_wire_send(const srv_wire *wire, const char *reason, srv_connection *connection)
 {
     api_text text = {.maximum = (size_t)64 << 10};
     api_text_add_format(&text, "HTTP/1.1 %d %s\r\nConnection: close\r\nContent-Length: %lld\r\n",
@@ -76,8 +76,7 @@ bool srv_wire_send(const srv_wire *wire, const char *reason, int socket)
     }
     api_text_add_string(&text, "\r\n");
     api_text_add(&text, wire->bytes, (size_t)wire->length);
-    bool sent = !text.failed && send(socket, text.bytes, text.length,
-                                     MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)text.length;
+    bool sent = !text.failed && srv_recv_send(connection, text.bytes, text.length);
     api_text_clear(&text);
     return sent;
 }

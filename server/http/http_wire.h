@@ -4,6 +4,7 @@
 
 #include "api/json/problem.h"
 #include "api/request/api.h"
+#include "server/http/http_deadline.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -32,8 +33,8 @@ void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *re
 /* Let a page of `origin` read the answer (P4). `preflight`: and say what it may send. */
 void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight);
 
-/* Write it to a socket that does not block, closing the connection. False when the socket would
- * not take all of it. */
-bool srv_wire_send(const srv_wire *wire, const char *reason, int socket);
+/* Write it to a connection past libmicrohttpd (srv_recv_send), closing it. False when the socket
+ * would not take all of it. */
+bool srv_wire_send(const srv_wire *wire, const char *reason, srv_connection *connection);
 
 #endif

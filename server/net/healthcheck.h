@@ -5,9 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* GET `url` ("http://127.0.0.1:8080/livez"; the host an address or localhost), or /livez at
- * `listen` when `url` is NULL, waiting 3 seconds at most. True for status 200; else `message` says
- * what came instead. */
-bool srv_healthcheck(const char *url, const char *listen, char *message, size_t size);
+/* GET `url`, waiting 3 seconds at most: "http://127.0.0.1:8080/livez", "https://...", whose
+ * certificate is not verified (tls_client.h), or "unix:/run/hedge/socket". The host is an address
+ * or localhost; without a path, /livez is asked for. True for status 200; else `message` says what
+ * came instead. */
+bool srv_healthcheck(const char *url, char *message, size_t size);
 
 #endif

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <setjmp.h>
@@ -26,6 +27,7 @@ enum { LONGEST_SECONDS = 600 };
 struct client {
     CURL *curl;
     const daemon_process *daemon;
+    const char *trusted;
 };
 
 typedef struct bytes {
@@ -59,6 +61,11 @@ client *client_new(const daemon_process *d)
     assert_non_null(c->curl);
     c->daemon = d;
     return c;
+}
+
+void client_trust(client *c, const char *certificate)
+{
+    c->trusted = certificate;
 }
 
 void client_free(client *c)
@@ -123,8 +130,16 @@ reply client_send(client *c, const char *method, const char *path, const void *b
     bytes received = {0}, head = {0};
     add(&received, "", 0);
     add(&head, "", 0);
-    snprintf(url, sizeof url, "%s%s", daemon_url(c->daemon), path);
     curl_easy_reset(c->curl);
+    if (strncmp(daemon_url(c->daemon), "unix:", 5) == 0) {
+        snprintf(url, sizeof url, "http://localhost%s", path);
+        curl_easy_setopt(c->curl, CURLOPT_UNIX_SOCKET_PATH, daemon_url(c->daemon) + 5);
+    } else {
+        snprintf(url, sizeof url, "%s%s", daemon_url(c->daemon), path);
+    }
+    if (c->trusted != NULL) {
+        curl_easy_setopt(c->curl, CURLOPT_CAINFO, c->trusted);
+    }
     struct curl_slist *list = header_list(headers, body != NULL);
     curl_easy_setopt(c->curl, CURLOPT_URL, url);
     curl_easy_setopt(c->curl, CURLOPT_PATH_AS_IS, 1L);
@@ -231,15 +246,23 @@ bool reply_is_null(const reply *r, const char *path)
 
 int client_connect(const daemon_process *d, int buffer)
 {
+    const char *url = daemon_url(d);
+    const bool is_path = strncmp(url, "unix:", 5) == 0;
+    struct sockaddr_un local = {.sun_family = AF_UNIX};
     struct sockaddr_in address = {.sin_family = AF_INET,
                                   .sin_port = htons((uint16_t)daemon_port(d)),
                                   .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    int fd = socket(AF_INET, SOCK_STREAM, 0);
+    int fd = socket(is_path ? AF_UNIX : AF_INET, SOCK_STREAM, 0);
     assert_true(fd >= 0);
     if (buffer > 0) {
         assert_int_equal(setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer), 0);
     }
-    assert_int_equal(connect(fd, (struct sockaddr *)&address, sizeof address), 0);
+    if (is_path) {
+        snprintf(local.sun_path, sizeof local.sun_path, "%s", url + 5);
+        assert_int_equal(connect(fd, (struct sockaddr *)&local, sizeof local), 0);
+    } else {
+        assert_int_equal(connect(fd, (struct sockaddr *)&address, sizeof address), 0);
+    }
     return fd;
 }
 

@@ -33,6 +33,9 @@ typedef struct client client; /* a libcurl handle, which keeps its connection */
 
 client *client_new(const daemon_process *d);
 void client_free(client *c);
+/* Of a daemon that speaks TLS: trust the certificate in this file, which is borrowed, and no other.
+ */
+void client_trust(client *c, const char *certificate);
 /* `body` NULL sends none. `headers` are "Name: value" lines that end in NULL, or NULL; a body
  * without a Content-Type among them is application/json. */
 reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,

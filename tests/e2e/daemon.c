@@ -20,7 +20,7 @@
 
 #include <cmocka.h>
 
-enum { MOST_ARGUMENTS = 32, URL_BYTES = 64 };
+enum { MOST_ARGUMENTS = 32, URL_BYTES = 160 };
 
 struct daemon_process {
     pid_t pid;
@@ -164,7 +164,7 @@ static daemon_process *start(const char *const *arguments, outlet to)
     while (!find_url(d) && !d->ended) {
         pthread_cond_wait(&d->changed, &d->lock);
     }
-    bool listening = d->port > 0;
+    bool listening = d->port > 0 || strncmp(d->url, "unix:", 5) == 0;
     if (!listening) {
         print_error("%s did not start:\n%s\n", program(), d->log == NULL ? "" : d->log);
     }

@@ -20,7 +20,8 @@ void daemon_kill(daemon_process *d);
  * NUL; the caller's to free. */
 char *daemon_stop_and_tell(daemon_process *d);
 
-const char *daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121" */
+const char *
+daemon_url(const daemon_process *d); /* "http://127.0.0.1:43121", "https://...", "unix:PATH" */
 int daemon_port(const daemon_process *d);
 int daemon_pid(const daemon_process *d);
 /* The most memory it ever held, in bytes; seconds of processor time it has used. */

@@ -3,7 +3,7 @@
  * the same fault in the same request; nothing after a fault changes any of it; and what is passed
  * on ends lines and chunks as RFC 9112 has it. */
 #include "fuzz/fuzz.h"
-#include "server/http/http_syntax.h"
+#include "server/http/syntax/http_syntax.h"
 #include "unit/fixture.h"
 
 enum { PIECES = 4, ENDING = 32, STEPS = 6 };

@@ -2,7 +2,7 @@
  * else. What makes a request ambiguous or too large is found in its bytes: test_srv_syntax.c. */
 #include "tests/unit/fixture.h"
 
-#include "server/http/http_framing.h"
+#include "server/http/syntax/http_framing.h"
 #include "server/http/http_headers.h"
 #include "server/http/http_policy.h"
 

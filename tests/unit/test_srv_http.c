@@ -66,6 +66,7 @@ static int start(void **state)
         .read_seconds = read_seconds,
         .heartbeat_micros = UINT64_C(3600) * 1000000,
         .workers = 1,
+        .listening = -1,
     };
     char message[256];
     assert_true(srv_address_parse("127.0.0.1:0", &options.address));

@@ -49,7 +49,7 @@ static void open_pairs(srv_deadlines *d, pairs *p)
         int ends[2];
         assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
         p->others[i] = ends[1];
-        p->watched[i] = srv_deadlines_add(d, ends[0], &peer, UINT32_MAX);
+        p->watched[i] = srv_deadlines_add(d, ends[0], &peer, NULL, UINT32_MAX);
         assert_non_null(p->watched[i]);
     }
 }

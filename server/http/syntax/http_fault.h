@@ -2,8 +2,8 @@
  *
  * http_syntax.h finds faults; the limits that it holds requests to are here, because the sentences
  * name them. */
-#ifndef HE_SERVER_HTTP_HTTP_FAULT_H
-#define HE_SERVER_HTTP_HTTP_FAULT_H
+#ifndef HE_SERVER_HTTP_SYNTAX_HTTP_FAULT_H
+#define HE_SERVER_HTTP_SYNTAX_HTTP_FAULT_H
 
 #include "api/json/problem.h"
 

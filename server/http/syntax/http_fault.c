@@ -1,4 +1,4 @@
-#include "server/http/http_fault.h"
+#include "server/http/syntax/http_fault.h"
 
 #include "api/limits.h"
 

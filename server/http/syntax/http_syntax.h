@@ -54,10 +54,10 @@
  *   F8  A chunk's size is 1 to SRV_MAX_CHUNK_DIGITS hexadecimal digits, below 2^63. Its extensions
  *       have no control character but tab, and at most SRV_MAX_EXTENSION bytes, SRV_MAX_HEAD in all
  *       chunks of a request. CR LF follows its data. */
-#ifndef HE_SERVER_HTTP_HTTP_SYNTAX_H
-#define HE_SERVER_HTTP_HTTP_SYNTAX_H
+#ifndef HE_SERVER_HTTP_SYNTAX_HTTP_SYNTAX_H
+#define HE_SERVER_HTTP_SYNTAX_HTTP_SYNTAX_H
 
-#include "server/http/http_fault.h"
+#include "server/http/syntax/http_fault.h"
 
 #include <stdbool.h>
 #include <stddef.h>

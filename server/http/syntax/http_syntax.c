@@ -1,7 +1,7 @@
-#include "server/http/http_syntax.h"
+#include "server/http/syntax/http_syntax.h"
 
 #include "api/limits.h"
-#include "server/http/http_character.h"
+#include "server/http/syntax/http_character.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* http_character.h - which characters may stand where in a request (RFC 9110, RFC 3986).
  *
  * Inline, because every byte of every request is asked about once. */
-#ifndef HE_SERVER_HTTP_HTTP_CHARACTER_H
-#define HE_SERVER_HTTP_HTTP_CHARACTER_H
+#ifndef HE_SERVER_HTTP_SYNTAX_HTTP_CHARACTER_H
+#define HE_SERVER_HTTP_SYNTAX_HTTP_CHARACTER_H
 
 #include <stdbool.h>
 #include <stdint.h>

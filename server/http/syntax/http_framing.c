@@ -1,4 +1,4 @@
-#include "server/http/http_framing.h"
+#include "server/http/syntax/http_framing.h"
 
 #include <string.h>
 #include <strings.h>

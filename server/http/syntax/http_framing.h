@@ -4,10 +4,10 @@
  * visible ASCII, Content-Length a number, Transfer-Encoding chunked, and neither of them nor Host
  * is given twice. What is left to refuse is a target that is neither path?query nor
  * http://authority/path?query. The connection of a refused request is closed. */
-#ifndef HE_SERVER_HTTP_HTTP_FRAMING_H
-#define HE_SERVER_HTTP_HTTP_FRAMING_H
+#ifndef HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
+#define HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
 
-#include "server/http/http_fault.h"
+#include "server/http/syntax/http_fault.h"
 
 #include <stdbool.h>
 #include <stddef.h>
