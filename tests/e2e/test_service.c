@@ -60,8 +60,7 @@ static void expect_message(int fd, const char *expected)
 static void expect_ready(int fd, const daemon_process *d)
 {
     char expected[256], text[512];
-    snprintf(expected, sizeof expected, "READY=1\nSTATUS=listening on %s",
-             strstr(daemon_url(d), "://") + 3);
+    snprintf(expected, sizeof expected, "READY=1\nSTATUS=listening on %s", daemon_url(d));
     hear(fd, text);
     assert_string_equal(text, expected);
 }
