@@ -82,7 +82,7 @@ def has_space(run, client, made):
 
 def says_in_turn(log, folder):
     """Full, space again, full: a line each, which names the folder."""
-    told = [line for line in log.splitlines() if f' the disk of {folder} ' in line]
+    told = [line for line in log.splitlines() if f'the disk of {folder} ' in line]
     return told and all(('is full' if i % 2 == 0 else 'has space') in line
                         for i, line in enumerate(told))
 
