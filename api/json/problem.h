@@ -167,15 +167,13 @@
     X(RATE_LIMIT, "rate_limit", 429, "Too many requests",                                          \
       "The token, or without one the address, has had all the requests or bytes a second that it " \
       "may. The detail says which; RateLimit-Policy tells the limits, RateLimit what is left. "    \
-      "Try "                                                                                       \
-      "again after Retry-After seconds.")                                                          \
+      "Try again after Retry-After seconds.")                                                      \
     X(TOO_MANY_CONNECTIONS, "too_many_connections", 429, "Too many connections of one address",    \
       "The address has as many connections as one may. This one is closed; use those that are "    \
       "open, or try again after Retry-After seconds.")                                             \
     X(TOO_MANY_JOBS_OF_TOKEN, "too_many_jobs_of_token", 429, "Too many jobs of one token",         \
       "As many jobs of the token wait or run as it may have. Try again after Retry-After "         \
-      "seconds, "                                                                                  \
-      "or cancel one.")                                                                            \
+      "seconds, or cancel one.")                                                                   \
     X(INTERNAL, "internal", 500, "The server made a mistake",                                      \
       "The request may be fine; the server broke one of its own rules answering it.")              \
     X(MESH_DAMAGED, "mesh_damaged", 500, "The mesh is damaged",                                    \
@@ -231,8 +229,7 @@
     X(QUOTA, "quota", 507, "The token's quota is used up",                                         \
       "The token that made the mesh may hold only so many meshes, or so many bytes of memory in "  \
       "them; the detail says which. Nothing was changed. Delete a mesh of that token, or make "    \
-      "one "                                                                                       \
-      "smaller.")                                                                                  \
+      "one smaller.")                                                                              \
     X(TOO_MANY_MESHES, "too_many_meshes", 507, "There are too many meshes",                        \
       "The configured number of meshes is reached. Delete one and try again.")
 

@@ -9,9 +9,10 @@
  *     requests     both    requests a second: rate.h                      429 rate_limit
  *     bytes        both    bytes of bodies a second, both ways: rate.h    429 rate_limit
  *     connections  address that are open                                  429 too_many_connections
- *     jobs         token   that wait or run                               429
- * too_many_jobs_of_token meshes       token   that it made and that exist                    507
- * quota mesh_bytes   token   that those take in memory, as their cards say  507 quota */
+ *     jobs         token   that wait or run                 429 too_many_jobs_of_token
+ *     meshes       token   that it made and that exist      507 quota
+ *     mesh_bytes   token   memory of those, by their cards  507 quota
+ */
 #ifndef HE_API_LIMIT_LIMIT_H
 #define HE_API_LIMIT_LIMIT_H
 

@@ -9,7 +9,7 @@
 
 /* Fill the problem where the store said ST_QUOTA: always false. */
 bool api_quota_fail_new(api_exchange *x); /* of a mesh that the request would make */
-/* Of the growth of x->mesh. What another token may have is not told. */
+/* Refuses the growth of x->mesh. What another token may have is not told. */
 bool api_quota_fail(api_exchange *x);
 
 #endif

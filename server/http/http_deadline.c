@@ -151,7 +151,7 @@ static uint64_t kept_by_kernel(const srv_connection *c)
                : 0;
 }
 
-/* Of all that was ever sent, what has arrived. What waits in a Unix socket (`outstanding`) is told
+/* What has arrived of all that was ever sent. What waits in a Unix socket (`outstanding`) is told
  * with the kernel's own records, so that less seems to have arrived while more waits: it never
  * counts backwards. False where the kernel does not say. */
 static bool find_acknowledged(srv_connection *c, uint64_t outstanding)

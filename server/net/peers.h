@@ -14,7 +14,7 @@ typedef struct srv_peers srv_peers;
 
 enum { SRV_NO_PEER = UINT32_MAX };
 
-/* For so many connections at one time. NULL when memory is out. */
+/* Counts so many connections at one time. NULL when memory is out. */
 srv_peers *srv_peers_new(size_t connections);
 void srv_peers_free(srv_peers *peers); /* takes NULL */
 

@@ -33,7 +33,8 @@ typedef struct client client; /* a libcurl handle, which keeps its connection */
 
 client *client_new(const daemon_process *d);
 void client_free(client *c);
-/* Of a daemon that speaks TLS: trust the certificate in this file, which is borrowed, and no other.
+/* With a daemon that speaks TLS: trust the certificate in this file, which is borrowed, and no
+ * other.
  */
 void client_trust(client *c, const char *certificate);
 /* `body` NULL sends none. `headers` are "Name: value" lines that end in NULL, or NULL; a body

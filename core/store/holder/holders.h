@@ -50,7 +50,7 @@ typedef struct st_holding {
 
 /* A mesh counted for *gone and counts for *come from now on. ST_QUOTA, and nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
-/* The same of what is a fact already, whatever the limits. */
+/* Counts what is a fact already, whatever the limits. */
 void st_holders_note(st_holders *holders, const st_holding *gone, const st_holding *come);
 
 typedef struct st_holder_limit {
