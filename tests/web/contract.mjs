@@ -17,7 +17,7 @@ const LISTED = [
     'content-encoding',
 ];
 // What may be found wrong before the path is looked at.
-const BEFORE_ROUTING = [400, 403, 413, 414, 421, 431, 501, 503, 505];
+const BEFORE_ROUTING = [400, 403, 413, 414, 421, 429, 431, 501, 503, 505];
 const PROBLEM = 'application/problem+json';
 
 // --- closed schemas ---
