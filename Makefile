@@ -338,7 +338,8 @@ LOAD    ?= 1
 soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
 	@HEDGED=$(abspath $(HEDGED)) node tests/soak/soak.mjs --minutes $(MINUTES) --load $(LOAD)
 
-# HOSTILE_FLAGS="--only fan" for the rows whose name has that; SEED=... repeats a run.
+# HOSTILE_FLAGS="--only fan" for the rows whose name has that, "--parts operations,starving" for parts
+# of run.py's list; SEED=... repeats a run.
 hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what each may hold of the daemon, and what it held
 	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
 	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)

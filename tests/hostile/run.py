@@ -1,6 +1,9 @@
 """run.py - attacks a daemon, and says what each request may hold of it and what it held.
 
-    python3 tests/hostile/run.py --hedged build/hedged [--quick] [--only TEXT] [--seed N]
+    python3 tests/hostile/run.py --hedged build/hedged [--quick] [--parts rows,starving] [--only TEXT]
+                                 [--seed N]
+
+The parts are PARTS below; `cancelling` abandons what was found slow in `rows`, which it needs.
 
 No request of less than a megabyte may hold the worker for more than 50 ms or, unless it is answered
 as a job, a thread of the pool for more than a second; what is cancelled ends within 0.1 s; and while
@@ -29,6 +32,7 @@ WORKER, THREAD, CANCELLED = 50, 1000, 100  # milliseconds
 CLOSED = 1000                              # milliseconds that a client who closed its side has
 PLENTY = 5         # times the limit, after which a request is cut off so that the rest gets its turn
 REFERENCE = 6.0    # milliseconds that `calibrate` takes with a release build on an idle EPYC
+PARTS = ('rows', 'operations', 'corpus', 'cancelling', 'starving')
 
 
 def state_of(reply):
@@ -294,23 +298,37 @@ def attack_all(field, chance):
     field.calibrate()
     print(f'{"attack":66} {"bytes":>7} {"status":>6} {"worker ms":>9} {"pool ms":>9} '
           f'{"limit":>12} verdict')
-    for row in attacks.ROWS:
-        if (row.quick or not options.quick) and field.is_wanted(row.name):
-            field.attack(row)
-    if not options.quick:
+    if 'rows' in options.parts:
+        for row in attacks.ROWS:
+            if (row.quick or not options.quick) and field.is_wanted(row.name):
+                field.attack(row)
+    if 'operations' in options.parts and not options.quick:
         field.attack_operations('fan of 60,000', meshes.fan(60000), 60000)
         field.attack_operations('bipyramid of 50,000', meshes.bipyramid(25000), 50000)
-        if options.corpus and os.path.isdir(options.corpus):
+    if 'corpus' in options.parts and not options.quick and options.corpus:
+        if os.path.isdir(options.corpus):
             field.attack_corpus(options.corpus)
-    field.cancel_slow(chance)
-    if field.is_wanted('starve'):
+    if 'cancelling' in options.parts:
+        field.cancel_slow(chance)
+    if 'starving' in options.parts and field.is_wanted('starve'):
         field.starve(chance)
+
+
+def parts_of(text):
+    parts = text.split(',')
+    unknown = [part for part in parts if part not in PARTS]
+    if unknown:
+        raise argparse.ArgumentTypeError(f'no part is called {unknown[0]!r}: {", ".join(PARTS)}')
+    if 'cancelling' in parts and 'rows' not in parts:
+        raise argparse.ArgumentTypeError('cancelling needs rows, which tell what is slow')
+    return parts
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('--hedged', required=True)
     parser.add_argument('--quick', action='store_true')
+    parser.add_argument('--parts', type=parts_of, default=PARTS, help=f'of {",".join(PARTS)}')
     parser.add_argument('--only', help='rows whose name has this text, and "starve" for the last')
     parser.add_argument('--corpus')
     parser.add_argument('--seed', type=int, default=int(os.environ.get('SEED', '13')))
