@@ -84,6 +84,30 @@ for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c
 
+# Of tests the pages need the names alone, of which the copy has none.
+for file in $(cd "$OLDPWD" && find tests -type f -not -path '*/.*'); do
+    mkdir -p "$(dirname "$file")" && : >"$file"
+done
+cp "$OLDPWD/tests/README.md" tests/README.md
+# shellcheck disable=SC2046
+pages() { awk -f .ci/lint-pages $(find ./* -type f | sed 's/^..//'); }
+expect 'the pages are as the tree is' '' pages
+echo 'core/attic' >>.ci/rooms
+expect 'a room without a row is found' 'core/README.md: no row of the room attic' pages
+sed -i '/attic/d' .ci/rooms
+sed -i '/^| `query` |/d' core/README.md
+expect 'a row that is missing is found' 'the room format/text stands where .ci/rooms has query' pages
+cp "$OLDPWD/core/README.md" core/README.md
+mkdir tests/attic && : >tests/attic/run.py
+expect 'a folder of tests without a row is found' 'no row of tests/attic' pages
+rm -r tests/attic
+mv api/write/decode_op.c api/write/decoded_op.c
+expect 'a file that is named and gone is found' 'there is no file decode_op.c' pages
+mv api/write/decoded_op.c api/write/decode_op.c
+sed -i 's/\bapi_edits_decode\b/api_edits_planted/' api/write/edits.c
+expect 'a function that is gone from its file is found' 'api/write/edits.c has no api_edits_decode' pages
+cp "$OLDPWD/api/write/edits.c" api/write/edits.c
+
 expect 'the version is one everywhere' '' sh .ci/lint-version
 sed -i 's/image.version="/&9/' Dockerfile
 expect 'a version that differs is found' 'Dockerfile says' sh .ci/lint-version
