@@ -127,9 +127,7 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
  * moment, it seems full again once they take them back. */
 static bool has_room(st_store *store)
 {
-    if (st_memory_is_full()) {
-        st_make_room(store, st_memory_budget() / 64);
-    }
+    st_make_room(store, st_memory_budget() / 64);
     return !st_memory_is_full();
 }
 

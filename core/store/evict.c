@@ -3,6 +3,7 @@
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"
+#include "system/resident.h"
 
 #include <time.h>
 
@@ -142,7 +143,8 @@ static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *lock
 /* Bytes that are to be freed before there are `bytes` more and `share` beside. */
 static uint64_t missing(uint64_t bytes, uint64_t share)
 {
-    const uint64_t wanted = st_memory_used() + bytes + share, budget = st_memory_budget();
+    const uint64_t held = st_memory_used() + st_resident_beside();
+    const uint64_t wanted = held + bytes + share, budget = st_memory_budget();
     return wanted > budget ? wanted - budget : 0; /* others free memory meanwhile */
 }
 
@@ -150,17 +152,22 @@ void st_make_room(st_store *store, uint64_t bytes)
 {
     uint64_t budget = st_memory_budget(), share = budget / 16;
     bool locked;
-    if (budget == 0 || bytes > budget - share || st_memory_has(bytes + share)) {
+    if (budget == 0 || bytes > budget - share || missing(bytes, share) == 0) {
         return;
     }
     /* Who waited here finds the room that was made meanwhile. */
     pthread_mutex_lock(&store->room);
-    if (!st_memory_has(bytes + share)) {
+    if (missing(bytes, share) > 0) {
+        st_resident_measure();
+    }
+    /* Where that found room, some is left before it is measured again. */
+    share += share / 4;
+    if (missing(bytes, share) > 0) {
         st_store_shed(store);
     }
-    if (store->journal.keeps && !st_memory_has(bytes + share)) {
-        /* Twice the share, so that it is not to be done again at once. */
-        (void)evict(store, missing(bytes, 2 * share), UINT64_MAX, &locked);
+    if (store->journal.keeps && missing(bytes, share) > 0) {
+        /* More than is missing, so that it is not to be done again at once. */
+        (void)evict(store, missing(bytes, 2 * budget / 16), UINT64_MAX, &locked);
     }
     pthread_mutex_unlock(&store->room);
 }
@@ -196,7 +203,18 @@ void st_store_rest(st_store *store)
 {
     const uint64_t share = st_memory_budget() / 16, now = st_clock_micros();
     bool locked;
-    if (store->journal.keeps && share > 0 && now > COLD_MICROS && missing(0, 2 * share) > 0) {
+    if (!store->journal.keeps || share == 0) {
+        return;
+    }
+    const bool beyond = st_resident_is_beyond();
+    pthread_mutex_lock(&store->room);
+    if (beyond || missing(0, 2 * share) > 0) {
+        st_resident_measure();
+    }
+    if (beyond) {
+        (void)evict(store, missing(0, 2 * share), UINT64_MAX, &locked);
+    } else if (now > COLD_MICROS && missing(0, 2 * share) > 0) {
         (void)evict(store, missing(0, 2 * share), now - COLD_MICROS, &locked);
     }
+    pthread_mutex_unlock(&store->room);
 }

@@ -53,12 +53,18 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
+/* With the word that the C library has before each block. */
+static size_t block_bytes(void *memory)
+{
+    return malloc_usable_size(memory) + sizeof(size_t);
+}
+
 /* The block's true size is known only once it is there: the request is taken from the budget
  * first, the difference is settled after. */
 static void *resize(void *context, void *memory, size_t size)
 {
     (void)context;
-    size_t before = memory == NULL ? 0 : malloc_usable_size(memory);
+    size_t before = memory == NULL ? 0 : block_bytes(memory);
     if (size == 0) {
         free(memory);
         give_back(before);
@@ -73,7 +79,7 @@ static void *resize(void *context, void *memory, size_t size)
         give_back(growth);
         return NULL;
     }
-    size_t after = malloc_usable_size(resized);
+    size_t after = block_bytes(resized);
     /* Modular arithmetic: the sum is right whichever is larger. */
     atomic_fetch_add_explicit(&used, (uint64_t)after - before - growth, memory_order_relaxed);
     return resized;

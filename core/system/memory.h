@@ -2,7 +2,8 @@
  *
  * Everything core and api allocate comes through the hook installed here: columns at their
  * capacity, undo, snapshots, uploads, documents, answers. It is counted as the C library sees it
- * (malloc_usable_size), in one atomic counter.
+ * (malloc_usable_size and its word before each block), in one atomic counter. What the process
+ * holds beside that is not refused to anybody, but has meshes leave earlier (resident.h).
  *
  * What would exceed the budget fails like an allocation. The last sixteenth is kept for blocks of
  * at most 64 KiB, so that a full server still answers, refuses and deletes. */

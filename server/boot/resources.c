@@ -2,6 +2,7 @@
 
 #include "system/memory.h"
 #include "system/memory_limit.h"
+#include "system/resident.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -80,4 +81,5 @@ void srv_choose_budget(srv_log *log, const srv_config *config)
         srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB as told", budget / mib);
     }
     st_memory_set_budget(budget);
+    st_resident_watch();
 }

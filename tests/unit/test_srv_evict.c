@@ -10,10 +10,13 @@
 #include "edit/local/vertex.h"
 #include "store/table.h"
 #include "system/memory.h"
+#include "system/resident.h"
 #include "tests/model/random.h"
 
 #include <inttypes.h>
 #include <stdatomic.h>
+#include <string.h>
+#include <sys/mman.h>
 
 enum { MESHES = 5, THREADS = 4, OPERATIONS = 4000 };
 static const uint64_t BUDGET = (uint64_t)1 << 30;
@@ -407,6 +410,49 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     close_full();
 }
 
+/* What the process holds beside counted blocks: here a mapping, in a daemon its program and the
+ * holes between blocks. */
+static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state)
+{
+    (void)state;
+    enum { SMALL_BUDGET = 64 << 20, COUNTED = 30 << 20, BESIDE = 128 << 20 };
+    st_mesh *mesh = NULL;
+    st_memory_install(SMALL_BUDGET);
+    journal = kept_journal_new();
+    store = open_store(NULL);
+    make("a");
+    void *counted = he_mem_alloc(COUNTED);
+    unsigned char *beside =
+        mmap(NULL, BESIDE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    assert_non_null(counted);
+    assert_ptr_not_equal(beside, MAP_FAILED);
+    memset(beside, 1, BESIDE);
+    st_make_room(store, 0);
+    st_store_rest(store);
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* nobody measures */
+    st_release(mesh);
+    st_resident_watch();
+    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* never more */
+    st_make_room(store, 0);
+    assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
+
+    assert_int_equal(st_load(store, "a", &mesh), ST_OK);
+    st_release(mesh);
+    st_store_rest(
+        store); /* resident bytes are beyond the budget: it need not have been cold long */
+    assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
+    assert_int_equal(st_load(store, "a", &mesh), ST_OK);
+    st_release(mesh);
+    st_store_rest(store); /* they did not grow */
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK);
+    st_release(mesh);
+    munmap(beside, BESIDE);
+    he_mem_free(counted);
+    st_store_free(store);
+    kept_journal_free(journal);
+    he_mem_set_hook(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -418,6 +464,7 @@ int main(void)
         cmocka_unit_test(a_request_gets_what_cold_meshes_hold),
         cmocka_unit_test(a_request_under_locks_is_not_stopped),
         cmocka_unit_test(what_was_not_used_for_a_minute_leaves),
+        cmocka_unit_test(what_is_resident_beside_counted_blocks_has_meshes_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,85 @@
+#include "system/resident.h"
+
+#include "system/clock.h"
+#include "system/memory.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MEASURE_MICROS = 100 * 1000 };
+
+/* Shares of the budget: how near resident bytes may come to it, and how much more there must be
+ * before that is told again. Holes do not fall at once when meshes leave, so that the second
+ * question would empty memory where it were asked without that. */
+enum { NEAR_SHARE = 32, GROWTH_SHARE = 192 };
+
+static bool watched;
+static _Atomic uint64_t beside;
+static _Atomic uint64_t measured; /* when */
+static _Atomic uint64_t told;     /* resident bytes that were beyond */
+
+/* 0 where the system does not say. */
+static uint64_t resident(void)
+{
+    char text[64];
+    const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return 0;
+    }
+    const ssize_t length = read(fd, text, sizeof text - 1);
+    close(fd);
+    text[length < 0 ? 0 : length] = '\0';
+    /* Pages of address space, then those that are resident. */
+    const char *second = strchr(text, ' ');
+    return second == NULL ? 0 : strtoull(second, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+static void measure(void)
+{
+    const uint64_t used = st_memory_used(), all = resident();
+    atomic_store(&beside, all > used ? all - used : 0);
+}
+
+void st_resident_watch(void)
+{
+    watched = true;
+    measure();
+}
+
+uint64_t st_resident_beside(void)
+{
+    const uint64_t bytes = atomic_load_explicit(&beside, memory_order_relaxed);
+    const uint64_t half = st_memory_budget() / 2;
+    return bytes < half ? bytes : half;
+}
+
+void st_resident_measure(void)
+{
+    const uint64_t now = st_clock_micros();
+    uint64_t last = atomic_load(&measured);
+    if (watched && now - last >= MEASURE_MICROS &&
+        atomic_compare_exchange_strong(&measured, &last, now)) {
+        malloc_trim(0);
+        measure();
+    }
+}
+
+bool st_resident_is_beyond(void)
+{
+    const uint64_t budget = st_memory_budget();
+    const uint64_t all = watched && budget > 0 ? resident() : 0;
+    if (all <= budget - budget / NEAR_SHARE) {
+        atomic_store(&told, 0);
+        return false;
+    }
+    const uint64_t before = atomic_load(&told);
+    const bool grew = before == 0 || all > before + budget / GROWTH_SHARE;
+    if (grew) {
+        atomic_store(&told, all);
+    }
+    return grew;
+}
