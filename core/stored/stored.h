@@ -57,9 +57,9 @@
  * Codings of parts: in HE_CODING_PLAIN a part is those bytes; in HE_CODING_LINKS each link in it is
  * a varint as in an edit and all else plain. Links of next and prev are differences to their row
  * there; all others to the last one before them in the array and in the part that is neither
- * HE_NONE nor HE_DEAD, to their row where there is none. HE_CODING_PACKED is left to a layer
- * above that compresses parts and takes it off before they come back; none does so far
- * (core/store/README.md).
+ * HE_NONE nor HE_DEAD, to their row where there is none. HE_CODING_PACKED is added to either by
+ * a layer above that compresses parts (core/journal/part_packing.h), and taken off before they come
+ * back.
  *
  * Bytes that are read are believed in nothing: what is wrong is refused with HE_CORRUPT and the
  * byte where it stands (in a content that of the whole, without codings), what a newer release has

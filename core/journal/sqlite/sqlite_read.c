@@ -1,5 +1,6 @@
 /* Meshes are read again: cards by one connection, loads by ST_LOADS others. */
 #include "base/mem.h"
+#include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "stored/bytes.h"
 
@@ -40,7 +41,8 @@ struct st_reader {
     int64_t snapshot;
     uint64_t part, parts_left;
     he_cursor inline_parts;
-    char why[ST_DAMAGE]; /* there is no next piece */
+    st_unpacker *unpacker; /* NULL before the first packed part */
+    char why[ST_DAMAGE];   /* there is no next piece */
 };
 
 static st_status status_of(st_sql outcome)
@@ -271,6 +273,7 @@ static void end_load(st_reader *reader)
     st_db_reset(reader->base);
     (void)st_db_do(&reader->slot->db, COMMIT, "");
     give_slot(reader->journal, reader->slot);
+    st_unpacker_free(reader->unpacker);
 }
 
 static st_status begin_load(st_sqlite *self, const char *id, st_mesh_row *row, st_reader **out)
@@ -390,6 +393,27 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
     return ST_OK;
 }
 
+/* A part that a newer release has coded in another way is left to core/stored, which says so. */
+static st_status unpack(st_reader *reader, st_piece *piece)
+{
+    const char *why = "";
+    if ((piece->coding & ~(unsigned)HE_CODING_LINKS) != HE_CODING_PACKED) {
+        return ST_OK;
+    }
+    if (reader->unpacker == NULL) {
+        reader->unpacker = st_unpacker_new();
+    }
+    st_status status = reader->unpacker == NULL
+                           ? ST_NO_MEMORY
+                           : st_part_unpack(reader->unpacker, piece->bytes, piece->size,
+                                            &piece->bytes, &piece->size, &why);
+    piece->coding &= ~(unsigned)HE_CODING_PACKED;
+    return status != ST_DAMAGED
+               ? status
+               : damaged(reader, "part %llu of the content after record %llu is badly packed: %s",
+                         (unsigned long long)reader->part, (unsigned long long)reader->number, why);
+}
+
 /* The next part of the snapshot; *out is left alone after the last. */
 static st_status read_part(st_reader *reader, bool *got, st_piece *out)
 {
@@ -427,10 +451,11 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
                       .coding = bytes[ST_PART_HEAD - 1],
                       .bytes = bytes + ST_PART_HEAD,
                       .size = size - ST_PART_HEAD};
+    st_status status = unpack(reader, out);
     reader->part++;
     reader->parts_left--;
-    *got = true;
-    return ST_OK;
+    *got = status == ST_OK;
+    return status;
 }
 
 /* A content in one block: each part with its coding and length before it (stored.h). */

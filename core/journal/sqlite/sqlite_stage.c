@@ -1,6 +1,7 @@
 /* Contents in parts. The thread that stages codes them, a slice at a time, and waits while the
  * commit thread writes the slice beside what others commit. */
 #include "base/mem.h"
+#include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "stored/bytes.h"
 
@@ -9,7 +10,7 @@
 /* --- the thread that stages --- */
 
 /* False after the last part. */
-static bool fill_slice(st_slice *slice, he_stored_writer *writer)
+static bool fill_slice(st_slice *slice, he_stored_writer *writer, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
     while (slice->count < ST_SLICE_PARTS) {
@@ -19,6 +20,7 @@ static bool fill_slice(st_slice *slice, he_stored_writer *writer)
         if (size == 0) {
             return false;
         }
+        size = st_part_pack(packer, bytes + ST_PART_HEAD, size, &coding);
         bytes[ST_PART_HEAD - 1] = (unsigned char)coding;
         slice->sizes[slice->count++] = ST_PART_HEAD + size;
     }
@@ -67,14 +69,16 @@ st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
+    st_packer *packer = st_packer_new();
     stage->slice = slice;
     stage->parts = he_stored_parts(content);
     he_stored_writer_init(&writer, content);
     st_status status = ST_OK;
     for (bool more = true; more && status == ST_OK;) {
-        more = fill_slice(slice, &writer);
+        more = fill_slice(slice, &writer, packer);
         status = slice->count == 0 ? ST_OK : write_slice(self, stage);
     }
+    st_packer_free(packer);
     he_mem_free(slice);
     stage->slice = NULL;
     if (status != ST_OK) {

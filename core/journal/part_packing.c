@@ -1,0 +1,128 @@
+#include "journal/part_packing.h"
+
+#include "base/mem.h"
+#include "stored/stored.h"
+
+#include <string.h>
+/* Contexts take their memory from base/mem.h, by functions that the header keeps for those who link
+ * the library statically; the shared one has them too. */
+#define ZSTD_STATIC_LINKING_ONLY
+#include <zstd.h>
+#include <zstd_errors.h>
+
+enum { LEVEL = 1 };
+
+/* What is saved is to be worth the unpacking: at least a thirty-second. */
+enum { LEAST_SHARE = 32 };
+
+struct st_packer {
+    ZSTD_CCtx *zstd;
+    unsigned char packed[HE_STORED_PART_ROOM];
+};
+
+struct st_unpacker {
+    ZSTD_DCtx *zstd;
+    unsigned char part[HE_STORED_PART_ROOM];
+};
+
+static void *take(void *context, size_t size)
+{
+    (void)context;
+    return he_mem_alloc(size);
+}
+
+static void give_back(void *context, void *memory)
+{
+    (void)context;
+    he_mem_free(memory);
+}
+
+static const ZSTD_customMem memory = {take, give_back, NULL};
+
+st_packer *st_packer_new(void)
+{
+    st_packer *packer = he_mem_alloc(sizeof *packer);
+    if (packer == NULL) {
+        return NULL;
+    }
+    packer->zstd = ZSTD_createCCtx_advanced(memory);
+    if (packer->zstd == NULL) {
+        he_mem_free(packer);
+        return NULL;
+    }
+    return packer;
+}
+
+void st_packer_free(st_packer *packer)
+{
+    if (packer != NULL) {
+        ZSTD_freeCCtx(packer->zstd);
+        he_mem_free(packer);
+    }
+}
+
+size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding)
+{
+    if (packer == NULL) {
+        return size;
+    }
+    const size_t room = size - size / LEAST_SHARE;
+    const size_t packed = ZSTD_compressCCtx(packer->zstd, packer->packed, room, part, size, LEVEL);
+    if (ZSTD_isError(packed)) {
+        return size; /* it does not fit, or memory is out */
+    }
+    memcpy(part, packer->packed, packed);
+    *coding |= HE_CODING_PACKED;
+    return packed;
+}
+
+st_unpacker *st_unpacker_new(void)
+{
+    st_unpacker *unpacker = he_mem_alloc(sizeof *unpacker);
+    if (unpacker == NULL) {
+        return NULL;
+    }
+    unpacker->zstd = ZSTD_createDCtx_advanced(memory);
+    if (unpacker->zstd == NULL) {
+        he_mem_free(unpacker);
+        return NULL;
+    }
+    return unpacker;
+}
+
+void st_unpacker_free(st_unpacker *unpacker)
+{
+    if (unpacker != NULL) {
+        ZSTD_freeDCtx(unpacker->zstd);
+        he_mem_free(unpacker);
+    }
+}
+
+/* The frame is unpacked straight into the room of a part: neither its window nor the size it names
+ * takes memory, and what is longer than it says, or than a part, is refused. */
+st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,
+                         const unsigned char **out, size_t *out_size, const char **why)
+{
+    const unsigned long long said = ZSTD_getFrameContentSize(part, size);
+    *why = "it is no zstd frame that says how long it is";
+    if (said == ZSTD_CONTENTSIZE_UNKNOWN || said == ZSTD_CONTENTSIZE_ERROR) {
+        return ST_DAMAGED;
+    }
+    *why = "it is longer than a part may be";
+    if (said > sizeof unpacker->part) {
+        return ST_DAMAGED;
+    }
+    const size_t got =
+        ZSTD_decompressDCtx(unpacker->zstd, unpacker->part, (size_t)said, part, size);
+    if (ZSTD_isError(got)) {
+        *why = ZSTD_getErrorName(got);
+        return ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation ? ST_NO_MEMORY : ST_DAMAGED;
+    }
+    *why = "it is shorter than it says";
+    if (got != said) {
+        return ST_DAMAGED;
+    }
+    *out = unpacker->part;
+    *out_size = got;
+    return ST_OK;
+}

@@ -1,0 +1,155 @@
+/* Parts of contents come back from zstd as they were; what is damaged is refused, within the room
+ * of one part. */
+#include "journal/part_packing.h"
+#include "tests/unit/dense.h"
+#include "tests/unit/edit_script.h"
+#include "tests/unit/fixture.h"
+
+#include "stored/stored.h"
+#include "tests/model/random.h"
+
+#include <string.h>
+#include <zstd.h>
+
+static unsigned char plain[HE_STORED_PART_ROOM], packed[HE_STORED_PART_ROOM];
+
+/* The first part of a mesh of many faces. */
+static size_t make_part(unsigned *coding)
+{
+    he_mesh *mesh = dense_grid(64, NULL, 1);
+    he_stored_writer writer;
+    he_stored_writer_init(&writer, mesh);
+    const size_t size = he_stored_writer_next(&writer, plain, coding);
+    he_mesh_free(mesh);
+    memcpy(packed, plain, size);
+    return size;
+}
+
+static void a_part_comes_back_as_it_was(void **state)
+{
+    (void)state;
+    unsigned coding, before;
+    const size_t size = make_part(&before);
+    st_packer *packer = st_packer_new();
+    st_unpacker *unpacker = st_unpacker_new();
+    for (int again = 0; again < 2; again++) {
+        const unsigned char *out;
+        const char *why;
+        size_t out_size;
+        coding = before;
+        memcpy(packed, plain, size);
+        const size_t less = st_part_pack(packer, packed, size, &coding);
+        assert_true(less < size / 2);
+        assert_int_equal(coding, before | HE_CODING_PACKED);
+        assert_int_equal(st_part_unpack(unpacker, packed, less, &out, &out_size, &why), ST_OK);
+        assert_int_equal(out_size, size);
+        assert_memory_equal(out, plain, size);
+    }
+    st_packer_free(packer);
+    st_unpacker_free(unpacker);
+}
+
+static void what_does_not_get_shorter_stays_as_it_is(void **state)
+{
+    (void)state;
+    md_random random = {7};
+    unsigned coding = HE_CODING_PLAIN;
+    for (size_t i = 0; i < sizeof plain; i++) {
+        plain[i] = (unsigned char)md_below(&random, 256);
+    }
+    memcpy(packed, plain, sizeof plain);
+    st_packer *packer = st_packer_new();
+    assert_int_equal(st_part_pack(packer, packed, sizeof packed, &coding), sizeof packed);
+    assert_int_equal(coding, HE_CODING_PLAIN);
+    assert_memory_equal(packed, plain, sizeof plain);
+    assert_int_equal(st_part_pack(packer, packed, 1, &coding), 1);
+    st_packer_free(packer);
+    const size_t size = make_part(&coding);
+    const unsigned before = coding;
+    assert_int_equal(st_part_pack(NULL, packed, size, &coding), size);
+    assert_int_equal(coding, before);
+}
+
+static void expect_refused(const void *bytes, size_t size, const char *reason)
+{
+    const unsigned char *out;
+    const char *why = "";
+    size_t out_size;
+    st_unpacker *unpacker = st_unpacker_new();
+    assert_int_equal(st_part_unpack(unpacker, bytes, size, &out, &out_size, &why), ST_DAMAGED);
+    assert_non_null(strstr(why, reason));
+    st_unpacker_free(unpacker);
+}
+
+static void what_would_be_longer_than_a_part_is_refused(void **state)
+{
+    (void)state;
+    enum { LARGE = 8 << 20 };
+    unsigned char *zeros = test_calloc(1, LARGE), bomb[1024];
+    const size_t size = ZSTD_compress(bomb, sizeof bomb, zeros, LARGE, 1);
+    assert_false(ZSTD_isError(size));
+    expect_refused(bomb, size, "longer than a part");
+    test_free(zeros);
+    expect_refused("", 0, "no zstd frame");
+    expect_refused("not a frame at all", 18, "no zstd frame");
+}
+
+/* Whatever became of its bytes, it is refused with a reason or has the length that it names. */
+static void a_damaged_part_stays_within_its_room(void **state)
+{
+    (void)state;
+    unsigned coding;
+    const size_t size = make_part(&coding);
+    st_packer *packer = st_packer_new();
+    st_unpacker *unpacker = st_unpacker_new();
+    const size_t less = st_part_pack(packer, packed, size, &coding);
+    unsigned refused = 0;
+    for (size_t i = 0; i < less; i += less / 500 + 1) {
+        const unsigned char *out;
+        const char *why = "";
+        size_t out_size = 0;
+        packed[i] ^= (unsigned char)(1 << i % 8);
+        st_status status = st_part_unpack(unpacker, packed, less, &out, &out_size, &why);
+        assert_true(status == ST_OK ? out_size <= HE_STORED_PART_ROOM
+                                    : status == ST_DAMAGED && why[0] != '\0');
+        packed[i] ^= (unsigned char)(1 << i % 8);
+        status = st_part_unpack(unpacker, packed, i, &out, &out_size, &why);
+        assert_int_equal(status, ST_DAMAGED); /* cut off */
+        refused++;
+    }
+    assert_true(refused > 100);
+    st_packer_free(packer);
+    st_unpacker_free(unpacker);
+}
+
+static void without_memory_parts_stay_as_they_are(void **state)
+{
+    (void)state;
+    unsigned coding;
+    const size_t size = make_part(&coding);
+    const unsigned before = coding;
+    bool failed = true;
+    for (unsigned n = 1; failed; n++) {
+        coding = before;
+        memcpy(packed, plain, size);
+        fail_allocation(n);
+        st_packer *packer = st_packer_new();
+        const size_t less = st_part_pack(packer, packed, size, &coding);
+        failed = allocation_failed();
+        fail_allocation(0);
+        assert_true(failed ? less == size && coding == before : less < size && coding != before);
+        st_packer_free(packer);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_part_comes_back_as_it_was),
+        cmocka_unit_test(what_does_not_get_shorter_stays_as_it_is),
+        cmocka_unit_test(what_would_be_longer_than_a_part_is_refused),
+        cmocka_unit_test(a_damaged_part_stays_within_its_room),
+        cmocka_unit_test(without_memory_parts_stay_as_they_are),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
