@@ -110,6 +110,12 @@ bool api_keyed_find(api_exchange *x)
     case ST_KEYED_OTHER:
         return api_fail(x, API_IDEMPOTENCY_MISMATCH, "the key \"%.100s\" is of another request",
                         x->key);
+    case ST_KEYED_DAMAGED:
+        return api_fail(
+            x, API_IDEMPOTENCY_MISMATCH,
+            "what the disk kept of the request with the key \"%.100s\" is damaged: look "
+            "whether it was done, and give a request that is to be done another key",
+            x->key);
     case ST_KEYED_NO_MEMORY:
         break;
     }

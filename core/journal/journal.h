@@ -94,8 +94,9 @@ enum { ST_HEALTH_TEXT = 200 };
 
 /* Are changes taken? */
 typedef struct st_health {
-    st_status status;            /* ST_OK; ST_FULL, ST_FAILED: not, and why */
-    uint64_t fulls;              /* how often the disk was found full since the start */
+    st_status status;      /* ST_OK; ST_FULL, ST_FAILED: not, and why */
+    uint64_t fulls;        /* how often the disk was found full since the start */
+    uint64_t damaged_keys; /* keys of requests that were found damaged, at the start or since */
     char reason[ST_HEALTH_TEXT]; /* of ST_FAILED: what the system said, "" where it said nothing */
 } st_health;
 
@@ -158,7 +159,8 @@ typedef struct st_journal {
      * records left them; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
     st_status (*list)(void *self, const char *after, st_card *out, size_t limit, size_t *count);
     /* Gives the keys of the last day that durable records of a mesh carry (`id` NULL: those that
-     * made a mesh), the oldest first; waits for the disk. ST_FAILED, ST_NO_MEMORY. */
+     * made a mesh), the oldest first, damaged ones among them; waits for the disk. ST_FAILED,
+     * ST_NO_MEMORY. */
     st_status (*keys)(void *self, const char *id, st_take_key *take, void *context);
     /* Gives the jobs that durable notes left, in the order of their numbers; waits for the disk.
      * ST_FAILED, ST_NO_MEMORY. */

@@ -65,6 +65,8 @@ typedef struct st_kept_key {
     st_record_key key;
     const char *id; /* of the mesh */
     uint64_t incarnation, revision, metadata;
+    bool is_damaged; /* what was kept is not what it was: of all this only `text` and `holder` are
+                        to be believed, and they may be other ones */
 } st_kept_key;
 
 /* How a job is kept. The numbers are written down and keep their meaning for ever. */

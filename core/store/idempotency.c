@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/siphash.h"
+#include "system/clock.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -135,6 +136,8 @@ st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_k
     st_keyed_status status;
     if (keyed == NULL) {
         status = add(keys, key, holder, hash, now, out);
+    } else if (keyed->is_damaged) {
+        status = ST_KEYED_DAMAGED;
     } else if (keyed->key.digest[0] != key->digest[0] || keyed->key.digest[1] != key->digest[1]) {
         status = ST_KEYED_OTHER;
     } else if (!keyed->is_kept) {
@@ -189,8 +192,11 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
                       .metadata = kept->metadata};
     snprintf(answer.id, sizeof answer.id, "%s", kept->id);
     st_keyed *keyed;
-    switch (st_keys_begin(keys, &key, was->time, &keyed)) {
+    /* The time of a damaged one may be any. */
+    const double time = kept->is_damaged ? st_clock_utc() : was->time;
+    switch (st_keys_begin(keys, &key, time, &keyed)) {
     case ST_KEYED_NEW:
+        keyed->is_damaged = kept->is_damaged;
         st_keyed_keep(keyed, &answer);
         st_keyed_end(keyed);
         break;
@@ -199,6 +205,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
         break;
     case ST_KEYED_BUSY:
     case ST_KEYED_OTHER:
+    case ST_KEYED_DAMAGED:
         break;
     case ST_KEYED_NO_MEMORY:
         return false;

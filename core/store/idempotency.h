@@ -40,6 +40,7 @@ struct st_keyed {
     st_keys *keys;
     unsigned uses;
     bool is_kept, listed; /* listed: the table holds it */
+    bool is_damaged;      /* which request it was of is not known any more */
     st_record_key key;    /* as a record carries it */
     uint64_t hash;
     st_kept answer; /* `body` is owned */

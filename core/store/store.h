@@ -244,10 +244,11 @@ typedef struct st_key {
 } st_key;
 
 typedef enum st_keyed_status {
-    ST_KEYED_NEW,   /* go on */
-    ST_KEYED_KEPT,  /* it was answered before */
-    ST_KEYED_BUSY,  /* the same request is under way */
-    ST_KEYED_OTHER, /* the key is that of another request */
+    ST_KEYED_NEW,     /* go on */
+    ST_KEYED_KEPT,    /* it was answered before */
+    ST_KEYED_BUSY,    /* the same request is under way */
+    ST_KEYED_OTHER,   /* the key is that of another request */
+    ST_KEYED_DAMAGED, /* a request with the key was done, but which one is not known any more */
     ST_KEYED_NO_MEMORY
 } st_keyed_status;
 

@@ -4,6 +4,7 @@
 #include "server/net/notify.h"
 #include "system/clock.h"
 
+#include <inttypes.h>
 #include <time.h>
 
 static uint64_t processor_micros(void)
@@ -29,6 +30,14 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     if ((was_full || found_full) && now->status == ST_OK) {
         srv_log_tell(log, SRV_LEVEL_INFO, "the disk of %s has space again: changes are taken",
                      folder);
+    }
+    if (now->damaged_keys > 0 && before->damaged_keys == 0) {
+        srv_log_tell(
+            log, SRV_LEVEL_WARNING,
+            "in %s keys of requests (Idempotency-Key) are damaged, %" PRIu64
+            " so far: such a request is refused when it is sent again, or done again where "
+            "the key itself is damaged",
+            folder, now->damaged_keys);
     }
     if (now->status == ST_FAILED && before->status != ST_FAILED) {
         srv_log_tell(log, SRV_LEVEL_ERROR,

@@ -232,6 +232,35 @@ static bool count_key(void *context, const st_kept_key *key)
     return true;
 }
 
+/* It is told, and given for what it is: nobody is to do the request again without a word. */
+static void a_damaged_key_is_told(void **state)
+{
+    (void)state;
+    char path[FOLDER_PATH + 16];
+    sqlite3 *db = NULL;
+    st_health health = {.status = ST_OK};
+    kept_mesh a = {.id = "a", .name = "", .content = content, .incarnation = 11};
+    append(&a, kept_content(&a), "makes", 100, true);
+    append(&a, kept_edit(&a), "first", 102, false);
+    append(&a, kept_edit(&a), "second", 103, false);
+    told_end(&told);
+    snprintf(path, sizeof path, "%s/hedge.db", folder);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db,
+                                  "UPDATE kept SET revision = revision + 1 "
+                                  "WHERE text = 'second'",
+                                  NULL, NULL, NULL),
+                     SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+    open_store();
+    told.journal.health(told.journal.self, &health);
+    assert_int_equal(health.damaged_keys, 1);
+    taken t = keys_of("a");
+    assert_int_equal(t.count, 2);
+    assert_true(!t.keys[0].is_damaged && t.keys[1].is_damaged);
+    assert_string_equal(t.texts[1], "second");
+}
+
 static void of_one_mesh_the_newest_are_kept(void **state)
 {
     (void)state;
@@ -282,6 +311,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(keys_older_than_a_day_go, setup, teardown),
         cmocka_unit_test_setup_teardown(a_key_of_a_request_that_changed_nothing_is_kept, setup,
                                         teardown),
+        cmocka_unit_test_setup_teardown(a_damaged_key_is_told, setup, teardown),
         cmocka_unit_test_setup_teardown(of_one_mesh_the_newest_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(of_all_meshes_the_newest_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(without_memory_to_take_them_the_reading_ends, setup,

@@ -80,6 +80,18 @@ static void another_holder_has_keys_of_its_own(void **state)
     st_keyed_end(again);
 }
 
+static void of_a_damaged_key_no_request_is_done(void **state)
+{
+    (void)state;
+    st_keyed *keyed = NULL;
+    const st_kept_key kept = {
+        .key = {.text = "a", .holder = "", .digest = {1, 7}}, .id = "m", .is_damaged = true};
+    assert_true(st_keys_restore(&keys, &kept));
+    assert_int_equal(begin_keyed("a", 1, 1, &keyed), ST_KEYED_DAMAGED);
+    assert_int_equal(begin_keyed("b", 1, 1, &keyed), ST_KEYED_NEW);
+    st_keyed_end(keyed);
+}
+
 static void the_first_answer_is_given_again(void **state)
 {
     (void)state;
@@ -229,6 +241,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(another_holder_has_keys_of_its_own),
         TEST(the_first_answer_is_given_again),
+        TEST(of_a_damaged_key_no_request_is_done),
         TEST(a_request_without_an_answer_is_forgotten),
         TEST(answers_last_a_day),
         TEST(the_oldest_go_when_there_are_too_many),

@@ -36,6 +36,38 @@ bool st_kept_row_read(sqlite3_stmt *s, st_kept_texts *texts, st_kept_row *row)
     return sqlite3_column_int64(s, 10) == (int64_t)st_kept_row_sum(row);
 }
 
+st_sql st_kept_count_damaged(st_db *db, uint64_t *out)
+{
+    sqlite3_stmt *s = NULL;
+    st_kept_texts texts;
+    st_kept_row row;
+    *out = 0;
+    int code = sqlite3_prepare_v2(db->handle, "SELECT " ST_KEPT_COLUMNS " FROM kept", -1, &s, NULL);
+    while (code == SQLITE_OK && (code = sqlite3_step(s)) == SQLITE_ROW) {
+        *out += st_kept_row_read(s, &texts, &row) ? 0 : 1;
+        code = SQLITE_OK;
+    }
+    const st_sql outcome = code == SQLITE_OK ? ST_SQL_DONE : st_db_outcome(db, code);
+    sqlite3_finalize(s);
+    return outcome;
+}
+
+/* A damaged one is given, too, so that the request is not done again by who sends it again. */
+static bool give(const st_kept_row *row, bool good, st_take_key *take, void *to)
+{
+    const st_kept_key key = {.key = {.text = row->text,
+                                     .holder = row->holder,
+                                     .digest = {row->digest[0], row->digest[1]},
+                                     .time = row->time,
+                                     .of_store = row->made},
+                             .id = row->id,
+                             .incarnation = row->incarnation,
+                             .revision = row->revision,
+                             .metadata = row->metadata,
+                             .is_damaged = !good};
+    return take(to, &key);
+}
+
 st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void *to)
 {
     st_sqlite *self = context;
@@ -43,6 +75,7 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     st_kept_texts texts;
     st_kept_row row;
     bool taken = true;
+    uint64_t damaged = 0;
     if (self->only_reads) {
         return ST_OK; /* nobody asks again, and keys of a damaged file keep nobody from its meshes
                        */
@@ -57,22 +90,18 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     }
     while (code == SQLITE_OK && taken && (code = sqlite3_step(s)) == SQLITE_ROW) {
         code = SQLITE_OK;
-        if (st_kept_row_read(s, &texts, &row)) {
-            const st_kept_key key = {.key = {.text = row.text,
-                                             .holder = row.holder,
-                                             .digest = {row.digest[0], row.digest[1]},
-                                             .time = row.time,
-                                             .of_store = row.made},
-                                     .id = row.id,
-                                     .incarnation = row.incarnation,
-                                     .revision = row.revision,
-                                     .metadata = row.metadata};
-            taken = take(to, &key);
-        }
+        const bool good = st_kept_row_read(s, &texts, &row);
+        taken = give(&row, good, take, to);
+        damaged += good ? 0 : 1;
     }
     const st_sql outcome = code == SQLITE_OK ? ST_SQL_DONE : st_db_outcome(&self->cards, code);
     sqlite3_finalize(s);
     pthread_mutex_unlock(&self->cards_lock);
+    if (damaged > 0) {
+        pthread_mutex_lock(&self->lock);
+        self->damaged_keys += damaged;
+        pthread_mutex_unlock(&self->lock);
+    }
     if (!taken || outcome == ST_SQL_NO_MEMORY) {
         return ST_NO_MEMORY;
     }

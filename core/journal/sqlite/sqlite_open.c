@@ -177,6 +177,13 @@ static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return good;
 }
 
+/* A request whose key is damaged may be done again when it is sent again, which is said. */
+static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
+{
+    const st_sql outcome = st_kept_count_damaged(&self->db, &self->damaged_keys);
+    return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
+}
+
 /* The key that was given last to a row; a lower one than a row has would be given twice. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
@@ -252,7 +259,7 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
     }
     return (outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message)) &&
            compare_mark(self, out) && check_meshes(self, path, out) &&
-           check_tables(self, path, out);
+           check_tables(self, path, out) && check_keys(self, path, out);
 }
 
 /* What the last process left behind: its log is written back, what it staged is forgotten. */

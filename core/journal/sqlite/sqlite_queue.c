@@ -235,6 +235,7 @@ void st_sqlite_health(void *context, st_health *out)
     pthread_mutex_lock(&self->lock);
     out->status = of_mode[self->mode];
     out->fulls = self->fulls;
+    out->damaged_keys = self->damaged_keys;
     memcpy(out->reason, self->refusal, sizeof out->reason);
     pthread_mutex_unlock(&self->lock);
 }

@@ -72,6 +72,15 @@ unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context)
         told++;
     }
     self->salvage.on = told > 0;
+    uint64_t damaged = 0;
+    if (st_kept_count_damaged(&self->cards, &damaged) == ST_SQL_DONE && damaged > 0) {
+        char text[96];
+        (void)snprintf(text, sizeof text,
+                       "%llu keys of requests (Idempotency-Key) are not what they were",
+                       (unsigned long long)damaged);
+        say(context, text);
+        told++;
+    }
     return told;
 }
 

@@ -181,6 +181,7 @@ struct st_sqlite {
     bool closing;
     st_write_mode mode;
     uint64_t fulls;               /* how often the disk was found full */
+    uint64_t damaged_keys;        /* rows of `kept`, as often as they were found */
     char refusal[ST_HEALTH_TEXT]; /* what the disk said when it failed */
     bool losing;                  /* something was lost, and not all of it was told */
     uint64_t generation;
@@ -343,6 +344,8 @@ st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_r
 /* The row's texts lie in `texts`. False where the sum is wrong: such a key is as good as
  * none. */
 bool st_kept_row_read(sqlite3_stmt *statement, st_kept_texts *texts, st_kept_row *row);
+/* Looks at all keys that are kept: how many are damaged. */
+st_sql st_kept_count_damaged(st_db *db, uint64_t *out);
 st_status st_sqlite_keys(void *self, const char *id, st_take_key *take, void *context);
 /* Opens the connections that read; closes them. */
 st_sql st_readers_open(st_sqlite *self, const char *path);

@@ -335,16 +335,26 @@ static specimen_verdict judge_content(const expected *e, st_mesh *mesh, const ch
                  e->states == 0 ? "there, and was removed" : "another one than it was");
 }
 
-/* A damaged row of a key is as good as none. */
+/* A damaged key was told at one of the starts; where its text is what it was, nobody else gets it.
+ */
+static bool key_was_told;
+
 static specimen_verdict judge_key(st_store *store, st_mesh *mesh, char why[SPECIMEN_WHY])
 {
     st_keyed *keyed;
+    st_health health;
     specimen_verdict verdict = SPECIMEN_WHOLE;
+    st_store_health(store, &health);
+    key_was_told |= health.damaged_keys > 0;
     switch (st_keyed_begin(store, mesh, &key, &keyed)) {
     case ST_KEYED_NEW:
         (void)snprintf(why, SPECIMEN_WHY, "the key is forgotten");
-        verdict = SPECIMEN_NAMED;
+        verdict = key_was_told ? SPECIMEN_NAMED : wrong(why, "the key is forgotten without a word");
         st_keyed_end(keyed);
+        break;
+    case ST_KEYED_DAMAGED:
+        (void)snprintf(why, SPECIMEN_WHY, "the key is damaged");
+        verdict = key_was_told ? SPECIMEN_NAMED : wrong(why, "a damaged key is not told");
         break;
     case ST_KEYED_KEPT:
         if (st_keyed_answer(keyed)->revision != key_revision) {
@@ -473,6 +483,7 @@ specimen_verdict specimen_judge(const char *folder, char why[SPECIMEN_WHY])
 {
     expected all[MESHES];
     memcpy(all, acknowledged, sizeof all);
+    key_was_told = false;
     why[0] = '\0';
     st_store *store = open_store(folder, why);
     if (store == NULL) {
