@@ -1,5 +1,6 @@
 #include "api/document/summary.h"
 
+#include "api/request/at_revision.h"
 #include "api/request/mesh_access.h"
 
 #include <stdio.h>
@@ -192,6 +193,27 @@ void api_summary_get(api_exchange *x)
     }
     api_answer_etag(x, "summary");
     write_answer(x, summary, 200, NULL);
+}
+
+static int64_t read_nothing(void *context, char *buffer, size_t size)
+{
+    (void)context;
+    (void)buffer;
+    (void)size;
+    return 0;
+}
+
+void api_summary_cold(api_exchange *x, st_cold *cold)
+{
+    uint64_t revision;
+    (void)cold;
+    if (api_at_revision_wanted(x, &revision) || api_not_modified(x, "summary")) {
+        return;
+    }
+    if (x->head && x->codings.best == API_IDENTITY) {
+        /* Its length is not known. */
+        api_answer_stream(x, 200, "application/json", -1, read_nothing, NULL, NULL);
+    }
 }
 
 void api_answer_summary(api_exchange *x)

@@ -35,6 +35,10 @@ void api_write_brief(api_out *out, const st_card *card);
  * that costs. */
 void api_summary_get(api_exchange *x);
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+/* Of a mesh that is not in memory: answers 304, and HEAD where the client takes no content coding:
+ * whether the tag of the answer to GET would name one depends on its length. HEAD does not find out
+ * that the content is damaged. */
+void api_summary_cold(api_exchange *x, st_cold *cold);
 /* The handler of a write goes on to that. */
 void api_answer_summary(api_exchange *x);
 /* Answer `status` with the summary of what x->info names, found before it was stored: no lock is

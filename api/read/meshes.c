@@ -206,6 +206,21 @@ void api_mesh_delete(api_exchange *x)
     }
 }
 
+void api_mesh_delete_cold(api_exchange *x, st_cold *cold)
+{
+    if (!api_preconditions_hold(x, NULL) || !api_gate_may_change(x)) {
+        return;
+    }
+    const st_status status = st_cold_remove(cold);
+    if (status != ST_OK) {
+        (void)api_fail_store(x, status);
+        return;
+    }
+    x->info = cold->info;
+    api_publish(x, 204);
+    api_answer_empty(x, 204);
+}
+
 static const char *const copy_members[] = {"id", "name", NULL};
 
 /* What the copy will be called; NULL: it is chosen. */

@@ -210,6 +210,32 @@ static bool find_mesh(api_exchange *x)
     return x->is_cold || take_mesh(x, status);
 }
 
+bool api_answer_from_card(api_exchange *x)
+{
+    const bool may = (x->route->flags & API_WRITES) || x->head ||
+                     x->request.headers[API_HEADER_IF_NONE_MATCH] != NULL;
+    st_mesh *mesh = NULL;
+    st_cold cold;
+    if (x->route->cold == NULL || !may) {
+        return false;
+    }
+    const st_status status = st_cold_begin(x->store, x->mesh_id, &mesh, &cold);
+    if (status == ST_ABSENT) {
+        (void)api_fail_store(x, status);
+        return true;
+    }
+    if (status != ST_OK || mesh != NULL) {
+        st_release(mesh);
+        return false; /* loading finds it, or what is wrong */
+    }
+    x->info = cold.info;
+    x->has_info = true;
+    x->route->cold(x, &cold);
+    st_cold_end(&cold);
+    x->has_info = x->answered || x->problem.code != HE_OK;
+    return x->has_info;
+}
+
 bool api_load_mesh(api_exchange *x)
 {
     x->is_cold = false;

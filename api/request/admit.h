@@ -11,6 +11,9 @@ bool api_admit(api_exchange *x);
 /* Where x->is_cold: looks on the disk for the mesh, as api_admit would have in memory. Waits.
  * False: it is refused. */
 bool api_load_mesh(api_exchange *x);
+/* Where x->is_cold: is the request answered or refused by the card of the mesh, which is not loaded
+ * for it? Waits. */
+bool api_answer_from_card(api_exchange *x);
 
 /* Bytes the route's body may have. */
 uint64_t api_body_cap(const api_exchange *x);

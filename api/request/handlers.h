@@ -41,6 +41,7 @@ void api_mesh_put_begin(api_exchange *x);
 void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length);
 void api_mesh_put(api_exchange *x);
 void api_mesh_delete(api_exchange *x);
+void api_mesh_delete_cold(api_exchange *x, st_cold *cold);
 void api_content_get(api_exchange *x);
 bool api_content_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_geometry_get(api_exchange *x);

@@ -13,6 +13,7 @@
 
 #include "api/header/path.h"
 #include "api/request/api.h"
+#include "store/store.h"
 
 /* What a request's body is, and so its cap and what happens to it before the handler. */
 typedef enum api_body_kind {
@@ -113,6 +114,10 @@ typedef struct api_route {
      * does. False with the problem filled; or with x->deferred, which calls api_read in the end. */
     bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* in api_end, or in api_work */
+    /* Of a mesh that is not in memory, with x->info of its card, on a thread that may block:
+     * answers without loading it, or returns with neither answer nor problem. NULL: it is loaded.
+     */
+    void (*cold)(api_exchange *x, st_cold *cold);
     api_reads reads;
     bool (*cost)(api_exchange *x, const he_mesh *mesh,
                  api_cost *out); /* like tag, see api_reading */

@@ -648,7 +648,7 @@ static void go_on(api_exchange *x)
  * under its lock without a copy, a long one goes on in this thread. */
 static void load_and_go_on(api_exchange *x)
 {
-    if (!api_load_mesh(x)) {
+    if (api_answer_from_card(x) || !api_load_mesh(x)) {
         return;
     }
     x->phase = API_PHASE_BODY;

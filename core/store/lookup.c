@@ -78,8 +78,7 @@ static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
     return status;
 }
 
-/* The mesh where it is in memory, or else a lookup that is the caller's. */
-static st_status begin(st_store *store, const char *id, st_mesh **mesh, st_lookup **out)
+st_status st_lookup_begin(st_store *store, const char *id, st_mesh **mesh, st_lookup **out)
 {
     st_lookups *lookups = &store->lookups;
     const uint64_t until = st_clock_micros() + LOOKUP_MICROS;
@@ -129,7 +128,7 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     }
     st_status status;
     do {
-        status = begin(store, id, &mesh, out);
+        status = st_lookup_begin(store, id, &mesh, out);
     } while (status == ST_ABSENT); /* another looked for it and found none: now it is our turn */
     if (status != ST_OK) {
         return status;
@@ -233,7 +232,7 @@ st_status st_load(st_store *store, const char *id, st_mesh **out)
     if (!store->journal.keeps) {
         return st_find(store, id, out);
     }
-    st_status status = begin(store, id, &mesh, &lookup);
+    st_status status = st_lookup_begin(store, id, &mesh, &lookup);
     if (status == ST_OK && mesh == NULL) {
         status = load_mesh(store, id, &mesh);
         if (status == ST_OK) {
@@ -249,4 +248,76 @@ st_status st_load(st_store *store, const char *id, st_mesh **out)
         *out = mesh;
     }
     return status;
+}
+
+/* --- without loading it --- */
+
+st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold *out)
+{
+    const st_journal *journal = &store->journal;
+    st_lookup *lookup;
+    st_status status = st_lookup_begin(store, id, mesh, &lookup);
+    if (status != ST_OK || *mesh != NULL) {
+        return status;
+    }
+    *out = (st_cold){.store = store, .lookup = lookup};
+    status = journal->open(journal->self, id, &out->card, NULL);
+    if (status != ST_OK) {
+        st_lookup_end(store, lookup);
+        return status;
+    }
+    const st_card *card = &out->card;
+    out->info = (st_mesh_info){.incarnation = card->incarnation,
+                               .metadata = card->metadata,
+                               .revision = card->revision,
+                               .record = card->record,
+                               .created = card->created,
+                               .modified = card->modified};
+    memcpy(out->info.id, card->id, sizeof card->id);
+    memcpy(out->info.name, card->name, sizeof card->name);
+    return ST_OK;
+}
+
+/* The last record is that of a mesh without content which is never in the table. */
+static st_mesh *new_stand_in(const st_cold *cold)
+{
+    const st_mesh_options options = st_store_mesh_options(cold->store);
+    st_mesh *mesh = st_mesh_bare(&options, &cold->card);
+    if (mesh != NULL) {
+        const st_point begin_at = {.revision = mesh->info.revision, .state = mesh->info.revision};
+        mesh->content = he_mesh_new();
+        if (mesh->content != NULL) {
+            st_log_init(&mesh->log, options.undo_budget, &begin_at, mesh->content);
+            return mesh;
+        }
+    }
+    st_release(mesh);
+    return NULL;
+}
+
+st_status st_cold_remove(st_cold *cold)
+{
+    const st_room_need need = {.records = 1, .freeing = true};
+    const st_change change = {.action = ST_REPLACE, .removed = true};
+    st_booking booking = {NULL};
+    st_mesh *mesh = new_stand_in(cold);
+    if (mesh == NULL) {
+        return ST_NO_MEMORY;
+    }
+    st_status status = st_book(&cold->store->journal, &need, &booking);
+    if (status == ST_OK) {
+        mesh->info.removed = true;
+        st_record record = st_mesh_record(mesh, ST_RECORD_REMOVE, NULL);
+        st_mesh_publish(
+            mesh,
+            &(st_group){.booking = &booking, .records = &record, .changes = &change, .count = 1});
+        st_mesh_facts(mesh, &cold->info);
+    }
+    st_release(mesh);
+    return status;
+}
+
+void st_cold_end(st_cold *cold)
+{
+    st_lookup_end(cold->store, cold->lookup);
 }

@@ -23,6 +23,9 @@ typedef struct st_lookups {
 void st_lookups_init(st_lookups *lookups);
 void st_lookups_clear(st_lookups *lookups); /* none may be under way */
 
+/* The mesh, with a reference, where it is in memory; or else *mesh is NULL and the id the caller's.
+ * Waits, on a thread that may. ST_ABSENT; ST_LOADING, ST_NO_MEMORY, ST_FAILED. */
+st_status st_lookup_begin(st_store *store, const char *id, st_mesh **mesh, st_lookup **out);
 /* Makes an id the caller's that names no mesh, neither in memory nor on the disk. Waits, on a
  * thread that may. NULL where nothing is kept: then the table alone says what is there. ST_TAKEN,
  * ST_LOADING, ST_NO_MEMORY, ST_FAILED. */

@@ -182,6 +182,26 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);
  * ST_NO_MEMORY, ST_FAILED. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count);
 
+/* --- a mesh that is not in memory, without loading it --- */
+
+/* What its card says: the facts that entity tags and preconditions are made of. Whether the content
+ * can be read is not known. From st_cold_begin to st_cold_end the id is the caller's: nobody loads
+ * the mesh, and what the card says stays so. */
+typedef struct st_cold {
+    st_store *store;
+    struct st_lookup *lookup;
+    st_card card;
+    st_mesh_info info; /* after st_cold_remove, of the mesh that was removed */
+} st_cold;
+
+/* Waits for the disk, on a thread that may, without a lock. Where the mesh is in memory by now,
+ * *mesh is that, with a reference, and nothing was begun. ST_ABSENT; ST_DAMAGED, which only st_load
+ * makes something of; ST_LOADING, ST_NO_MEMORY, ST_FAILED. */
+st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold *out);
+/* Once. Does not wait. ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY. */
+st_status st_cold_remove(st_cold *cold);
+void st_cold_end(st_cold *cold);
+
 /* --- reading --- */
 
 /* Takes the shared lock; the content is never NULL. `info` may be NULL. */

@@ -169,6 +169,95 @@ static void a_list_loads_nothing(void **state)
     end(b);
 }
 
+static size_t loads(const char *id)
+{
+    return kept_journal_facts(journal, id).opened;
+}
+
+/* With what GET answers to the same headers. */
+static void expect_head(api_bench *b, const char *coding, size_t loaded)
+{
+    const char *const headers[] = {"Accept-Encoding", coding, NULL};
+    bench_reply head = bench_expect(200, bench_send(b, "HEAD", "/v1/meshes/m", headers, NULL));
+    assert_int_equal(loads("m"), loaded);
+    assert_int_equal(head.length, 0);
+    bench_reply get = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", headers, NULL));
+    static const char *const same[] = {"ETag", "Content-Type", "Vary", "Cache-Control"};
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
+        assert_string_not_equal(bench_header(&get, same[i]), "");
+        assert_string_equal(bench_header(&head, same[i]), bench_header(&get, same[i]));
+    }
+    bench_done(head);
+    bench_done(get);
+}
+
+static void head_of_a_cold_mesh_loads_nothing(void **state)
+{
+    (void)state;
+    api_bench *b = restart(begin());
+    expect_head(b, "identity", 0);
+    assert_int_equal(loads("m"), 1);
+    expect_code(b, 404, "no_such_mesh", "HEAD", "/v1/meshes/nosuch", NULL);
+    end(b);
+}
+
+static void what_the_client_has_of_a_cold_mesh_loads_nothing(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply was = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    char *tag = strdup(bench_header(&was, "ETag"));
+    bench_done(was);
+    const char *const has[] = {"If-None-Match", tag, "Accept-Encoding", "gzip", NULL};
+    b = restart(b);
+    bench_reply is = bench_expect(304, bench_send(b, "GET", "/v1/meshes/m", has, NULL));
+    assert_string_equal(bench_header(&is, "ETag"), tag);
+    bench_done(is);
+    assert_int_equal(loads("m"), 0);
+    /* It may have had another revision. */
+    bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m?revision=2", has, NULL)));
+    poke(b, "m", 0);
+    b = restart(b);
+    bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m", has, NULL)));
+    free(tag);
+    end(b);
+}
+
+static void a_cold_mesh_is_deleted_without_being_loaded(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    bench_reply was = bench_expect(200, bench_get(b, "/v1/meshes/m"));
+    char *tag = strdup(bench_header(&was, "ETag"));
+    bench_done(was);
+    const char *const match[] = {"If-Match", tag, NULL}, *const none[] = {"If-None-Match", tag,
+                                                                          NULL};
+    b = restart(b);
+    bench_done(bench_expect(412, bench_send(b, "DELETE", "/v1/meshes/m", none, NULL)));
+    kept_journal_refuse(journal, ST_FAILED);
+    expect_code(b, 503, "store_failed", "DELETE", "/v1/meshes/m", NULL);
+    assert_int_equal(loads("m"), 0); /* after all but the removal */
+    kept_journal_refuse(journal, ST_FULL);
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", match, NULL)));
+    kept_journal_refuse(journal, ST_OK);
+    expect_code(b, 404, "no_such_mesh", "GET", "/v1/meshes/m", NULL);
+    expect_code(b, 404, "no_such_mesh", "DELETE", "/v1/meshes/m", NULL);
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/n", NULL, NULL)));
+    bench_reply list = bench_expect(200, bench_get(b, "/v1/meshes"));
+    assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(list.json, "items")), 0);
+    bench_done(list);
+    b = restart(b);
+    /* The id is free for another mesh, whose tags are others. */
+    bench_reply fresh =
+        bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
+    assert_string_not_equal(bench_header(&fresh, "ETag"), tag);
+    bench_done(fresh);
+    bench_done(bench_expect(412, bench_send(b, "DELETE", "/v1/meshes/m", match, NULL)));
+    assert_int_equal(kept_journal_out(journal), 0);
+    free(tag);
+    end(b);
+}
+
 static void expect_name(bench_reply r)
 {
     assert_string_equal(cJSON_GetObjectItem(r.json, "name")->valuestring, "first");
@@ -240,6 +329,9 @@ int main(void)
         cmocka_unit_test(octets_of_an_attribute_are_counted_when_the_mesh_is_there),
         cmocka_unit_test(preconditions_hold_of_a_cold_mesh),
         cmocka_unit_test(a_list_loads_nothing),
+        cmocka_unit_test(head_of_a_cold_mesh_loads_nothing),
+        cmocka_unit_test(what_the_client_has_of_a_cold_mesh_loads_nothing),
+        cmocka_unit_test(a_cold_mesh_is_deleted_without_being_loaded),
         cmocka_unit_test(a_damaged_mesh_can_only_go),
         cmocka_unit_test(a_mesh_of_a_newer_release_waits_for_it),
     };
