@@ -17,10 +17,13 @@ enum {
     GROUP_RECORDS = 4096,
     GROUP_BYTES = 8 << 20,
     SLICE_BESIDE = 64 << 10, /* bytes of background work while others wait */
-    SLICE_ALONE = 1 << 20,
+    SLICE_ALONE = 256 << 10, /* who comes meanwhile waits for it */
     PAGE_BYTES = 4096,
-    CHECKPOINT_PAGES = 1000, /* 12 to 20 ms; more at a time keep others waiting longer */
-    LONG_LOG = 64 << 20,     /* bytes of the -wal from which on loads wait for a checkpoint */
+    /* A checkpoint keeps others waiting, the longer the more pages it writes. It comes more often
+     * while slices fill the log, so that it is as short as a slice. */
+    CHECKPOINT_PAGES = 1000,
+    CHECKPOINT_PAGES_BESIDE = 256,
+    LONG_LOG = 64 << 20, /* bytes of the -wal from which on loads wait for a checkpoint */
     SECOND = 1000000,
     RETRY_MICROS = 20000,
     CLOSING_TRIES = 50
@@ -441,12 +444,13 @@ static bool checkpoint(st_sqlite *self, int how)
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
 
-static void checkpoint_when_due(st_sqlite *self)
+static void checkpoint_when_due(st_sqlite *self, const group *g)
 {
+    const uint64_t pages = g->slice > 0 ? CHECKPOINT_PAGES_BESIDE : CHECKPOINT_PAGES;
     if (self->log_pages < self->log_tried) {
         self->log_tried = 0; /* it was begun anew */
     }
-    if (self->log_pages >= self->log_tried + CHECKPOINT_PAGES) {
+    if (self->log_pages >= self->log_tried + pages) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
     }
 }
@@ -560,7 +564,7 @@ static void work_once(st_sqlite *self)
     if (g.first == NULL && g.slice == 0) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE); /* loads wait for it */
     } else if (commit_group(self, &g)) {
-        checkpoint_when_due(self);
+        checkpoint_when_due(self, &g);
     }
     pthread_mutex_lock(&self->lock);
 }
