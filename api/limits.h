@@ -143,6 +143,10 @@ enum {
     /* Above this an operation on the whole mesh claims it and works on a copy; below, it takes the
      * lock for a few milliseconds. */
     API_CLAIM_ELEMENTS = 200000,
+    /* A list of more operations does, too, and one that turns out to change more rows begins again
+     * so: they are coded for the journal, a megabyte and more, while nobody waits for the lock. */
+    API_CLAIM_EDITS = 4096,
+    API_LOCKED_ROWS = 1 << 17,
     API_DEFAULT_JOBS = 100 /* of one page of the list */
 };
 

@@ -33,6 +33,8 @@ typedef struct edits {
     uint64_t work;      /* of both, in the unit of API_POOL_EDITS */
     uint64_t most_work; /* more belongs elsewhere */
     bool exceeded;      /* it would be more */
+    size_t most_rows;   /* of the delta; more belong to a claim */
+    bool crowded;       /* they are more */
     uint64_t paid;      /* looks at its watch that the operation at hand was charged for */
     uint64_t look;      /* what another one costs */
     bool unlimited;     /* there is no better place than this thread */
@@ -206,7 +208,8 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     e->paid = PHASES + 2 * (grown + listed) / HE_WATCH_STRIDE;
     e->look = (uint64_t)HE_WATCH_STRIDE * he_op_pace(call->op);
     e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
-    return !e->exceeded;
+    e->crowded = delta->count > e->most_rows;
+    return !e->exceeded && !e->crowded;
 }
 
 typedef struct attribute_count {
@@ -380,6 +383,7 @@ static void limit_work(api_exchange *x, edits *e)
     e->most_work = e->unlimited                 ? UINT64_MAX
                    : x->phase == API_PHASE_BODY ? API_WORKER_EDITS
                                                 : API_POOL_EDITS;
+    e->most_rows = x->write.claimed ? SIZE_MAX : API_LOCKED_ROWS;
     e->paid = PHASES;
     e->told = x->watch;
     x->watch.tell = tell_and_charge;
@@ -397,7 +401,7 @@ static void unlimit_work(api_exchange *x, const edits *e)
 static void start_over(edits *e)
 {
     e->looked_at = e->steps = e->work = 0;
-    e->exceeded = false;
+    e->exceeded = e->crowded = false;
     e->hubs = (api_hubs){.slots = {{0}}};
     api_names_unbind(&e->names);
     api_text_empty(&e->results);
@@ -447,7 +451,7 @@ static void end_edit(api_exchange *x, edits *e, bool good)
         st_write_discard_copy(&x->write);
     }
     api_others_release(&e->others);
-    if (e->exceeded && !good) {
+    if ((e->exceeded || e->crowded) && !good) {
         go_on_elsewhere(x, e);
     } else if (x->problem.code == HE_OK) {
         answer(x, e);
@@ -476,13 +480,18 @@ static void run_claimed(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* From a worker to the pool, from there to a job. */
+/* From a worker to the pool, from there to a job. With many rows from either to a claim. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;
+    bool crowded = e->crowded;
     x->problem = (api_problem){.code = HE_OK}; /* of what was ended, if any */
     start_over(e);
-    if (on_worker) {
+    if (crowded) {
+        if (claim(x, e)) {
+            api_run_long(x, run_claimed, true, 0);
+        }
+    } else if (on_worker) {
         api_run_long(x, run, true, 0);
     } else if (x->write.claimed || claim(x, e)) {
         e->unlimited = true;
@@ -519,7 +528,8 @@ bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
                 (elements > API_COSTLY_ELEMENTS &&
                  (e->whole > 0 || api_edit_cost_exceeds(&e->cost, mesh, API_COSTLY_ELEMENTS)));
     e->seconds = (double)e->passes * (double)elements / API_EDIT_PER_SECOND;
-    e->claims = e->whole > 0 && (elements > API_CLAIM_ELEMENTS || e->seconds > API_PATIENCE);
+    e->claims = e->count > API_CLAIM_EDITS ||
+                (e->whole > 0 && (elements > API_CLAIM_ELEMENTS || e->seconds > API_PATIENCE));
     return true;
 }
 

@@ -49,7 +49,8 @@ typedef enum st_status {
     ST_QUOTA      /* whose it is may have no more */
 } st_status;
 
-/* Bytes that the bodies of a group may take: SQLite refuses a row above 10^9. */
+/* Bytes that the bodies of a group, or a coded edit in parts, may take: SQLite refuses a row above
+ * 10^9, and who loads the mesh holds it as one block. */
 enum { ST_MOST_BODY = 900000000 };
 
 /* Memory and a place in the queue for one group of records. A journal's own facts follow. */
@@ -137,6 +138,9 @@ typedef struct st_journal {
      * without a lock, the content private or a snapshot's. ST_FULL, ST_FAILED, ST_BEHIND,
      * ST_NO_MEMORY. */
     st_status (*stage)(void *self, const he_mesh *content, st_stage **out);
+    /* Stages a coded edit, in parts that are written one by one like those of a content, so that
+     * others wait for a part and not for the whole. Not for a base. */
+    st_status (*stage_edit)(void *self, const unsigned char *bytes, size_t size, st_stage **out);
     /* It is not published. Does not wait. */
     void (*unstage)(void *self, st_stage *stage);
     /* The staged content, which it takes, is that of the mesh after the record `facts`: from now on

@@ -31,13 +31,13 @@ typedef struct st_tally {
     uint32_t created[3], deleted[3], modified[3];
 } st_tally;
 
-/* A large content that was brought to the disk before it is published; what else it is belongs to
- * the journal. */
+/* A large content, or a large coded edit, that was brought to the disk before it is published; what
+ * else it is belongs to the journal. */
 typedef struct st_stage st_stage;
 
 /* What a record is. The numbers are written down and keep their meaning for ever. */
 typedef enum st_record_kind {
-    ST_RECORD_EDIT = 1,    /* the body is the coded edit; or a stage, the content after it */
+    ST_RECORD_EDIT = 1,    /* the body is the coded edit; or a stage, that or the content after */
     ST_RECORD_UNDO = 2,    /* of the newest step on the undo stack, with no body */
     ST_RECORD_REDO = 3,    /* of the newest step on the redo stack, with no body */
     ST_RECORD_CONTENT = 4, /* creation or PUT: the body is the coded content; or a stage */
@@ -128,8 +128,9 @@ typedef struct st_record {
     const st_record_key *key;       /* NULL without one */
     const char *job;                /* whose work it is, NULL for none: the job is done with it */
     const unsigned char *body;      /* within the room's bytes; NULL where nothing is kept */
-    size_t body_size;
-    st_stage *stage; /* instead of a body, taken with the record; else NULL */
+    size_t body_size;               /* of a staged edit its bytes, without a body */
+    st_stage *stage;                /* instead of a body, taken with the record; else NULL */
+    bool staged_edit;               /* the stage is the coded edit, not the content after it */
 } st_record;
 
 /* What is known of a mesh without its content: as its newest record left it. */
@@ -150,8 +151,8 @@ void st_card_of_record(const st_record *record, st_card *card);
 
 typedef enum st_piece_kind {
     ST_PIECE_BASE,   /* facts of the mesh at the base, which its parts follow */
-    ST_PIECE_PART,   /* of the base's content, or of the staged content of the record before */
-    ST_PIECE_RECORD, /* one with `stage` not NULL has no body: its content follows in parts */
+    ST_PIECE_PART,   /* of the base's content, or of what the record before had staged */
+    ST_PIECE_RECORD, /* one with `stage` not NULL has no body: what it staged follows in parts */
     ST_PIECE_END
 } st_piece_kind;
 
@@ -160,7 +161,8 @@ typedef struct st_piece {
     st_piece_kind kind;
     st_record record; /* of BASE and RECORD */
     uint64_t parts;   /* of BASE, and of RECORD with a stage: how many follow */
-    unsigned coding;  /* of PART, as he_stored_reader_part wants it: packing is taken off */
+    unsigned coding;  /* of PART, as he_stored_reader_part wants it: packing is taken off. Parts of
+                         a coded edit are HE_CODING_PLAIN */
     const unsigned char *bytes;
     size_t size;
     const char *why; /* where there is none: a sentence */

@@ -10,7 +10,7 @@
 
 enum { AT_VERSION = 4, AT_CHAIN = 24 };
 
-enum { BARRIER = 1, TALLY = 2, PARTS = 4, ALL_FLAGS = BARRIER | TALLY | PARTS };
+enum { BARRIER = 1, TALLY = 2, PARTS = 4, EDIT = 8, ALL_FLAGS = BARRIER | TALLY | PARTS | EDIT };
 
 /* The kinds of element that are counted, in the order in which they are written. */
 static const he_kind counted[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -44,9 +44,9 @@ static unsigned char *put_tally(unsigned char *to, const uint32_t numbers[COUNTE
 
 size_t st_frame_write(const st_record *r, unsigned char *to)
 {
-    unsigned flags = (r->barrier ? (unsigned)BARRIER : 0U) |
-                     (r->tally.known ? (unsigned)TALLY : 0U) |
-                     (r->stage != NULL ? (unsigned)PARTS : 0U);
+    unsigned flags =
+        (r->barrier ? (unsigned)BARRIER : 0U) | (r->tally.known ? (unsigned)TALLY : 0U) |
+        (r->stage != NULL ? (unsigned)PARTS : 0U) | (r->staged_edit ? (unsigned)EDIT : 0U);
     unsigned char *at = he_put_u32(to, 0);
     at = he_put_byte(he_put_byte(at, ST_FRAME_VERSION), r->kind);
     at = he_put_byte(he_put_byte(at, flags), 0);
@@ -163,6 +163,7 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
     r->barrier = (*flags & BARRIER) != 0;
     r->tally.known = (*flags & TALLY) != 0;
     out->in_parts = (*flags & PARTS) != 0;
+    r->staged_edit = (*flags & EDIT) != 0;
     if (!he_take_u64(c, &r->number) || !he_take_u64(c, &r->revision) ||
         !he_take_u64(c, &out->chain) || !he_take_bytes(c, sizeof r->time, &r->time) ||
         !take_numbers(c, r)) {
@@ -190,6 +191,9 @@ static he_status read_rest(he_cursor *c, st_frame *out, he_error *err)
     }
     if (out->in_parts && !has_body(r->kind)) {
         return he_refuse_at(c, err, "only a record with a content can have it in parts");
+    }
+    if (r->staged_edit && (!out->in_parts || r->kind != ST_RECORD_EDIT)) {
+        return he_refuse_at(c, err, "only an edit can have its body in parts");
     }
     r->body = c->at;
     r->body_size = he_left(c);

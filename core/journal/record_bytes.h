@@ -12,7 +12,8 @@
  *     text       ops: length (varint) and UTF-8
  *     text       the name, of a content and a rename
  *     9 varints  with the flag TALLY: created, deleted, modified vertices, edges and faces
- *     the rest   the body; none with the flag PARTS: the content lies beside, in parts
+ *     the rest   the body; none with the flag PARTS: the content lies beside, in parts; with the
+ *                flag EDIT too, of an edit only, those are parts of the body
  *
  * THE CHAIN ties a record to all before it: that of the first is the hash of its mesh's origin (a
  * number that no other mesh has), that of each other the hash of the frame before it from the
@@ -45,7 +46,7 @@ typedef struct st_frame {
 } st_frame;
 
 /* Write the record at `to`, which has room for ST_FRAME_HEAD bytes and the body, but for chain and
- * checksum. With a stage the flag PARTS is set. Returns the bytes. */
+ * checksum. With a stage the flag PARTS is set, and EDIT as the record says. Returns the bytes. */
 size_t st_frame_write(const st_record *record, unsigned char *to);
 /* Put the chain and the checksum into a frame; returns the chain of the record after it. */
 uint64_t st_frame_seal(unsigned char *frame, size_t size, uint64_t chain);

@@ -12,7 +12,8 @@
 typedef struct st_booking {
     st_room *room;
     size_t body;     /* bytes in the room that are the first record's body */
-    st_stage *stage; /* the first record's content, instead of a body */
+    st_stage *stage; /* the first record's content, or its coded edit, instead of a body */
+    bool staged_edit;
 } st_booking;
 
 /* Each returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE and then leaves *out as
@@ -20,8 +21,8 @@ typedef struct st_booking {
 
 /* Books a place for records without a body. */
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out);
-/* Books a place for an edit that made `after`. A large content that replaced another is staged,
- * if the caller may wait for the disk. */
+/* Books a place for an edit that made `after`. Of a caller that may wait for the disk, what is
+ * large is staged: a content that replaced another, or the coded edit. */
 st_status st_book_edit(const st_journal *journal, const he_delta *delta, const he_mesh *after,
                        bool may_wait, st_booking *out);
 /* For a whole content, in `records` of which it is the first. Takes `stage` on success; NULL: the

@@ -19,11 +19,12 @@ typedef struct load {
     uint64_t record;   /* the last that was applied, 0: none */
     uint64_t metadata; /* after it */
     uint64_t reach;    /* after it */
-    st_record pending; /* a base or record whose content is coming in parts; its texts are here */
+    st_record pending; /* a base or record whose parts are coming; its texts are here */
     bool is_base;      /* it is a base */
     char ops[ST_ENTRY_OPS];
-    he_stored_reader *parts; /* NULL: nothing is pending */
-    uint64_t missing;        /* parts */
+    he_stored_reader *content; /* that the parts make */
+    unsigned char *edit;       /* or the coded edit */
+    uint64_t missing;          /* parts; 0: nothing is pending */
     char *damage;
 } load;
 
@@ -153,6 +154,27 @@ static st_status take_content(load *l, const st_record *record, bool is_base, he
                                              : edit_whole(l, record, takes);
 }
 
+static void free_parts(load *l)
+{
+    he_stored_reader_free(l->content);
+    he_mem_free(l->edit);
+    l->content = NULL;
+    l->edit = NULL;
+    l->missing = 0;
+}
+
+/* Memory for the edit that comes in parts; its size is known when all came. */
+static st_status begin_edit(load *l, const st_piece *piece)
+{
+    if (piece->parts > ST_MOST_BODY / HE_STORED_PART + 1) {
+        return damaged(l, "record %llu has more parts than an edit may have",
+                       (unsigned long long)l->pending.number);
+    }
+    l->edit = he_mem_array(NULL, (size_t)piece->parts, HE_STORED_PART);
+    l->pending.body_size = 0;
+    return l->edit != NULL ? ST_OK : no_memory();
+}
+
 static st_status begin_parts(load *l, const st_piece *piece)
 {
     he_error err = {0};
@@ -161,29 +183,31 @@ static st_status begin_parts(load *l, const st_piece *piece)
     l->missing = piece->parts;
     snprintf(l->ops, sizeof l->ops, "%s", piece->record.ops == NULL ? "" : piece->record.ops);
     l->pending.ops = l->ops;
+    if (piece->parts == 0) {
+        return damaged(l, "record %llu has no parts", (unsigned long long)l->pending.number);
+    }
+    if (l->pending.staged_edit) {
+        return begin_edit(l, piece);
+    }
     uint64_t most =
         piece->parts > UINT64_MAX / HE_STORED_PART ? UINT64_MAX : piece->parts * HE_STORED_PART;
-    return status_of(l, he_stored_reader_new(most, &l->parts, &err), l->pending.number, &err);
+    return status_of(l, he_stored_reader_new(most, &l->content, &err), l->pending.number, &err);
 }
 
-static st_status take_part(load *l, const st_piece *piece)
+static st_status take_content_part(load *l, const st_piece *piece)
 {
     const st_record *record = &l->pending;
     he_mesh *content = NULL;
     he_error err = {0};
-    if (l->parts == NULL) {
-        return damaged(l, "a part of a content belongs to no record");
-    }
     he_status status =
-        he_stored_reader_part(l->parts, piece->coding, piece->bytes, piece->size, &err);
+        he_stored_reader_part(l->content, piece->coding, piece->bytes, piece->size, &err);
     if (status == HE_OK && --l->missing > 0) {
         return ST_OK;
     }
     if (status == HE_OK) {
-        status = he_stored_reader_end(l->parts, &content, &err);
+        status = he_stored_reader_end(l->content, &content, &err);
     }
-    he_stored_reader_free(l->parts);
-    l->parts = NULL;
+    free_parts(l);
     return status != HE_OK ? status_of(l, status, record->number, &err)
                            : take_content(l, record, l->is_base, content);
 }
@@ -205,6 +229,33 @@ static st_status take_edit(load *l, const st_record *record)
     }
     st_log_lend(&mesh->log, delta);
     return has_marks(mesh->content, record->issued) ? add_edit(l, record) : wrong_marks(l, record);
+}
+
+static st_status take_edit_part(load *l, const st_piece *piece)
+{
+    st_record *record = &l->pending;
+    if (piece->coding != HE_CODING_PLAIN || piece->size > HE_STORED_PART) {
+        return damaged(l, "a part of the edit of record %llu is coded otherwise",
+                       (unsigned long long)record->number);
+    }
+    memcpy(l->edit + record->body_size, piece->bytes, piece->size);
+    record->body_size += piece->size;
+    if (--l->missing > 0) {
+        return ST_OK;
+    }
+    record->body = l->edit;
+    l->mesh->appended += record->body_size;
+    const st_status status = take_edit(l, record);
+    free_parts(l);
+    return status;
+}
+
+static st_status take_part(load *l, const st_piece *piece)
+{
+    if (l->missing == 0) {
+        return damaged(l, "a part belongs to no record");
+    }
+    return l->edit != NULL ? take_edit_part(l, piece) : take_content_part(l, piece);
 }
 
 static st_status take_whole(load *l, const st_record *record)
@@ -314,8 +365,8 @@ static st_status take_base(load *l, const st_piece *piece)
 
 static st_status take(load *l, const st_piece *piece)
 {
-    if (l->parts != NULL && piece->kind != ST_PIECE_PART) {
-        return damaged(l, "parts of the content of record %llu are missing",
+    if (l->missing > 0 && piece->kind != ST_PIECE_PART) {
+        return damaged(l, "parts of record %llu are missing",
                        (unsigned long long)l->pending.number);
     }
     switch (piece->kind) {
@@ -373,7 +424,7 @@ static void end_history(load *l)
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||
-           (l->until != 0 && l->parts == NULL && l->mesh->content != NULL &&
+           (l->until != 0 && l->missing == 0 && l->mesh->content != NULL &&
             piece->kind == ST_PIECE_RECORD && piece->record.revision > l->until);
 }
 
@@ -427,7 +478,7 @@ st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, s
         memcpy(damage, why, ST_DAMAGE);
         status = ST_DAMAGED;
     }
-    he_stored_reader_free(l.parts);
+    free_parts(&l);
     if (status != ST_OK) {
         st_release(l.mesh);
         return status;
@@ -453,7 +504,7 @@ st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_r
     if (status == ST_OK) {
         status = check_content(&l);
     }
-    he_stored_reader_free(l.parts);
+    free_parts(&l);
     if (status != ST_OK) {
         if (status == ST_DAMAGED) {
             options->journal->condemn(reader, damage);

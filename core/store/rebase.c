@@ -19,7 +19,8 @@
 /* The mesh is loaded from such a record on: nothing before it is needed. */
 static bool is_base(const st_record *record)
 {
-    return record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
+    return record->barrier && !record->staged_edit &&
+           (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
 /* A record without its body, and a content on the disk beside one in memory. */
@@ -37,8 +38,8 @@ struct st_next_base {
 
 uint64_t st_rebase_bytes(const st_record *record)
 {
-    return FRAME_BYTES + record->body_size +
-           (record->stage != NULL ? record->bytes / PACKED_SHARE : 0);
+    const bool has_content = record->stage != NULL && !record->staged_edit;
+    return FRAME_BYTES + record->body_size + (has_content ? record->bytes / PACKED_SHARE : 0);
 }
 
 void st_rebase_drop(st_mesh *mesh)

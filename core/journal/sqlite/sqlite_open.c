@@ -395,6 +395,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .append = st_sqlite_append,
                         .note = st_sqlite_note,
                         .stage = st_sqlite_stage,
+                        .stage_edit = st_sqlite_stage_edit,
                         .unstage = st_sqlite_unstage,
                         .rebase = st_sqlite_rebase,
                         .open = st_sqlite_open_mesh,

@@ -108,9 +108,10 @@ static void fill_entry(st_sqlite_room *room, const st_record *record)
                          .number = record->number,
                          .revision = record->revision,
                          .frame = room->heads + room->count * ST_FRAME_HEAD,
-                         .stage = record->stage};
+                         .stage = record->stage,
+                         .staged_edit = record->staged_edit};
     room->count++;
-    if (record->body_size == 0) {
+    if (record->body == NULL) {
         entry->size = st_frame_write(record, entry->frame);
         return;
     }

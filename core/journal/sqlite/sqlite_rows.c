@@ -215,11 +215,11 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* The record itself: its row, and its content where that lies in parts. */
+/* The record itself: its row, and what it has in parts. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
-    const bool is_base =
-        entry->barrier && (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
+    const bool is_base = entry->barrier && !entry->staged_edit &&
+                         (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
     /* A snapshot has the facts of its record too, which is deleted. */
     if (!is_base || entry->stage == NULL) {

@@ -1,5 +1,5 @@
-/* Contents in parts. The thread that stages codes them, a slice at a time, and waits while the
- * commit thread writes the slice beside what others commit. */
+/* Contents and large edits in parts. The thread that stages codes them, a slice at a time, and
+ * waits while the commit thread writes the slice beside what others commit. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -9,14 +9,35 @@
 
 /* --- the thread that stages --- */
 
+/* What is staged: a content, or a coded edit of which so much is left. */
+typedef struct source {
+    he_stored_writer *content;
+    const unsigned char *edit;
+    size_t left;
+} source;
+
+/* Returns its bytes, 0 after the last. */
+static size_t next_part(source *from, unsigned char *to, unsigned *coding)
+{
+    if (from->content != NULL) {
+        return he_stored_writer_next(from->content, to, coding);
+    }
+    const size_t size = from->left < HE_STORED_PART ? from->left : HE_STORED_PART;
+    memcpy(to, from->edit, size);
+    from->edit += size;
+    from->left -= size;
+    *coding = HE_CODING_PLAIN;
+    return size;
+}
+
 /* False after the last part. */
-static bool fill_slice(st_slice *slice, he_stored_writer *writer, st_packer *packer)
+static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
     while (slice->count < ST_SLICE_PARTS) {
         unsigned char *bytes = slice->bytes[slice->count];
         unsigned coding;
-        size_t size = he_stored_writer_next(writer, bytes + ST_PART_HEAD, &coding);
+        size_t size = next_part(from, bytes + ST_PART_HEAD, &coding);
         if (size == 0) {
             return false;
         }
@@ -58,10 +79,8 @@ static st_status write_slice(st_sqlite *self, st_stage *stage)
     return stage->status;
 }
 
-st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
+static st_status stage_parts(st_sqlite *self, source *from, uint64_t parts, st_stage **out)
 {
-    st_sqlite *self = context;
-    he_stored_writer writer;
     st_stage *stage = he_mem_zero(1, sizeof *stage);
     st_slice *slice = he_mem_alloc(sizeof *slice);
     if (stage == NULL || slice == NULL) {
@@ -69,13 +88,13 @@ st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
-    st_packer *packer = st_packer_new();
+    /* An edit is read as it was coded, without unpacking. */
+    st_packer *packer = from->content == NULL ? NULL : st_packer_new();
     stage->slice = slice;
-    stage->parts = he_stored_parts(content);
-    he_stored_writer_init(&writer, content);
+    stage->parts = parts;
     st_status status = ST_OK;
     for (bool more = true; more && status == ST_OK;) {
-        more = fill_slice(slice, &writer, packer);
+        more = fill_slice(slice, from, packer);
         status = slice->count == 0 ? ST_OK : write_slice(self, stage);
     }
     st_packer_free(packer);
@@ -87,6 +106,20 @@ st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
     }
     *out = stage;
     return ST_OK;
+}
+
+st_status st_sqlite_stage(void *context, const he_mesh *content, st_stage **out)
+{
+    he_stored_writer writer;
+    he_stored_writer_init(&writer, content);
+    return stage_parts(context, &(source){.content = &writer}, he_stored_parts(content), out);
+}
+
+st_status st_sqlite_stage_edit(void *context, const unsigned char *bytes, size_t size,
+                               st_stage **out)
+{
+    const uint64_t parts = size / HE_STORED_PART + (size % HE_STORED_PART != 0);
+    return stage_parts(context, &(source){.edit = bytes, .left = size}, parts, out);
 }
 
 static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
@@ -203,6 +236,14 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
+/* A large edit has its row among the snapshots, too. */
+static bool is_content(const st_snapshot_row *row)
+{
+    st_frame frame;
+    return st_frame_read(row->facts, row->facts_size, &frame, NULL) == HE_OK &&
+           !frame.record.staged_edit;
+}
+
 /* The newest base whose revision is not after `needed`. 0: the one there is. */
 static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
 {
@@ -212,7 +253,7 @@ static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, u
     st_sql outcome =
         st_db_find(&self->db, ST_SQL_SNAPSHOTS_FROM, &s, "ii", head->row.key, head->row.base + 1);
     while (outcome == ST_SQL_ROW && *out == 0) {
-        if (st_snapshot_row_read(s, &row) && row.revision <= needed) {
+        if (st_snapshot_row_read(s, &row) && row.revision <= needed && is_content(&row)) {
             *out = row.number;
             st_db_reset(s);
             return ST_SQL_DONE;

@@ -49,6 +49,7 @@ typedef struct st_queued {
     unsigned char *frame; /* but for chain and sum */
     size_t size;
     st_stage *stage;
+    bool staged_edit;
 } st_queued;
 
 /* What a room says of a job. */
@@ -300,10 +301,11 @@ st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room);
 
 /* --- sqlite_stage.c --- */
 st_status st_sqlite_stage(void *self, const he_mesh *content, st_stage **out);
+st_status st_sqlite_stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out);
 void st_sqlite_unstage(void *self, st_stage *stage);
 void st_sqlite_rebase(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
-/* These run within a transaction. A staged content becomes that of a mesh: its row, whose key is
- * that of the stage, replaces the row of the former content. */
+/* These run within a transaction. What was staged becomes that of a record: its row, whose key is
+ * that of the stage, replaces the row that belonged to no mesh. */
 st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row);
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage);
 st_sql st_stage_drop(st_sqlite *self, const st_stage *stage);
