@@ -48,6 +48,7 @@ struct kept_journal {
     uint64_t newest;
     size_t out; /* rooms, stages and readers */
     st_status refuse;
+    size_t staged_edits; /* that there were */
     bool ignores;
     bool stopped;
     size_t waiting;
@@ -145,6 +146,26 @@ static st_status stage_content(void *self, const he_mesh *content, st_stage **ou
     return ST_OK;
 }
 
+static st_status stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out)
+{
+    kept_journal *journal = self;
+    if (journal->refuse != ST_OK) {
+        return journal->refuse;
+    }
+    st_stage *stage = calloc(1, sizeof *stage);
+    assert_non_null(stage);
+    for (size_t at = 0; at < size; at += HE_STORED_PART) {
+        const size_t left = size - at;
+        add_part(stage, bytes + at, left < HE_STORED_PART ? left : HE_STORED_PART, HE_CODING_PLAIN);
+    }
+    *out = stage;
+    count_out(journal, 1);
+    pthread_mutex_lock(&journal->lock);
+    journal->staged_edits++;
+    pthread_mutex_unlock(&journal->lock);
+    return ST_OK;
+}
+
 static void unstage(void *self, st_stage *stage)
 {
     if (stage != NULL) {
@@ -203,7 +224,7 @@ static kept_record *copy_of(const kept_mesh *mesh, const st_record *record)
     out->record.ops = out->ops;
     out->record.key = NULL;
     out->record.body = NULL;
-    if (record->body_size > 0) {
+    if (record->body != NULL) {
         unsigned char *body = malloc(record->body_size);
         assert_non_null(body);
         memcpy(body, record->body, record->body_size);
@@ -435,6 +456,14 @@ static uint64_t count_meshes(void *self)
 
 /* --- for tests --- */
 
+size_t kept_journal_staged_edits(kept_journal *journal)
+{
+    pthread_mutex_lock(&journal->lock);
+    const size_t staged = journal->staged_edits;
+    pthread_mutex_unlock(&journal->lock);
+    return staged;
+}
+
 kept_journal *kept_journal_new(void)
 {
     kept_journal *journal = calloc(1, sizeof *journal);
@@ -476,6 +505,7 @@ st_journal kept_journal_open(kept_journal *journal)
     out.leave = leave;
     out.append = append;
     out.stage = stage_content;
+    out.stage_edit = stage_edit;
     out.unstage = unstage;
     out.rebase = rebase;
     out.open = open_mesh;

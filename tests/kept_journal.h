@@ -33,6 +33,8 @@ typedef struct kept_facts {
     bool condemned;
 } kept_facts;
 kept_facts kept_journal_facts(kept_journal *journal, const char *id);
+/* How many edits were staged. */
+size_t kept_journal_staged_edits(kept_journal *journal);
 /* How many rooms, stages and readers are out. */
 size_t kept_journal_out(kept_journal *journal);
 

@@ -56,6 +56,28 @@ static st_status stage_content(void *self, const he_mesh *content, st_stage **ou
     return ST_OK;
 }
 
+/* Of the edit nothing is kept. */
+static st_status stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out)
+{
+    slow_journal *journal = self;
+    (void)bytes;
+    (void)size;
+    if (journal->refuse != ST_OK) {
+        return journal->refuse;
+    }
+    if (journal->staging != NULL) {
+        journal->staging();
+    }
+    st_stage *stage = he_mem_zero(1, sizeof *stage);
+    if (stage == NULL) {
+        return ST_NO_MEMORY;
+    }
+    *out = stage;
+    journal->staged_edits++;
+    count_out(journal, 1);
+    return ST_OK;
+}
+
 static void free_stage(st_stage *stage)
 {
     if (stage != NULL) {
@@ -175,6 +197,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.keeps = true;
     kept.reserve = reserve_kept;
     kept.stage = stage_content;
+    kept.stage_edit = stage_edit;
     kept.unstage = unstage;
     kept.open = open_none;
     kept.list = list_none;

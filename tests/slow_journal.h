@@ -19,6 +19,8 @@ typedef struct slow_journal {
     st_room *room;           /* of the newest group */
     st_stage *stage;         /* of the newest group's first record */
     st_status refuse;        /* what reserving and staging are answered, but a removal by ST_FULL */
+    void (*staging)(void);   /* called while an edit is staged; NULL: nothing is */
+    size_t staged_edits;     /* how many were */
     size_t out;              /* rooms and stages that are neither published nor given back */
     pthread_mutex_t telling; /* held while the listener is called */
     bool is_heard;

@@ -3,8 +3,12 @@
 #include "store/write.h"
 #include "tests/slow_journal.h"
 
+#include "api/limits.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -159,6 +163,67 @@ static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
     bench_free(b);
 }
 
+/* --- a list whose changes are many --- */
+
+static api_bench *staging_for;
+
+/* While the list is on its way to the disk: its mesh is read as it was, and another is written. */
+static void look_and_write(void)
+{
+    bench_reply r = bench_expect(200, bench_get(staging_for, "/v1/meshes/m"));
+    assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
+    bench_reply_free(&r);
+    bench_done(bench_expect(
+        200, bench_post(staging_for, "/v1/meshes/n/edits", "{\"op\":\"face_poke\",\"face\":0}")));
+    bench_done(bench_expect(
+        409, bench_post(staging_for, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}")));
+}
+
+static void splits(api_bench *b, size_t count)
+{
+    static const char op[] = "{\"op\":\"edge_split\",\"edge\":0},";
+    char *body = malloc(count * sizeof op + 16);
+    assert_non_null(body);
+    size_t length = (size_t)sprintf(body, "{\"ops\":[");
+    for (size_t i = 0; i < count; i++) {
+        memcpy(body + length, op, sizeof op - 1);
+        length += sizeof op - 1;
+    }
+    memcpy(body + length - 1, "]}", 3);
+    const uint64_t groups = journal.groups;
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/edits", body)));
+    assert_int_equal(journal.groups, groups + (journal.staging == NULL ? 1 : 2));
+    free(body);
+}
+
+static void a_long_list_keeps_no_reader_and_no_writer_of_another_mesh(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    slow_journal_advance(&journal, UINT64_MAX);
+    staging_for = b;
+    journal.staging = look_and_write;
+    splits(b, API_MAX_OPS);
+    assert_int_equal(journal.staged_edits, 1);
+    assert_true(journal.record.staged_edit && journal.record.body == NULL);
+    bench_free(b);
+}
+
+static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    slow_journal_advance(&journal, UINT64_MAX);
+    splits(b, 100);
+    assert_int_equal(journal.staged_edits, 0);
+    staging_for = b;
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    /* Each of them, on the worker or beside it, is a claim's by its rows. */
+    splits(b, API_CLAIM_EDITS);
+    assert_int_equal(journal.staged_edits, 1);
+    bench_free(b);
+}
+
 /* --- readiness --- */
 
 static void readiness_tells_how_the_disk_is(void **state)
@@ -188,6 +253,8 @@ int main(void)
         cmocka_unit_test(a_write_to_what_was_lost_is_refused_as_the_disk_is),
         cmocka_unit_test(what_was_lost_is_not_copied_or_appended),
         cmocka_unit_test(a_change_that_is_too_large_to_be_kept_names_the_limit),
+        cmocka_unit_test(a_long_list_keeps_no_reader_and_no_writer_of_another_mesh),
+        cmocka_unit_test(a_short_list_takes_the_lock_until_it_turns_out_to_change_much),
         cmocka_unit_test(readiness_tells_how_the_disk_is),
     };
     return cmocka_run_group_tests_name("disk", tests, NULL, NULL);

@@ -95,6 +95,21 @@ static const struct specimen {
      "b995e9e001010400fffffffffffffffffeffffffffffffffefcdab89674523010000000000000000"
      "ffffffffffffffffff0100feffffffffffffffff01ffffffff0fffffffff07ffffffff0fffffffff"
      "0fffffffff0fffffffff0fffffffff0fffffffffffffffffff0109737562646976696465"},
+    {"edit in parts",
+     {.kind = ST_RECORD_EDIT,
+      .barrier = true,
+      .number = 3,
+      .revision = 3,
+      .metadata = 1,
+      .time = 1700000003,
+      .ops = "edge_split",
+      .issued = {[HE_VERTEX] = 9, [HE_HALFEDGE] = 400, [HE_EDGE] = 200, [HE_FACE] = 11},
+      .counts = {8, 200, 10, 0},
+      .bytes = 70000,
+      .stage = (st_stage *)&in_parts,
+      .staged_edit = true},
+     "eaecb4d001010d0003000000000000000300000000000000efcdab89674523010000c040fc54d941"
+     "01000309c8010b08c8010a00f0a2040a656467655f73706c6974"},
     {"rename",
      {.kind = ST_RECORD_RENAME,
       .name = "",
@@ -135,6 +150,7 @@ static void assert_record(const st_record *a, const st_record *b)
     assert_memory_equal(a->tally.created, b->tally.created, sizeof a->tally.created);
     assert_memory_equal(a->tally.deleted, b->tally.deleted, sizeof a->tally.deleted);
     assert_memory_equal(a->tally.modified, b->tally.modified, sizeof a->tally.modified);
+    assert_int_equal(a->staged_edit, b->staged_edit);
     assert_int_equal(a->body_size, b->body_size);
     assert_memory_equal(a->body, b->body == NULL ? body : b->body, a->body_size);
 }

@@ -8,10 +8,13 @@
 #include "tests/unit/kept_store.h"
 #include "tests/writing.h"
 
+#include "edit/local/vertex.h"
 #include "mesh/compact.h"
 #include "mesh/write.h"
 #include "store/followers.h"
+#include "store/limits.h"
 #include "store/table.h"
+#include "stored/stored.h"
 
 #include <semaphore.h>
 
@@ -218,6 +221,34 @@ static void a_mesh_comes_back_as_it_was(void **state)
         st_store_free(store);
         kept_journal_free(journal);
     }
+}
+
+/* More changes than a body has room for, of a claim: they come to the journal in parts. */
+static void a_large_edit_comes_back_from_its_parts(void **state)
+{
+    (void)state;
+    enum { ADDED = 20000 };
+    journal = kept_journal_new();
+    st_store *store = open_store(64 << 20);
+    st_mesh *mesh = kept_store_make(store, "m");
+    st_write w;
+    assert_int_equal(st_write_claim(mesh, NULL, &w), ST_OK);
+    assert_int_equal(st_write_copy(&w, NULL, NULL), HE_OK);
+    for (unsigned i = 0; i < ADDED; i++) {
+        he_vertex added;
+        assert_int_equal(he_vertex_add(w.content, (he_vec3){i, 1, 2}, &added, NULL), HE_OK);
+    }
+    const size_t bound = he_stored_edit_bound(w.delta, w.content);
+    assert_true(bound > ST_BODY_BYTES);
+    assert_true(writing_commit(&w, "vertex_add", NULL));
+    assert_int_equal(kept_journal_staged_edits(journal), 1);
+    md_random random = {seed_of_run()};
+    for (unsigned i = 0; i < 4; i++) {
+        edit(mesh, &random, i);
+    }
+    expect_loads_with_stacks(mesh, 64 << 20);
+    st_store_free(store);
+    kept_journal_free(journal);
 }
 
 /* Three threads have one for what no client waits for: this comes after all that was asked of the
@@ -549,6 +580,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mesh_comes_back_as_it_was),
+        cmocka_unit_test(a_large_edit_comes_back_from_its_parts),
         cmocka_unit_test(a_younger_base_leads_to_the_same_mesh),
         cmocka_unit_test(a_revision_beyond_memory_is_read_from_the_disk),
         cmocka_unit_test(a_smaller_budget_keeps_the_newest),
