@@ -22,6 +22,7 @@
 #define HE_JOURNAL_JOURNAL_H
 
 #include "journal/record.h"
+#include "system/histogram.h"
 
 /* How a call of the store or the journal went. */
 typedef enum st_status {
@@ -111,6 +112,18 @@ typedef struct st_note {
     const st_kept_key *kept; /* of a request that changed nothing */
 } st_note;
 
+/* What a journal measured since the start, and how it is at the moment. */
+typedef struct st_journal_measures {
+    st_distribution commits;      /* how long groups took to commit, sync included; microseconds */
+    st_distribution syncs;        /* how long the sync of each, and writing to the log, took */
+    st_distribution groups;       /* records and notes of each */
+    st_distribution checkpoints;  /* how long the log took to be written back; microseconds */
+    uint64_t behind;              /* records and notes that are queued or being committed */
+    uint64_t lost;                /* that will never be durable */
+    uint64_t queued, most_queued; /* bytes of the queue, with what is reserved */
+    uint64_t log;                 /* bytes of the -wal that are in use */
+} st_journal_measures;
+
 typedef struct st_journal {
     void *self;
     /* Is what is appended kept beyond memory? Without it a room is NULL, so that nothing is coded,
@@ -176,6 +189,8 @@ typedef struct st_journal {
     uint64_t (*count)(void *self);
     /* How the disk is. Never waits. */
     void (*health)(void *self, st_health *out);
+    /* Never waits. NULL: nothing is measured. */
+    void (*measure)(void *self, st_journal_measures *out);
 
     /* The start is over: what it put into a store that was just made is durable from now on, and
      * the next start finds an old store. Waits. */

@@ -22,6 +22,11 @@ const he_op *he_op_at(size_t i)
     return op;
 }
 
+size_t he_op_number(const he_op *op)
+{
+    return he_table_number(op);
+}
+
 const he_op *he_op_find(const char *name, size_t length)
 {
     const he_op *op;

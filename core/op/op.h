@@ -137,6 +137,7 @@ typedef struct he_op {
 
 size_t he_op_count(void);
 const he_op *he_op_at(size_t i);
+size_t he_op_number(const he_op *op); /* the number by which he_op_at gives it */
 const he_op *he_op_find(const char *name, size_t length); /* NULL when there is none */
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);

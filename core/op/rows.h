@@ -20,6 +20,8 @@ extern const he_op he_material_rows[];
 
 /* All rows in the order of the table. NULL past the last. */
 const he_op *he_table_row(size_t i);
+/* The number of a row of the table. */
+size_t he_table_number(const he_op *op);
 
 /* Result i of a row is one element, which may be HE_NONE, or one choice. */
 void he_give(he_results *out, size_t i, uint32_t id);

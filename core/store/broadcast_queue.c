@@ -9,13 +9,19 @@
 struct st_message {
     uint32_t uses; /* by the ring and by listeners, under the queue's lock */
     st_place place;
+    uint64_t made; /* when, st_clock_micros */
     size_t length;
     char bytes[];
 };
 
-void st_queue_init(st_queue *queue, st_place place)
+static void count(_Atomic uint64_t *counter, uint64_t amount)
 {
-    *queue = (st_queue){.floor = place, .newest = place};
+    atomic_fetch_add_explicit(counter, amount, memory_order_relaxed);
+}
+
+void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts)
+{
+    *queue = (st_queue){.counts = counts, .floor = place, .newest = place};
     pthread_mutex_init(&queue->lock, NULL);
 }
 
@@ -39,6 +45,7 @@ static void drop_oldest(st_queue *queue)
     queue->floor = message->place;
     queue->floor_number++;
     queue->bytes -= message->length;
+    count(&queue->counts->bytes, 0 - (uint64_t)message->length);
     queue->first = (queue->first + 1) & (queue->capacity - 1);
     queue->count--;
     release(message);
@@ -161,7 +168,7 @@ static st_message *message_new(const char *bytes, size_t length)
     st_message *message =
         bytes == NULL || length > ST_QUEUE_BYTES ? NULL : he_mem_alloc(sizeof *message + length);
     if (message != NULL) {
-        *message = (st_message){.uses = 1, .length = length};
+        *message = (st_message){.uses = 1, .made = st_clock_micros(), .length = length};
         memcpy(message->bytes, bytes, length);
     }
     return message;
@@ -181,6 +188,8 @@ static void append(st_queue *queue, st_message *message)
     queue->ring[(queue->first + queue->count) & (queue->capacity - 1)] = message;
     queue->count++;
     queue->bytes += message->length;
+    count(&queue->counts->messages, 1);
+    count(&queue->counts->bytes, message->length);
     while (queue->count > ST_QUEUE_MESSAGES || queue->bytes > ST_QUEUE_BYTES) {
         drop_oldest(queue);
     }
@@ -329,12 +338,14 @@ static st_queue_result next_message(st_queue *queue, st_listener *listener)
 
 static size_t copy_out(st_listener *listener, char *buffer, size_t size)
 {
+    st_queue_counts *counts = listener->queue->counts;
     st_message *message = listener->message;
     size_t length = message->length - listener->sent;
     length = length < size ? length : size;
     memcpy(buffer, message->bytes + listener->sent, length);
     listener->sent += length;
     if (listener->sent == message->length) {
+        st_histogram_add(&counts->lag, st_scale_micros, st_clock_micros() - message->made);
         listener->message = NULL;
         release(message);
     }
@@ -357,6 +368,8 @@ st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, 
     }
     if (used > 0) {
         step = ST_QUEUE_GOT;
+    } else if (step == ST_QUEUE_BEHIND) {
+        count(&queue->counts->behind, 1);
     } else if (step == ST_QUEUE_WAIT && queue->lost) {
         step = ST_QUEUE_LOST;
     } else if (step == ST_QUEUE_WAIT) {

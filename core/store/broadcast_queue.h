@@ -22,8 +22,10 @@
 #define HE_STORE_BROADCAST_QUEUE_H
 
 #include "store/limits.h"
+#include "system/histogram.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -47,7 +49,17 @@ typedef struct st_listener {
     struct st_listener *next, *previous;
 } st_listener;
 
+/* What the queues of a store count together, without a lock. */
+typedef struct st_queue_counts {
+    _Atomic uint64_t messages; /* that were added */
+    _Atomic uint64_t bytes;    /* of messages that are kept */
+    _Atomic uint64_t behind;   /* how often a listener was told that it is behind */
+    st_histogram lag; /* microseconds from adding a message to its having been read, once for each
+                         listener */
+} st_queue_counts;
+
 typedef struct st_queue {
+    st_queue_counts *counts;
     pthread_mutex_t lock;
     st_message **ring; /* a power of two of places */
     size_t capacity, first, count;
@@ -62,8 +74,8 @@ typedef struct st_queue {
     st_listener *waiting;
 } st_queue;
 
-/* What comes is after `place`. */
-void st_queue_init(st_queue *queue, st_place place);
+/* What comes is after `place`. `counts` outlives the queue. */
+void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts);
 /* Nobody may listen. */
 void st_queue_clear(st_queue *queue);
 

@@ -175,6 +175,8 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     uint64_t position = journal->append(journal->self, booking->room, records, 2);
     *booking = (st_booking){NULL};
     old->info.position = fresh->info.position = position;
+    st_mesh_weigh(fresh);
+    st_count(&store->followers.counts.revisions, 1);
     st_waits_appended(store->followers.waits, position);
     st_mesh_tell(old, &(st_group){.records = &records[0], .count = 1, .changes = &changes[0]});
     st_mesh_tell(fresh, &(st_group){.records = &records[1], .count = 1, .changes = &changes[1]});

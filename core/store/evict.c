@@ -136,6 +136,7 @@ static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *lock
         for (size_t i = 0; i < count; i++) {
             st_release(batch[i]);
         }
+        st_count(&store->followers.counts.evicted, count);
     } while (count == BATCH);
     return all;
 }

@@ -225,6 +225,20 @@ static st_status put_in(st_store *store, st_mesh *mesh)
     return status;
 }
 
+/* `mesh` where it was found; one that cannot be read has no content. */
+static void count_load(st_store *store, st_status status, const st_mesh *mesh, uint64_t micros)
+{
+    st_store_counts *counts = &store->followers.counts;
+    const st_loaded loaded = status == ST_ABSENT            ? ST_LOADED_NOTHING
+                             : status != ST_OK              ? ST_LOADED_FAILED
+                             : st_unreadable(mesh) != ST_OK ? ST_LOADED_DAMAGED
+                                                            : ST_LOADED_WHOLE;
+    st_count(&counts->loads[loaded], 1);
+    if (loaded == ST_LOADED_WHOLE) {
+        st_histogram_add(&counts->load_time, st_scale_micros, micros);
+    }
+}
+
 st_status st_load(st_store *store, const char *id, st_mesh **out)
 {
     st_lookup *lookup;
@@ -234,8 +248,11 @@ st_status st_load(st_store *store, const char *id, st_mesh **out)
     }
     st_status status = st_lookup_begin(store, id, &mesh, &lookup);
     if (status == ST_OK && mesh == NULL) {
+        const uint64_t begun = st_clock_micros();
         status = load_mesh(store, id, &mesh);
+        count_load(store, status, mesh, st_clock_micros() - begun);
         if (status == ST_OK) {
+            st_mesh_weigh(mesh);
             st_mesh_use(mesh);
             status = put_in(store, mesh);
         }

@@ -15,9 +15,18 @@ struct st_snapshot {
 void st_copy_release(st_copy *copy)
 {
     if (copy != NULL && atomic_fetch_sub_explicit(&copy->uses, 1, memory_order_acq_rel) == 1) {
+        st_count(&copy->counts->copies, 0 - copy->bytes);
         he_replay_free(copy->replay);
         he_mem_free(copy);
     }
+}
+
+/* Its bytes are those of its content now: the edits by which it is brought forward add little. */
+static void count_copy(st_copy *copy, const st_mesh *mesh)
+{
+    copy->counts = &mesh->followers->counts;
+    copy->bytes = he_mesh_bytes(he_replay_mesh(copy->replay));
+    st_count(&copy->counts->copies, copy->bytes);
 }
 
 /* Under the snapshot lock nobody else can begin to use the cached copy. */
@@ -51,6 +60,7 @@ static st_copy *copy_new(const st_mesh *mesh)
         return NULL;
     }
     atomic_init(&copy->uses, 1);
+    count_copy(copy, mesh);
     return copy;
 }
 
@@ -114,6 +124,7 @@ static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision,
     }
     atomic_init(&copy->uses, 1);
     copy->replay = replay;
+    count_copy(copy, mesh);
     copy->revision = revision;
     copy->time = time;
     st_copy_release(mesh->past);

@@ -328,6 +328,38 @@ void st_store_health(const st_store *store, st_health *out)
     }
 }
 
+/* The sums may be of slightly different moments. */
+void st_store_measure(st_store *store, st_store_measures *out)
+{
+    st_store_counts *counts = &store->followers.counts;
+    *out = (st_store_measures){
+        .meshes = st_store_count(store),
+        .most_meshes = store->max_meshes,
+        .meshes_in_memory = st_counted(&counts->weights[ST_WEIGHT_MESHES]),
+        .vertices = st_counted(&counts->weights[ST_WEIGHT_VERTICES]),
+        .edges = st_counted(&counts->weights[ST_WEIGHT_EDGES]),
+        .faces = st_counted(&counts->weights[ST_WEIGHT_FACES]),
+        .content_bytes = st_counted(&counts->weights[ST_WEIGHT_CONTENT]),
+        .history_bytes = st_counted(&counts->weights[ST_WEIGHT_HISTORY]),
+        .snapshot_bytes = st_counted(&counts->copies),
+        .event_bytes = st_counted(&counts->queues.bytes),
+        .revisions = st_counted(&counts->revisions),
+        .evicted = st_counted(&counts->evicted),
+        .listeners = st_listeners(store),
+        .most_listeners = store->followers.most,
+        .events = st_counted(&counts->queues.messages),
+        .listeners_behind = st_counted(&counts->queues.behind),
+    };
+    for (size_t i = 0; i < ST_LOADED_COUNT; i++) {
+        out->loads[i] = st_counted(&counts->loads[i]);
+    }
+    st_histogram_copy(&counts->load_time, &out->load_time);
+    st_histogram_copy(&counts->queues.lag, &out->event_lag);
+    if (store->journal.measure != NULL) {
+        store->journal.measure(store->journal.self, &out->journal);
+    }
+}
+
 st_mesh_options st_store_mesh_options(st_store *store)
 {
     return (st_mesh_options){.store = store,

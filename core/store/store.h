@@ -33,6 +33,7 @@
 #include "mesh/delta.h"
 #include "store/durability_wait.h"
 #include "store/holder/holders.h"
+#include "store/store_counts.h"
 #include "system/thread_pool.h"
 
 typedef struct st_store st_store;
@@ -106,6 +107,24 @@ uint64_t st_store_count(st_store *store);
 bool st_store_waits_for_disk(const st_store *store);
 /* Are changes taken? Does not wait. */
 void st_store_health(const st_store *store, st_health *out);
+/* What there is, and what happened since the start. */
+typedef struct st_store_measures {
+    uint64_t meshes, most_meshes; /* on the disk or in memory */
+    uint64_t meshes_in_memory, vertices, edges, faces;
+    uint64_t content_bytes, history_bytes, snapshot_bytes, event_bytes; /* of memory */
+    uint64_t revisions;                                                 /* that were made */
+    uint64_t evicted;                   /* meshes that left memory to make room */
+    uint64_t loads[ST_LOADED_COUNT];    /* by how they went */
+    st_distribution load_time;          /* of those that found a mesh, microseconds */
+    uint64_t listeners, most_listeners; /* to meshes */
+    uint64_t events;                    /* that were made for listeners */
+    uint64_t listeners_behind;          /* how often one was told to fetch anew */
+    st_distribution event_lag;          /* from a change to its reaching a listener, microseconds */
+    st_journal_measures journal;        /* zero where nothing is kept */
+} st_store_measures;
+
+/* Does not wait, but for the locks of the table and the journal, which are held for moments. */
+void st_store_measure(st_store *store, st_store_measures *out);
 /* From now on this thread works for a request: before it is refused memory, meshes that nobody uses
  * and the journal brings back leave. NULL: no more. */
 void st_store_serve(const st_store *store);

@@ -61,12 +61,13 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card)
     mesh->info.modified = card->modified;
     copy_name(mesh->info.id, sizeof mesh->info.id, card->id);
     copy_name(mesh->info.name, sizeof mesh->info.name, card->name);
-    st_queue_init(&mesh->queue, (st_place){.key = card->revision});
+    st_queue_init(&mesh->queue, (st_place){.key = card->revision}, &mesh->followers->counts.queues);
     mesh->base = card->revision;
     if (st_holders_find(options->holders, card->holder, &mesh->holding.holder) != ST_OK) {
         st_release(mesh);
         return NULL;
     }
+    st_mesh_weigh(mesh);
     return mesh;
 }
 
@@ -87,6 +88,32 @@ st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char 
         st_log_init(&mesh->log, options->undo_budget, &begin, content);
     }
     return mesh;
+}
+
+static void put_weights(st_mesh *mesh, const uint64_t weights[ST_WEIGHT_COUNT])
+{
+    st_store_counts *counts = &mesh->followers->counts;
+    for (size_t i = 0; i < ST_WEIGHT_COUNT; i++) {
+        if (weights[i] != mesh->weights[i]) {
+            /* Modular arithmetic: the sum is right whichever is larger. */
+            st_count(&counts->weights[i], weights[i] - mesh->weights[i]);
+            mesh->weights[i] = weights[i];
+        }
+    }
+}
+
+void st_mesh_weigh(st_mesh *mesh)
+{
+    const he_mesh *content = mesh->content;
+    uint64_t weights[ST_WEIGHT_COUNT] = {[ST_WEIGHT_MESHES] = 1};
+    if (content != NULL) {
+        weights[ST_WEIGHT_VERTICES] = he_mesh_vertices(content);
+        weights[ST_WEIGHT_EDGES] = he_mesh_edges(content);
+        weights[ST_WEIGHT_FACES] = he_mesh_faces(content);
+        weights[ST_WEIGHT_CONTENT] = he_mesh_bytes(content);
+        weights[ST_WEIGHT_HISTORY] = mesh->log.bytes;
+    }
+    put_weights(mesh, weights);
 }
 
 static void drop_derived(st_mesh *mesh)
@@ -112,6 +139,8 @@ void st_release(st_mesh *mesh)
     if (mesh == NULL || atomic_fetch_sub_explicit(&mesh->uses, 1, memory_order_acq_rel) > 1) {
         return;
     }
+    const uint64_t nothing[ST_WEIGHT_COUNT] = {0};
+    put_weights(mesh, nothing);
     st_rebase_drop(mesh);
     st_log_clear(&mesh->log);
     st_queue_clear(&mesh->queue);
@@ -219,6 +248,20 @@ static void count_held(st_mesh *mesh, const st_record *record)
     }
 }
 
+static bool is_revision(st_record_kind kind)
+{
+    return kind != ST_RECORD_RENAME && kind != ST_RECORD_REMOVE;
+}
+
+static void count_revisions(st_mesh *mesh, const st_record *records, size_t count)
+{
+    uint64_t revisions = 0;
+    for (size_t i = 0; i < count; i++) {
+        revisions += is_revision(records[i].kind);
+    }
+    st_count(&mesh->followers->counts.revisions, revisions);
+}
+
 void st_mesh_publish(st_mesh *mesh, const st_group *group)
 {
     const st_journal *journal = mesh->journal;
@@ -230,6 +273,8 @@ void st_mesh_publish(st_mesh *mesh, const st_group *group)
     for (size_t i = 0; i < group->count; i++) {
         note_base(mesh, &group->records[i]);
     }
+    st_mesh_weigh(mesh);
+    count_revisions(mesh, group->records, group->count);
     st_waits_appended(mesh->followers->waits, mesh->info.position);
     st_mesh_tell(mesh, group);
     st_rebase_note(mesh, group);

@@ -7,6 +7,7 @@
 #include "store/holder/holders.h"
 #include "store/idempotency.h"
 #include "store/revision_log.h"
+#include "store/store_counts.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -18,6 +19,8 @@ typedef struct st_copy {
     uint64_t revision;
     double time; /* when that was made; of a past copy */
     he_replay *replay;
+    st_store_counts *counts; /* to which `bytes` were added */
+    uint64_t bytes;
 } st_copy;
 
 typedef struct st_next_base st_next_base;
@@ -37,6 +40,8 @@ struct st_mesh {
     st_revision_log log;
     st_holding holding; /* whose it is, and the bytes that it counts with */
     bool claimed;       /* the log's reserve is lent to a long edit */
+
+    uint64_t weights[ST_WEIGHT_COUNT]; /* as they were counted last; also before it is shared */
 
     uint64_t base;           /* revision of the base on the disk: it can be read from there on */
     uint64_t appended;       /* bytes of records since the last snapshot: rebase.c */
@@ -72,6 +77,7 @@ typedef struct st_followers {
     size_t most, most_of_mesh; /* listeners */
     struct st_waits *waits;
     _Atomic size_t count; /* listeners */
+    st_store_counts counts;
 } st_followers;
 
 /* What a mesh takes over from its store. */
@@ -99,6 +105,8 @@ void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
 /* Frees the cached copies and the bodies of kept answers, unless somebody reads them, and what was
  * derived. */
 void st_mesh_shed(st_mesh *mesh);
+/* Counts what the mesh has in memory now. Under the exclusive lock, or while nobody knows it. */
+void st_mesh_weigh(st_mesh *mesh);
 /* A change as it is told to listeners. */
 typedef struct st_event {
     char *bytes; /* NULL: nobody listens, or memory is out */

@@ -9,6 +9,7 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
+static _Atomic uint64_t outside; /* of it, what others hold for us */
 static _Atomic uint64_t budget_bytes;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
@@ -106,6 +107,12 @@ void st_memory_count(int64_t bytes)
 {
     /* Modular arithmetic: adding a negative number subtracts. */
     atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
+    atomic_fetch_add_explicit(&outside, (uint64_t)bytes, memory_order_relaxed);
+}
+
+uint64_t st_memory_outside(void)
+{
+    return atomic_load_explicit(&outside, memory_order_relaxed);
 }
 
 void *st_memory_resize_unrefused(void *memory, size_t size)

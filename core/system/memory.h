@@ -22,6 +22,8 @@ void st_memory_set_budget(uint64_t budget);
 /* Count `bytes` more, or fewer, that others hold for us: the kernel in sockets, libmicrohttpd for
  * connections. Never refused; what is there is only no longer there for large blocks. */
 void st_memory_count(int64_t bytes);
+/* What was counted so. */
+uint64_t st_memory_outside(void);
 
 /* As he_mem_resize, for a library whose work cannot be taken back where memory is refused: what is
  * beyond the budget is counted all the same. */

@@ -22,6 +22,7 @@ typedef struct queue {
     waiting *heap;
     size_t count, room;
     size_t running, most_running;
+    uint64_t refused;
 } queue;
 
 struct st_pool {
@@ -226,8 +227,20 @@ bool st_pool_submit(st_pool *pool, const st_task *task)
         push(q, &(waiting){.task = *task, .stamp = *last, .number = pool->submitted++});
         pthread_cond_signal(&pool->wake);
     }
+    q->refused += !accepted;
     pthread_mutex_unlock(&pool->lock);
     return accepted;
+}
+
+void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
+{
+    pthread_mutex_lock(&pool->lock);
+    const queue *q = &pool->queues[share];
+    *out = (st_pool_state){.waiting = q->count,
+                           .most_waiting = pool->capacity,
+                           .running = q->running,
+                           .refused = q->refused};
+    pthread_mutex_unlock(&pool->lock);
 }
 
 /* FNV-1a, 64 bits; texts end in their NUL, so that no two pairs read alike. */

@@ -44,6 +44,15 @@ void st_pool_free(st_pool *pool);
 /* Runs task->work(task->context) on some thread. Tasks of one flow and share begin in the order of
  * their submission. Returns false when the share's queue is full, or memory is out. */
 bool st_pool_submit(st_pool *pool, const st_task *task);
+/* How a share is at the moment. */
+typedef struct st_pool_state {
+    size_t waiting, most_waiting;
+    size_t running;
+    uint64_t refused; /* tasks, since the start */
+} st_pool_state;
+
+/* Takes the pool's lock for a moment. */
+void st_pool_look(st_pool *pool, st_share share, st_pool_state *out);
 /* The flow of what this client asks of this mesh; "" for either where there is none. */
 uint64_t st_pool_flow(const char *client, const char *mesh);
 

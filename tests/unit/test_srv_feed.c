@@ -11,11 +11,12 @@
 #include <string.h>
 
 static st_queue feed;
+static st_queue_counts counts;
 
 static int setup(void **state)
 {
     (void)state;
-    st_queue_init(&feed, (st_place){.stamp = 7, .key = 3});
+    st_queue_init(&feed, (st_place){.stamp = 7, .key = 3}, &counts);
     return 0;
 }
 

@@ -18,7 +18,6 @@ enum {
     GROUP_BYTES = 8 << 20,
     SLICE_BESIDE = 64 << 10, /* bytes of background work while others wait */
     SLICE_ALONE = 256 << 10, /* who comes meanwhile waits for it */
-    PAGE_BYTES = 4096,
     /* A checkpoint keeps others waiting, the longer the more pages it writes. It comes more often
      * while slices fill the log, so that it is as short as a slice. */
     CHECKPOINT_PAGES = 1000,
@@ -238,6 +237,7 @@ static void lose(st_sqlite *self)
         }
     }
     self->meshes += g.removed - g.made;
+    self->lost += g.records;
     const bool full = self->mode == ST_WRITES_FULL;
     const st_loss loss = {.from = self->told + 1,
                           .to = g.position,
@@ -319,7 +319,9 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
         outcome = put_progress(self, progress);
     }
     if (outcome == ST_SQL_DONE) {
+        const uint64_t begun = st_clock_micros();
         outcome = st_db_do(&self->db, ST_SQL_COMMIT, "");
+        st_histogram_add(&self->syncs, st_scale_micros, st_clock_micros() - begun);
     }
     if (outcome == ST_SQL_DONE) {
         self->purged |= g->purged;
@@ -399,13 +401,23 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
     free_items(g->first);
 }
 
+static void count_commit(st_sqlite *self, const group *g, uint64_t micros)
+{
+    if (g->records > 0) { /* else it is background work alone, which no client waits for */
+        st_histogram_add(&self->commits, st_scale_micros, micros);
+        st_histogram_add(&self->groups, st_scale_counts, g->records);
+    }
+}
+
 static bool commit_group(st_sqlite *self, group *g)
 {
     st_progress progress;
     const size_t slice = g->slice;
+    const uint64_t begun = st_clock_micros();
     st_sql outcome = insist(self, g, &progress);
     if (outcome == ST_SQL_DONE) {
         self->progress = progress;
+        count_commit(self, g, st_clock_micros() - begun);
         write_mark(self);
         end_group(self, g, slice);
         return true;
@@ -421,14 +433,16 @@ static bool commit_group(st_sqlite *self, group *g)
 
 static bool log_is_long(const st_sqlite *self)
 {
-    return self->log_pages * PAGE_BYTES > LONG_LOG;
+    return self->log_pages * ST_LOG_PAGE_BYTES > LONG_LOG;
 }
 
 /* Writes the log back into the database, as far as readers let it. False when the disk failed. */
 static bool checkpoint(st_sqlite *self, int how)
 {
+    const uint64_t begun = st_clock_micros();
     int code = sqlite3_wal_checkpoint_v2(self->db.handle, NULL, how, NULL, NULL);
     st_sql outcome = st_db_outcome(&self->db, code);
+    st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
     /* Loads wait for one checkpoint that no load kept from writing all back: those that begin after

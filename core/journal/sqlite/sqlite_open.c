@@ -408,6 +408,7 @@ st_journal st_sqlite_filled(st_sqlite *self)
                         .holdings = st_sqlite_holdings,
                         .count = st_sqlite_count,
                         .health = st_sqlite_health,
+                        .measure = st_sqlite_measure,
                         .begun = st_sqlite_begun,
                         .listen = st_sqlite_listen,
                         .close = st_sqlite_close};

@@ -241,6 +241,22 @@ void st_sqlite_health(void *context, st_health *out)
     pthread_mutex_unlock(&self->lock);
 }
 
+void st_sqlite_measure(void *context, st_journal_measures *out)
+{
+    st_sqlite *self = context;
+    st_histogram_copy(&self->commits, &out->commits);
+    st_histogram_copy(&self->syncs, &out->syncs);
+    st_histogram_copy(&self->groups, &out->groups);
+    st_histogram_copy(&self->checkpoints, &out->checkpoints);
+    pthread_mutex_lock(&self->lock);
+    out->behind = self->newest - self->told;
+    out->lost = self->lost;
+    out->queued = self->charged;
+    pthread_mutex_unlock(&self->lock);
+    out->most_queued = self->queue_bytes;
+    out->log = self->log_pages * ST_LOG_PAGE_BYTES;
+}
+
 void st_sqlite_listen(void *context, const st_journal_listener *listener)
 {
     st_sqlite *self = context;

@@ -24,8 +24,11 @@
 #include "stored/stored.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 typedef struct st_sqlite st_sqlite;
+
+enum { ST_LOG_PAGE_BYTES = 4096 };
 
 /* --- what is queued --- */
 
@@ -193,6 +196,7 @@ struct st_sqlite {
     uint64_t newest;         /* position */
     uint64_t told;           /* up to here all is durable or was told as lost */
     uint64_t meshes;         /* there are, with what is queued */
+    uint64_t lost;           /* records and notes */
     unsigned waiting;        /* on `moved` */
     bool idle;               /* the commit thread waits */
     bool log_is_long;        /* no load begins until the log was written back */
@@ -200,6 +204,9 @@ struct st_sqlite {
     unsigned loads_taken;
     st_finding findings[ST_FINDINGS];
     unsigned last_finding;
+
+    /* Added to by the commit thread, read by any. */
+    st_histogram syncs, commits, groups, checkpoints;
 
     pthread_mutex_t telling; /* held while the listener is called */
     bool is_heard;
@@ -214,7 +221,7 @@ struct st_sqlite {
     st_heads heads;
     st_progress progress;             /* as committed */
     int64_t last_mesh, last_snapshot; /* keys that were given */
-    uint64_t log_pages;               /* of the -wal, after the last commit */
+    _Atomic uint64_t log_pages;       /* of the -wal, after the last commit; others may read it */
     uint64_t log_tried;               /* pages at the last checkpoint that did not write all back */
     uint64_t keys;                    /* rows of kept, at most */
     bool purged;                      /* nothing is left to be purged */
@@ -229,6 +236,7 @@ void st_sqlite_leave(void *self, st_room *room);
 uint64_t st_sqlite_append(void *self, st_room *room, const st_record *records, size_t count);
 uint64_t st_sqlite_count(void *self);
 void st_sqlite_health(void *self, st_health *out);
+void st_sqlite_measure(void *self, st_journal_measures *out);
 void st_sqlite_listen(void *self, const st_journal_listener *listener);
 /* Fills in what the room says of a key. */
 void st_room_key(st_sqlite_room *room, const st_kept_key *key);

@@ -1,0 +1,54 @@
+/* store_counts.h - what a store counts of itself, for those who watch it (st_store_measure).
+ *
+ * Counters are added to without a lock. What meshes take is a sum over those in memory that is
+ * never found by looking at all of them: a mesh remembers what it added last, adds the difference
+ * when it changes (st_mesh_weigh), and takes it back when it is freed. */
+#ifndef HE_STORE_STORE_COUNTS_H
+#define HE_STORE_STORE_COUNTS_H
+
+#include "store/broadcast_queue.h"
+#include "system/histogram.h"
+
+#include <stdatomic.h>
+
+/* How looking for a mesh on the disk went. */
+typedef enum st_loaded {
+    ST_LOADED_WHOLE,
+    ST_LOADED_NOTHING, /* there is none of the id */
+    ST_LOADED_DAMAGED, /* it cannot be read */
+    ST_LOADED_FAILED,  /* no memory, or the disk failed */
+    ST_LOADED_COUNT
+} st_loaded;
+
+/* What a mesh has in memory. */
+typedef enum st_weight {
+    ST_WEIGHT_MESHES, /* 1 */
+    ST_WEIGHT_VERTICES,
+    ST_WEIGHT_EDGES,
+    ST_WEIGHT_FACES,
+    ST_WEIGHT_CONTENT, /* bytes */
+    ST_WEIGHT_HISTORY, /* bytes */
+    ST_WEIGHT_COUNT
+} st_weight;
+
+typedef struct st_store_counts {
+    _Atomic uint64_t weights[ST_WEIGHT_COUNT];
+    _Atomic uint64_t copies;    /* bytes of snapshots */
+    _Atomic uint64_t revisions; /* that were made */
+    _Atomic uint64_t evicted;   /* meshes that left memory to make room */
+    _Atomic uint64_t loads[ST_LOADED_COUNT];
+    st_histogram load_time; /* of those that found a mesh, microseconds */
+    st_queue_counts queues; /* of all meshes */
+} st_store_counts;
+
+static inline void st_count(_Atomic uint64_t *counter, uint64_t amount)
+{
+    atomic_fetch_add_explicit(counter, amount, memory_order_relaxed);
+}
+
+static inline uint64_t st_counted(const _Atomic uint64_t *counter)
+{
+    return atomic_load_explicit(counter, memory_order_relaxed);
+}
+
+#endif

@@ -1,0 +1,45 @@
+/* histogram.h - how often values fell below each of a few bounds, counted without a lock.
+ *
+ * All histograms have the same number of buckets: one for each bound of their scale, which counts
+ * values up to it and above the one before, and one for what is larger. Threads add at any time; a
+ * copy that is taken meanwhile may lack what is added while it is taken, and no more. */
+#ifndef HE_SYSTEM_HISTOGRAM_H
+#define HE_SYSTEM_HISTOGRAM_H
+
+#include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
+
+/* A scale: ST_BOUNDS bounds, rising. */
+extern const uint64_t st_scale_micros[ST_BOUNDS]; /* 100 microseconds to 300 seconds */
+extern const uint64_t st_scale_counts[ST_BOUNDS]; /* 1 to 8192, doubling */
+
+/* The bucket of a value, 0 to ST_BOUNDS. */
+static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t value)
+{
+    size_t bucket = 0;
+    while (bucket < ST_BOUNDS && value > scale[bucket]) {
+        bucket++;
+    }
+    return bucket;
+}
+
+/* Zeroed memory is an empty one. */
+typedef struct st_histogram {
+    _Atomic uint64_t buckets[ST_BUCKETS];
+    _Atomic uint64_t sum; /* of the values */
+} st_histogram;
+
+void st_histogram_add(st_histogram *histogram, const uint64_t scale[ST_BOUNDS], uint64_t value);
+
+/* What a histogram held. */
+typedef struct st_distribution {
+    uint64_t buckets[ST_BUCKETS];
+    uint64_t sum;
+} st_distribution;
+
+void st_histogram_copy(const st_histogram *histogram, st_distribution *out);
+
+#endif
