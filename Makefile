@@ -475,14 +475,15 @@ container: | $(INSTALLED) ## build the image with buildah and try it (root)
 fresh: | $(INSTALLED) ## each command of the README's table alone, in a bare Debian (root); TARGETS="lint fuzz" for some
 	@sh tests/fresh.sh
 
-$(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man
-	$(Q)sh .ci/man $(HEDGED) server/hedged.8.in >$@
+$(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man api/metric/metric_rows.h
+	$(Q)sh .ci/man $(HEDGED) server/hedged.8.in api/metric/metric_rows.h >$@
 
 # The unit goes where systemd looks, which for a PREFIX of one's own is UNITS=/etc/systemd/system.
 install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	install -D -m 755 $(HEDGED) $(DESTDIR)$(PREFIX)/bin/hedged
 	install -D -m 644 $(BUILD)/hedged.8 $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/hedge/LICENSE
+	install -D -m 644 server/alerts.yaml $(DESTDIR)$(PREFIX)/share/hedge/alerts.yaml
 	install -d $(DESTDIR)$(UNITS)
 	sed 's|@PREFIX@|$(PREFIX)|' server/hedged.service.in >$(DESTDIR)$(UNITS)/hedged.service
 	chmod 644 $(DESTDIR)$(UNITS)/hedged.service

@@ -39,6 +39,7 @@ static const char *const job_results[] = {"application/json",
                                           "application/vnd.sqlite3",
                                           NULL};
 static const char *const database[] = {"application/vnd.sqlite3", NULL};
+static const char *const plain[] = {"text/plain", NULL};
 static const char *const html[] = {"text/html", NULL};
 static const char *const anything[] = {"text/html",
                                        "text/javascript",

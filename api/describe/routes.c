@@ -678,6 +678,18 @@ static const api_route routes[] = {
             "disk is no reason to take it out of service, for reads go on and meshes can be "
             "deleted: `\"store\": \"full\"` with 200, until there is space again."},
     {.method = "GET",
+     .path = "/metrics",
+     .name = "metrics_get",
+     .run = api_metrics_get,
+     .role = API_ROLE_METRICS,
+     .flags = API_FIXED | API_UNLIMITED,
+     .produces = plain,
+     .statuses = {200},
+     .summary = "What the server counts",
+     .doc = "In the text format of Prometheus, version 0.0.4; hedged(8) lists the metrics. It "
+            "needs a token of the role metrics or admin where the server asks for tokens, and "
+            "waits neither for the disk nor for threads."},
+    {.method = "GET",
      .path = "/version",
      .name = "version_get",
      .run = api_version_get,

@@ -14,6 +14,8 @@ typedef enum api_job_state {
     API_JOB_CANCELLED
 } api_job_state;
 
+enum { API_JOB_STATES = API_JOB_CANCELLED + 1 };
+
 enum { API_JOB_ID = ST_JOB_ID, API_JOB_LOCATION = sizeof "/v1/meshes/" + ST_MESH_ID };
 
 /* Headers of the answer that are kept with it, in the order of api_job_header_names. */

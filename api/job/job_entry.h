@@ -48,6 +48,8 @@ struct api_job_table {
     uint64_t submitted;
     size_t listeners;
     bool stopped;
+    uint64_t ended[API_JOB_STATES]; /* how many came to each state that is an end */
+    st_histogram waited, ran;       /* microseconds */
 };
 
 /* All under the table's lock. */
@@ -65,6 +67,10 @@ static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_tok
 /* The facts as they are now. */
 const api_job *api_job_entry_facts(api_job_entry *job);
 void api_job_entry_release(api_job_entry *job);
+
+/* job_measure.c, under the table's lock */
+void api_job_count_begin(api_job_entry *job);
+void api_job_count_end(api_job_entry *job);
 
 /* job_keep.c */
 /* The mesh it is about: the one it made, if it made one. */

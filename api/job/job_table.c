@@ -222,6 +222,7 @@ static void end(api_job_entry *j)
     j->facts.progress = j->facts.state == API_JOB_DONE ? 1 : atomic_load(&j->progress);
     j->facts.phase = atomic_load(&j->phase);
     j->facts.finished = j->ended;
+    api_job_count_end(j);
     table->bytes += j->facts.length;
     api_job_entry_wake(j);
     api_job facts = j->facts;
@@ -346,6 +347,7 @@ static void run(void *context)
     if (wanted) {
         j->facts.state = API_JOB_RUNNING;
         j->facts.started = st_clock_utc();
+        api_job_count_begin(j);
         api_job_entry_wake(j);
         facts = *api_job_entry_facts(j);
     } else {
@@ -562,6 +564,7 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         j->facts.state = API_JOB_CANCELLED;
         j->facts.finished = j->ended = st_clock_utc();
         j->end = API_JOB_CANCELLED;
+        api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
             (void)api_job_keep(j, &position); /* else it is found as interrupted */

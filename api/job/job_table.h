@@ -109,6 +109,17 @@ bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after,
 st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
                          bool *forgotten, void (*show)(void *context, const api_job *job),
                          void *context);
+/* The jobs that there are, and what happened since the start. */
+typedef struct api_job_measures {
+    size_t in_state[API_JOB_STATES];
+    uint64_t ended[API_JOB_STATES]; /* zero for states that are no end */
+    st_distribution waited, ran;    /* until they were begun, and then; microseconds */
+    size_t bytes;                   /* of answers that are kept */
+    size_t listeners, most_listeners;
+} api_job_measures;
+
+/* Takes the table's lock for as long as it takes to count the jobs. */
+void api_job_measure(api_job_table *table, api_job_measures *out);
 /* What becomes of a job, as events: whenever there is news, and `bye` after the last, or when the
  * server stops. ST_ABSENT, ST_LISTENERS, ST_NO_MEMORY. The caller frees the source. */
 st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,

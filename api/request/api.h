@@ -27,6 +27,7 @@
 #include "api/header/request_header.h"
 #include "api/job/job_table.h"
 #include "api/live.h"
+#include "api/metric/metrics.h"
 #include "api/token/token_set.h"
 #include "base/exec.h"
 #include "system/thread_pool.h"
@@ -120,6 +121,8 @@ typedef struct api_options {
     bool plain_answers;  /* never coded, whatever a client accepts */
     const he_exec *exec; /* threads for parts of large work; NULL: none */
     st_pool *pool;       /* brings listeners forward from the history; NULL: they fetch anew */
+    st_pool *makers;     /* makes pieces of answers, for the metrics; NULL: there is none */
+    const char *commit;  /* that the server was built from, "" or NULL where that is not known */
 } api_options;
 
 /* The table of routes: api/describe/routes.h. */
@@ -131,6 +134,8 @@ typedef struct api_route_table {
 /* Borrowed: store, rows and options' pointers outlive the service. NULL when memory is out. */
 api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options);
 void api_service_free(api_service *service);
+/* Where the server counts requests and connections; lives as long as the service. */
+api_metrics *api_metrics_of(const api_service *service);
 
 /* NULL when memory is out. `request` is copied, but for the values of its headers: the caller keeps
  * them until api_free, or until api_detach, which copies them for the job. */
@@ -169,6 +174,9 @@ bool api_service_apply_quotas(api_service *service);
  * before there is an exchange. */
 api_limited *api_service_limited(api_service *service);
 void api_free(api_exchange *exchange);
+/* Fills in the row and the problem of a request that ended; those of `exchange` NULL are no row and
+ * the problem that is in `served`. */
+void api_served_as(const api_service *service, const api_exchange *exchange, api_served *served);
 
 /* All of it at once, the whole body given; NULL when memory is out. The caller frees. */
 api_exchange *api_handle(api_service *service, const api_request *request, const char *body,

@@ -40,12 +40,14 @@
 
 struct api_service {
     st_store *store;
-    api_route_tree *routes;
+    api_route_table table;
+    api_route_tree *routes; /* of it */
     api_options options;
     api_backfills backfills;
     api_tickets *tickets;
     api_rates *token_rates, *address_rates; /* NULL: none of them has a limit */
     api_limited limited;
+    api_metrics *metrics;
     api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
 };
 

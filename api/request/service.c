@@ -29,11 +29,13 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
     api_in_setup();
     api_service *service = he_mem_zero(1, sizeof *service);
     if (service != NULL) {
+        service->table = routes;
         service->routes = api_route_tree_new(routes);
         service->tickets = api_tickets_new();
+        service->metrics = api_metrics_new(routes.count);
     }
-    if (service != NULL &&
-        !(service->routes != NULL && service->tickets != NULL && make_rates(service, options))) {
+    if (service != NULL && !(service->routes != NULL && service->tickets != NULL &&
+                             service->metrics != NULL && make_rates(service, options))) {
         api_service_free(service);
         service = NULL;
     }
@@ -63,6 +65,7 @@ void api_service_free(api_service *service)
         api_tickets_free(service->tickets);
         api_rates_free(service->token_rates);
         api_rates_free(service->address_rates);
+        api_metrics_free(service->metrics);
     }
     he_mem_free(service);
 }

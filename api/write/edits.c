@@ -46,8 +46,10 @@ typedef struct edits {
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes them */
     char ops[ST_ENTRY_OPS];
-    bool effect;        /* the operations came to something */
-    size_t revision_at; /* in the answer, which is told by the commit */
+    uint32_t ran[API_MOST_OPERATIONS]; /* operations that did, by number */
+    size_t at;                         /* number of the operation at hand; API_OPERATIONS: none */
+    bool effect;                       /* the operations came to something */
+    size_t revision_at;                /* in the answer, which is told by the commit */
 } edits;
 
 /* Of a long edit: the copy, then the operations, then what they changed; and the answer. */
@@ -258,6 +260,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
         return false;
     }
     attribute_count before = count_attributes(mesh);
+    e->at = he_op_number(call.op);
     if (he_op_run(call.op, mesh, call.args, &results, &err) != HE_OK) {
         api_fail_core(x, &err);
         if (e->is_list) {
@@ -271,6 +274,10 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
         api_names_bind(&e->names, &call, &results);
     }
     he_results_clear(&results);
+    if (good) {
+        e->ran[e->at]++;
+        e->at = API_OPERATIONS;
+    }
     return good;
 }
 
@@ -403,6 +410,8 @@ static void start_over(edits *e)
     e->looked_at = e->steps = e->work = 0;
     e->exceeded = e->crowded = false;
     e->hubs = (api_hubs){.slots = {{0}}};
+    memset(e->ran, 0, sizeof e->ran);
+    e->at = API_OPERATIONS;
     api_names_unbind(&e->names);
     api_text_empty(&e->results);
     api_out_init(&e->out, &e->results);
@@ -413,6 +422,26 @@ static void run_claimed(api_exchange *x);
 static void go_on_elsewhere(api_exchange *x, edits *e);
 
 /* --- long edits --- */
+
+/* For the metrics. Of operations that were taken back with the one that was refused, that one
+ * alone. */
+static void count_operations(const api_exchange *x, const edits *e)
+{
+    api_metrics *metrics = x->service->metrics;
+    const bool refused = x->problem.code != HE_OK;
+    const api_edit_result result = refused      ? API_EDIT_REFUSED
+                                   : e->dry_run ? API_EDIT_REHEARSED
+                                                : API_EDIT_APPLIED;
+    if (refused && e->at < API_OPERATIONS) {
+        api_count_edits(metrics, e->at, result, 1);
+        return;
+    }
+    for (size_t number = 0; number < API_MOST_OPERATIONS; number++) {
+        if (e->ran[number] > 0) {
+            api_count_edits(metrics, number, result, e->ran[number]);
+        }
+    }
+}
 
 /* What the first operation is bound to be refused for: nothing changes the mesh before it. */
 static bool foresee(api_exchange *x, edits *e)
@@ -431,6 +460,8 @@ static bool foresee(api_exchange *x, edits *e)
     if (e->is_list) {
         api_in_point(in);
     }
+    e->at = he_op_number(call.op);
+    count_operations(x, e);
     return false;
 }
 
@@ -453,7 +484,10 @@ static void end_edit(api_exchange *x, edits *e, bool good)
     api_others_release(&e->others);
     if ((e->exceeded || e->crowded) && !good) {
         go_on_elsewhere(x, e);
-    } else if (x->problem.code == HE_OK) {
+        return;
+    }
+    count_operations(x, e);
+    if (x->problem.code == HE_OK) {
         answer(x, e);
     }
 }
@@ -561,6 +595,7 @@ bool api_edits_decode(api_exchange *x)
     x->state = e;
     x->free_state = free_edits;
     e->growth = 1;
+    e->at = API_OPERATIONS;
     api_names_init(&e->names, st_secret(x->store));
     api_others_init(&e->others, x);
     api_out_init(&e->out, &e->results);

@@ -113,13 +113,16 @@ void api_steps_post(api_exchange *x)
         refuse(x, s, status);
     }
     bool good = status == ST_OK && take(x, s, count);
+    const size_t number = s->which == ST_UNDO ? API_UNDO : API_REDO;
     bool commits = good && count > 0;
     if (!commits) {
         st_write_abort(&x->write);
     }
     if (!good || (commits && !api_write_commit(x, NULL))) {
+        api_count_edits(x->service->metrics, number, API_EDIT_REFUSED, 1);
         return;
     }
+    api_count_edits(x->service->metrics, number, API_EDIT_APPLIED, count);
     api_out_fill(&x->text, s->redo_at, x->info.redo);
     api_out_fill(&x->text, s->undo_at, x->info.undo);
     api_out_fill(&x->text, s->revision_at, x->info.revision);

@@ -79,6 +79,8 @@ static bool open_service(srv_parts *parts)
                             .backup_context = &parts->backups,
                             .jobs = parts->job_table,
                             .pool = parts->pool,
+                            .makers = parts->makers,
+                            .commit = srv_commit,
                             .plain_answers = parts->config->no_compression,
                             .exec = st_parallel_exec(parts->parallel),
                         });

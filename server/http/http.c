@@ -89,6 +89,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
             c->is_proxy = srv_proxies_has(&http->options.policy->proxies, c->peer);
             count_peer(http, c);
         }
+        api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
             /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
             shutdown(fd, SHUT_RDWR);
@@ -101,6 +102,7 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
             srv_certificate_release(c->certificate);
         }
         srv_deadlines_remove(http->deadlines, c);
+        api_count(api_metrics_of(http->options.service), API_COUNT_CLOSED);
         *slot = NULL;
     }
 }
@@ -112,9 +114,17 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     (void)peer;
     (void)length;
     const srv_http *http = context;
-    bool room = srv_deadlines_count(http->deadlines) < http->options.max_sockets &&
-                st_memory_has(SRV_BUFFER_BYTES);
-    return room && !atomic_load(&http->stopping) ? MHD_YES : MHD_NO;
+    api_metrics *metrics = api_metrics_of(http->options.service);
+    if (atomic_load(&http->stopping)) {
+        api_count(metrics, API_COUNT_REFUSED_STOPPING);
+    } else if (srv_deadlines_count(http->deadlines) >= http->options.max_sockets) {
+        api_count(metrics, API_COUNT_REFUSED_LIMIT);
+    } else if (!st_memory_has(SRV_BUFFER_BYTES)) {
+        api_count(metrics, API_COUNT_REFUSED_MEMORY);
+    } else {
+        return MHD_YES;
+    }
+    return MHD_NO;
 }
 
 /* A handshake asks for the certificate, perhaps twice. It shows the pair that it holds already. */
@@ -200,7 +210,9 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     srv_gate_init(&http->gate);
     srv_ids_init(&http->ids);
     srv_spans_init(&http->spans);
-    http->deadlines = srv_deadlines_new(&options->deadlines);
+    http->options.deadlines.metrics = api_metrics_of(options->service);
+    api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
+    http->deadlines = srv_deadlines_new(&http->options.deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
     /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
     const size_t most = options->max_sockets + options->workers;

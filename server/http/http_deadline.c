@@ -215,6 +215,20 @@ static bool is_request_cut(srv_connection *c)
     return again;
 }
 
+/* It is closed for taking too long, which the next sweeps may find again. */
+static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
+{
+    const int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
+    const api_counter which = stuck                     ? API_COUNT_LATE_ANSWER
+                              : stage == SRV_STAGE_HEAD ? API_COUNT_LATE_HEAD
+                              : stage == SRV_STAGE_BODY ? API_COUNT_LATE_BODY
+                                                        : API_COUNT_LATE_IDLE;
+    if (!c->late && d->options.metrics != NULL) {
+        api_count(d->options.metrics, which);
+    }
+    c->late = true;
+}
+
 /* Has the connection to be closed? Then it is. */
 static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t now)
 {
@@ -223,7 +237,10 @@ static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t 
         /* Without this the system goes on sending what is in its buffer. */
         struct linger reset = {.l_onoff = 1, .l_linger = 0};
         setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
-    } else if (!srv_connection_is_late(c, &d->options, crowded, now) && !is_request_cut(c)) {
+        count_late(d, c, true);
+    } else if (srv_connection_is_late(c, &d->options, crowded, now)) {
+        count_late(d, c, false);
+    } else if (!is_request_cut(c)) {
         return false;
     }
     shutdown(c->socket, SHUT_RDWR);

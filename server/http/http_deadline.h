@@ -36,6 +36,7 @@
 #ifndef HE_SERVER_HTTP_HTTP_DEADLINE_H
 #define HE_SERVER_HTTP_HTTP_DEADLINE_H
 
+#include "api/metric/metrics.h"
 #include "server/http/syntax/http_syntax.h"
 #include "server/net/address.h"
 #include "server/tls/certificate.h"
@@ -59,6 +60,7 @@ typedef struct srv_deadline_options {
     uint64_t idle, head, grace, total; /* seconds */
     uint64_t min_rate;                 /* bytes a second, 0: none */
     uint64_t max_connections;
+    api_metrics *metrics; /* where connections that are closed are counted, NULL: nowhere */
 } srv_deadline_options;
 
 typedef struct srv_deadlines srv_deadlines;
@@ -94,6 +96,7 @@ typedef struct srv_connection {
     uint64_t window, window_acked; /* since when it measures an answer, 0: not */
     uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */
     uint64_t kept;                 /* bytes the kernel had for it, as they were counted last */
+    bool late;                     /* it was closed for taking too long */
     uint64_t closed;               /* `since` of the stage in which the client closed, 0: not */
     uint64_t closed_bytes;
     char peer[SRV_ADDRESS_TEXT];

@@ -187,6 +187,11 @@ static bool find_client(srv_request *r, const srv_head *head)
            srv_admit_proxied(r->http->options.policy, head, &r->client, &r->refusal);
 }
 
+static api_metrics *metrics_of(const srv_request *r)
+{
+    return api_metrics_of(r->http->options.service);
+}
+
 /* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
@@ -194,10 +199,12 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     uint64_t most = http->options.deadlines.max_connections;
     if (atomic_load(&http->stopping)) {
         r->close = true;
+        api_count(metrics_of(r), API_COUNT_REFUSED_STOPPING);
         return api_problem_set(&r->refusal, API_NOT_READY, "the server is stopping");
     }
     if (srv_deadlines_count(http->deadlines) > most) {
         r->close = true;
+        api_count(metrics_of(r), API_COUNT_REFUSED_LIMIT);
         return api_problem_set(&r->refusal, API_OVERLOADED,
                                "more than %" PRIu64 " connections are open", most);
     }
@@ -272,6 +279,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     srv_admit_name(&head, &r->http->ids, r->request_id);
     read_trace(r, &head);
     srv_gate_enter(&r->http->gate);
+    api_count(metrics_of(r), API_COUNT_BEGUN);
     r->counted = true;
     r->state = SRV_BODY;
 

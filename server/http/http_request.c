@@ -82,6 +82,19 @@ static void tell_log(srv_request *r, uint64_t now)
     srv_log_request(log, &access, slow);
 }
 
+static void count(const srv_request *r, uint64_t now)
+{
+    const api_service *service = r->http->options.service;
+    api_served served = {.method = r->method,
+                         .status = r->status,
+                         .code = r->refusal.code,
+                         .bytes_in = r->bytes_in,
+                         .bytes_out = r->bytes_out,
+                         .micros = now - r->started};
+    api_served_as(service, r->exchange, &served);
+    api_count_request(api_metrics_of(service), &served);
+}
+
 bool srv_request_suspend(srv_request *r)
 {
     r->aside = srv_gate_wait(&r->http->gate);
@@ -107,6 +120,9 @@ void srv_request_end(srv_request *r)
     bool begun = r->socket != NULL && r->socket->syntax.requests > r->socket->requests;
     srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
+    if (r->counted) {
+        count(r, now);
+    }
     if (r->counted && http->options.log != NULL) {
         tell_log(r, now);
     }

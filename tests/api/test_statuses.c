@@ -270,6 +270,7 @@ static const step steps[] = {
     {"GET", "/v1/openapi.json", 200, NULL, {NULL}},
     {"GET", "/livez", 200, NULL, {NULL}},
     {"GET", "/readyz", 200, NULL, {NULL}},
+    {"GET", "/metrics", 200, NULL, {NULL}},
     {"GET", "/version", 200, NULL, {NULL}},
     {"GET", "/problems/closed_fan", 200, NULL, {NULL}},
     {"GET", "/problems/none", 404, NULL, {NULL}},

@@ -1,0 +1,57 @@
+/* metric_page.h - metrics as text: Prometheus' exposition format, version 0.0.4.
+ *
+ *     # HELP hedge_meshes Meshes that there are, in memory or not.
+ *     # TYPE hedge_meshes gauge
+ *     hedge_meshes 12
+ *
+ * A family is begun by its row of metric_rows.h, and its samples follow, each with the values of
+ * the row's labels in their order. Failure is that of the text. */
+#ifndef HE_API_METRIC_METRIC_PAGE_H
+#define HE_API_METRIC_METRIC_PAGE_H
+
+#include "api/json/text.h"
+#include "api/metric/metric_rows.h"
+#include "system/histogram.h"
+
+#include <stddef.h>
+
+typedef enum api_metric_type {
+    API_METRIC_COUNTER,
+    API_METRIC_GAUGE,
+    API_METRIC_HISTOGRAM
+} api_metric_type;
+
+/* A row of the table. */
+typedef struct api_metric {
+    const char *name;
+    api_metric_type type;
+    const char *labels; /* joined by commas, "" for none */
+    const char *help;
+} api_metric;
+
+typedef enum api_metric_id {
+#define API_METRIC_ENUM(constant, name, type, labels, help) API_METRIC_ID_##constant,
+    API_METRIC_MAP(API_METRIC_ENUM)
+#undef API_METRIC_ENUM
+        API_METRIC_COUNT
+} api_metric_id;
+
+const api_metric *api_metric_at(api_metric_id id);
+
+typedef struct api_metric_page {
+    api_text *text;
+    const api_metric *row; /* of the family at hand */
+} api_metric_page;
+
+enum { API_METRIC_LABELS = 3 };
+
+void api_metric_begin(api_metric_page *page, api_metric_id id);
+/* `values` are as many as the row has labels; NULL where it has none. */
+void api_metric_put(api_metric_page *page, const char *const *values, double number);
+/* Of a row that is a histogram. Its values were counted by `scale`, `unit` of which are 1 on
+ * the page. */
+void api_metric_put_histogram(api_metric_page *page, const char *const *values,
+                              const st_distribution *distribution, const uint64_t scale[ST_BOUNDS],
+                              double unit);
+
+#endif

@@ -1,0 +1,116 @@
+/* metrics.h - what is counted of requests and connections, for GET /metrics.
+ *
+ * Counting takes no lock and no memory; any thread may. What the rooms of core and the table of
+ * jobs know of themselves they count themselves (st_store_measure, api_job_measure, st_pool_look);
+ * the page asks them. */
+#ifndef HE_API_METRIC_METRICS_H
+#define HE_API_METRIC_METRICS_H
+
+#include "api/metric/metric_rows.h"
+#include "op/op.h"
+#include "system/histogram.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct api_metrics api_metrics;
+
+/* For a table of so many routes, at zero. NULL when memory is out. */
+api_metrics *api_metrics_new(size_t routes);
+void api_metrics_free(api_metrics *metrics); /* takes NULL */
+
+/* --- requests --- */
+
+typedef enum api_method {
+    API_METHOD_GET,
+    API_METHOD_HEAD,
+    API_METHOD_POST,
+    API_METHOD_PUT,
+    API_METHOD_PATCH,
+    API_METHOD_DELETE,
+    API_METHOD_OPTIONS,
+    API_METHOD_OTHER,
+    API_METHODS
+} api_method;
+
+const char *api_method_name(api_method method); /* "other" for API_METHOD_OTHER */
+
+/* Classes of statuses: 1xx is no answer. */
+typedef enum api_class {
+    API_CLASS_NONE, /* there was no answer */
+    API_CLASS_2XX,
+    API_CLASS_3XX,
+    API_CLASS_4XX,
+    API_CLASS_5XX,
+    API_CLASSES
+} api_class;
+
+const char *api_class_name(api_class of);
+
+/* Requests are counted by series. One that matched a row of the table of routes is of a series of
+ * that row, which has one for its own method and one for HEAD; all others are of a series of their
+ * method. */
+enum { API_NO_ROUTE = -1 };
+
+/* A request that ended. */
+typedef struct api_served {
+    int route; /* the number of its row, or API_NO_ROUTE */
+    const char *method;
+    int status; /* 0: there was no answer */
+    int code;   /* api_code or he_status of the problem; HE_OK: none */
+    uint64_t bytes_in, bytes_out, micros;
+} api_served;
+
+void api_count_request(api_metrics *metrics, const api_served *served);
+
+/* What was counted of the requests of a row that had its method, or HEAD (`route` API_NO_ROUTE: of
+ * those with this method that matched none), and were answered in this class. */
+void api_requests_counted(const api_metrics *metrics, int route, api_method method, api_class of,
+                          st_distribution *out);
+/* How many requests had that problem. */
+uint64_t api_problems_counted(const api_metrics *metrics, int code);
+
+/* --- edits --- */
+
+typedef enum api_edit_result {
+    API_EDIT_APPLIED,
+    API_EDIT_REHEARSED,
+    API_EDIT_REFUSED,
+    API_EDIT_RESULTS
+} api_edit_result;
+
+/* Numbers of operations are those of he_op_at; these two follow the highest one there may be. */
+enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
+
+/* `count` times operation `number` came to this. */
+void api_count_edits(api_metrics *metrics, size_t number, api_edit_result result, uint64_t count);
+uint64_t api_edits_counted(const api_metrics *metrics, size_t number, api_edit_result result);
+
+/* --- what has neither route nor operation --- */
+
+typedef enum api_counter {
+    API_COUNT_BEGUN, /* requests */
+    API_COUNT_ENDED,
+    API_COUNT_BYTES_IN,
+    API_COUNT_BYTES_OUT,
+    API_COUNT_OPENED, /* connections */
+    API_COUNT_CLOSED,
+    API_COUNT_REFUSED_LIMIT, /* connections that were refused, by why */
+    API_COUNT_REFUSED_MEMORY,
+    API_COUNT_REFUSED_STOPPING,
+    API_COUNT_LATE_IDLE, /* connections that were closed, by what took too long */
+    API_COUNT_LATE_HEAD,
+    API_COUNT_LATE_BODY,
+    API_COUNT_LATE_ANSWER,
+    API_COUNTERS
+} api_counter;
+
+void api_count(api_metrics *metrics, api_counter which);
+uint64_t api_counted(const api_metrics *metrics, api_counter which);
+
+/* How many connections there may be; 0 until the server says so. */
+void api_set_connection_limit(api_metrics *metrics, uint64_t limit);
+uint64_t api_connection_limit(const api_metrics *metrics);
+
+#endif

@@ -1,0 +1,16 @@
+/* Requests that ended are counted under the number of their row. */
+#include "api/request/exchange.h"
+
+api_metrics *api_metrics_of(const api_service *service)
+{
+    return service->metrics;
+}
+
+void api_served_as(const api_service *service, const api_exchange *x, api_served *served)
+{
+    const api_route *route = x == NULL ? NULL : x->route;
+    served->route = route == NULL ? API_NO_ROUTE : (int)(route - service->table.rows);
+    if (x != NULL) {
+        served->code = x->problem.code;
+    }
+}
