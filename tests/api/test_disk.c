@@ -182,9 +182,11 @@ static void look_and_write(void)
 static void splits(api_bench *b, size_t count)
 {
     static const char op[] = "{\"op\":\"edge_split\",\"edge\":0},";
-    char *body = malloc(count * sizeof op + 16);
+    static const char head[] = "{\"ops\":[";
+    char *body = malloc(count * sizeof op + sizeof head + 3);
     assert_non_null(body);
-    size_t length = (size_t)sprintf(body, "{\"ops\":[");
+    size_t length = sizeof head - 1;
+    memcpy(body, head, length);
     for (size_t i = 0; i < count; i++) {
         memcpy(body + length, op, sizeof op - 1);
         length += sizeof op - 1;

@@ -71,8 +71,7 @@ static const char *const moved[] = {
     "hedge_http_requests_total{method=\"POST\",route=\"/v1/meshes/{mesh}/edits\",status=\"4xx\"}",
     "hedge_http_requests_total{method=\"GET\",route=\"other\",status=\"4xx\"}",
     "hedge_http_requests_total{method=\"other\",route=\"other\",status=\"4xx\"}",
-    "hedge_http_request_duration_seconds_count{method=\"POST\",route=\"/v1/"
-    "meshes\",status=\"2xx\"}",
+    "hedge_http_request_duration_seconds_count{method=\"GET\",route=\"/metrics\",status=\"2xx\"}",
     "hedge_http_request_duration_seconds_sum{method=\"POST\",route=\"/v1/meshes\",status=\"2xx\"}",
     "hedge_http_requests_in_flight",
     "hedge_http_request_bytes_total",

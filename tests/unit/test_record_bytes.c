@@ -254,7 +254,7 @@ static void what_no_release_wrote_is_refused_by_name(void **state)
     assert_int_equal(read_resealed(edit, 5, ST_RECORD_UNDO, &err), HE_CORRUPT);    /* and a body */
     assert_int_equal(read_resealed(edit, 8, 0, &err), HE_CORRUPT);                 /* number 0 */
     assert_int_equal(read_resealed(edit, 16, 0, &err), HE_CORRUPT);                /* revision 0 */
-    assert_int_equal(read_resealed(&specimens[5].record, 6, 4, &err), HE_CORRUPT); /* no content */
+    assert_int_equal(read_resealed(&specimens[6].record, 6, 4, &err), HE_CORRUPT); /* no content */
     assert_int_equal(read_resealed(edit, 4, 1, &err), HE_OK);
 }
 

@@ -299,35 +299,6 @@ static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
     return mesh;
 }
 
-/* Reads the mesh "a": its base, record 2, which has those bytes in parts, and record 3. */
-static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
-{
-    st_reader *reader = NULL;
-    st_card card;
-    st_piece piece;
-    size_t read = 0;
-    assert_int_equal(j->open(j->self, "a", &card, &reader), ST_OK);
-    do {
-        assert_int_equal(j->read(reader, &piece), ST_OK);
-    } while (piece.kind != ST_PIECE_RECORD);
-    assert_true(piece.record.staged_edit && piece.record.stage != NULL && piece.record.barrier);
-    assert_null(piece.record.body);
-    for (uint64_t parts = piece.parts; parts > 0; parts--) {
-        assert_int_equal(j->read(reader, &piece), ST_OK);
-        assert_int_equal(piece.kind, ST_PIECE_PART);
-        assert_int_equal(piece.coding, HE_CODING_PLAIN);
-        assert_true(piece.size <= size - read);
-        assert_memory_equal(piece.bytes, bytes + read, piece.size);
-        read += piece.size;
-    }
-    assert_int_equal(read, size);
-    assert_int_equal(j->read(reader, &piece), ST_OK);
-    assert_true(piece.kind == ST_PIECE_RECORD && piece.record.number == 3);
-    assert_int_equal(j->read(reader, &piece), ST_OK);
-    assert_int_equal(piece.kind, ST_PIECE_END);
-    j->shut(reader);
-}
-
 static void wait_until_purged(told_journal *told)
 {
     const st_journal *j = &told->journal;
@@ -440,40 +411,6 @@ static void what_is_too_damaged_to_be_deleted_stops_nobody(void **state)
     told_end(&told);
     he_mesh_free(small);
     he_mesh_free(large);
-}
-
-static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
-{
-    (void)state;
-    enum { SIZE = 3 * HE_STORED_PART + 17 };
-    told_journal told;
-    he_mesh *small = script_mesh("012", NULL);
-    kept_mesh mesh = open_with_mesh(&told, small);
-    unsigned char *bytes = malloc(SIZE);
-    st_stage *stage;
-    assert_non_null(bytes);
-    for (size_t i = 0; i < SIZE; i++) {
-        bytes[i] = (unsigned char)(i * 7 / 5);
-    }
-    assert_int_equal(told.journal.stage_edit(told.journal.self, bytes, SIZE, &stage), ST_OK);
-    st_record record = kept_edit(&mesh);
-    record.stage = stage;
-    record.body_size = SIZE;
-    record.staged_edit = record.barrier = true;
-    kept_append(&told.journal, record, &mesh, NULL, 0);
-    told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "x", 1));
-    told_end(&told);
-    open_store(&told);
-    expect_parts_of_edit(&told.journal, bytes, SIZE);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), 4);
-    /* A PUT: its parts go with the record. */
-    kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
-    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
-    told_end(&told);
-    free(bytes);
-    he_mesh_free(small);
 }
 
 static void a_rebase_shortens_the_log_and_no_more(void **state)
@@ -824,7 +761,6 @@ int main(void)
         STORE_TEST(cards_are_listed_in_the_order_of_ids),
         STORE_TEST(a_staged_content_is_that_of_its_record),
         STORE_TEST(what_is_too_damaged_to_be_deleted_stops_nobody),
-        STORE_TEST(a_staged_edit_comes_back_in_parts_and_is_no_base),
         STORE_TEST(a_rebase_shortens_the_log_and_no_more),
         STORE_TEST(damage_is_named_and_stays_with_its_mesh),
         STORE_TEST(a_store_is_new_until_its_first_start_is_over),

@@ -4,6 +4,7 @@
 #include "unit/fixture.h"
 
 #include "journal/crc32c.h"
+#include "stored/stored.h"
 
 #include <sqlite3.h>
 
@@ -200,6 +201,83 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
 }
 
+/* Reads the mesh "a": its base, record 2, which has those bytes in parts, and record 3. */
+static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
+{
+    st_reader *reader = NULL;
+    st_card card;
+    st_piece piece;
+    size_t read = 0;
+    assert_int_equal(j->open(j->self, "a", &card, &reader), ST_OK);
+    do {
+        assert_int_equal(j->read(reader, &piece), ST_OK);
+    } while (piece.kind != ST_PIECE_RECORD);
+    assert_true(piece.record.staged_edit && piece.record.stage != NULL && piece.record.barrier);
+    assert_null(piece.record.body);
+    for (uint64_t parts = piece.parts; parts > 0; parts--) {
+        assert_int_equal(j->read(reader, &piece), ST_OK);
+        assert_int_equal(piece.kind, ST_PIECE_PART);
+        assert_int_equal(piece.coding, HE_CODING_PLAIN);
+        assert_true(piece.size <= size - read);
+        assert_memory_equal(piece.bytes, bytes + read, piece.size);
+        read += piece.size;
+    }
+    assert_int_equal(read, size);
+    assert_int_equal(j->read(reader, &piece), ST_OK);
+    assert_true(piece.kind == ST_PIECE_RECORD && piece.record.number == 3);
+    assert_int_equal(j->read(reader, &piece), ST_OK);
+    assert_int_equal(piece.kind, ST_PIECE_END);
+    j->shut(reader);
+}
+
+static void wait_until_purged(told_journal *told)
+{
+    const st_journal *j = &told->journal;
+    const st_room_need need = {.records = 1};
+    st_room *room;
+    st_card card;
+    /* Each look lets a commit go by; purging goes on without others, while something is written. */
+    do {
+        assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
+        j->leave(j->self, room);
+        assert_int_equal(j->open(j->self, "none", &card, NULL), ST_ABSENT);
+    } while (number_of("SELECT count(*) FROM purge") > 0);
+}
+
+static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
+{
+    (void)state;
+    enum { SIZE = 3 * HE_STORED_PART + 17 };
+    told_journal told;
+    kept_mesh mesh = mesh_as("a");
+    unsigned char *bytes = malloc(SIZE);
+    st_stage *stage;
+    assert_non_null(bytes);
+    open_store(&told);
+    kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
+    for (size_t i = 0; i < SIZE; i++) {
+        bytes[i] = (unsigned char)(i * 7 / 5);
+    }
+    assert_int_equal(told.journal.stage_edit(told.journal.self, bytes, SIZE, &stage), ST_OK);
+    st_record record = kept_edit(&mesh);
+    record.stage = stage;
+    record.body_size = SIZE;
+    record.staged_edit = record.barrier = true;
+    kept_append(&told.journal, record, &mesh, NULL, 0);
+    told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "x", 1));
+    told_end(&told);
+    open_store(&told);
+    expect_parts_of_edit(&told.journal, bytes, SIZE);
+    assert_int_equal(number_of("SELECT count(*) FROM part"), 4);
+    /* A PUT: its parts go with the record. */
+    kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
+    wait_until_purged(&told);
+    assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
+    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
+    told_end(&told);
+    free(bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -207,6 +285,7 @@ int main(void)
         STORE_TEST(a_mesh_made_anew_is_not_condemned_for_its_predecessor),
         STORE_TEST(a_record_of_a_newer_release_is_refused_with_both_versions),
         STORE_TEST(a_base_before_the_base_leaves_nothing),
+        STORE_TEST(a_staged_edit_comes_back_in_parts_and_is_no_base),
 #undef STORE_TEST
     };
     return cmocka_run_group_tests_name("journal while it is read", tests, NULL, NULL);
