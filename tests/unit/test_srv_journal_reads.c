@@ -5,6 +5,7 @@
 
 #include "journal/crc32c.h"
 #include "stored/stored.h"
+#include "system/memory.h"
 
 #include <sqlite3.h>
 
@@ -63,6 +64,52 @@ static int64_t number_of(const char *text)
     sqlite3_finalize(s);
     sqlite3_close(db);
     return number;
+}
+
+/* --- memory --- */
+
+/* Appends edits of `each` bytes until `bytes` are on disk, and reads them all once. */
+static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, size_t each)
+{
+    const st_journal *j = &told->journal;
+    unsigned char *body = calloc(each, 1);
+    uint64_t position = 0;
+    for (size_t done = 0; done < bytes; done += each) {
+        position = kept_append(j, kept_edit(mesh), mesh, body, each);
+        assert_int_not_equal(position, 0);
+        if (done % (64 * each) == 0) {
+            told_wait(told, position); /* the queue has an end */
+        }
+    }
+    told_wait(told, position);
+    free(body);
+    st_reader *reader = NULL;
+    st_card card;
+    st_piece piece;
+    assert_int_equal(j->open(j->self, mesh->id, &card, &reader), ST_OK);
+    do {
+        assert_int_equal(j->read(reader, &piece), ST_OK);
+    } while (piece.kind != ST_PIECE_END);
+    j->shut(reader);
+}
+
+/* SQLite is never refused memory: what it keeps of the file would leave none for meshes. */
+static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
+{
+    (void)state;
+    enum { BUDGET = 16 << 20, WRITTEN = 12 << 20, EACH = 8 << 10 };
+    told_journal told;
+    kept_mesh mesh = mesh_as("m");
+    st_memory_install(BUDGET);
+    open_store(&told);
+    const uint64_t before = st_memory_used();
+    assert_int_not_equal(kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0), 0);
+    write_and_read(&told, &mesh, WRITTEN, EACH);
+    const uint64_t kept = st_memory_used() - before;
+    told_end(&told);
+    he_mem_set_hook(NULL);
+    print_message("note: %.0f KiB are kept of 12 MiB\n", (double)kept / 1024);
+    assert_true(kept < BUDGET / 8);
 }
 
 /* --- while it is read --- */
@@ -282,6 +329,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+        STORE_TEST(sqlite_keeps_little_of_a_small_memory_budget),
         STORE_TEST(a_mesh_made_anew_is_not_condemned_for_its_predecessor),
         STORE_TEST(a_record_of_a_newer_release_is_refused_with_both_versions),
         STORE_TEST(a_base_before_the_base_leaves_nothing),

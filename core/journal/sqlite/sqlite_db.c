@@ -109,6 +109,21 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     return st_db_outcome(db, code);
 }
 
+/* 16 pages, so that the path from the root of a tree to a row stays in memory. */
+enum { LEAST_CACHE_KIB = 64, FULL_CACHE_BUDGET = 256 << 20 };
+
+st_sql st_db_set_cache(st_db *db, unsigned kib)
+{
+    const uint64_t budget = st_memory_budget();
+    uint64_t share =
+        budget == 0 || budget >= FULL_CACHE_BUDGET ? kib : kib * budget / FULL_CACHE_BUDGET;
+    char text[64];
+    share = share < LEAST_CACHE_KIB ? LEAST_CACHE_KIB : share;
+    /* A negative number counts KiB, a positive one pages. */
+    (void)snprintf(text, sizeof text, "PRAGMA cache_size = -%u", (unsigned)share);
+    return st_db_run(db, text);
+}
+
 bool st_db_close(st_db *db)
 {
     for (size_t i = 0; i < ST_DB_STATEMENTS; i++) {

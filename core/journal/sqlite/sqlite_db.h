@@ -37,6 +37,9 @@ bool st_db_prepare(void);
 /* `flags` are SQLite's; `texts` has `count` statements and outlives the connection. The caller
  * closes the connection after a failure too. */
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count);
+/* Bounds the pages that the connection keeps in memory: `kib` where the memory budget is 256 MiB or
+ * more, in proportion below, because SQLite is never refused memory. */
+st_sql st_db_set_cache(st_db *db, unsigned kib);
 /* False where SQLite refuses. */
 bool st_db_close(st_db *db);
 /* What SQLite last said about the connection. */

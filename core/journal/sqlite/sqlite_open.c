@@ -44,6 +44,8 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
 
 /* --- the database --- */
 
+enum { CACHE_KIB = 8 << 10 };
+
 static st_sql set_up(st_db *db)
 {
     static const char *const pragmas[] = {
@@ -51,10 +53,9 @@ static st_sql set_up(st_db *db)
         "PRAGMA page_size = 4096",       "PRAGMA auto_vacuum = INCREMENTAL",
         "PRAGMA journal_mode = WAL",     "PRAGMA synchronous = FULL",
         "PRAGMA wal_autocheckpoint = 0", "PRAGMA journal_size_limit = 67108864",
-        "PRAGMA cache_size = -8192",     "PRAGMA mmap_size = 0", /* a bad sector would be SIGBUS */
-        "PRAGMA cell_size_check = ON",
+        "PRAGMA cell_size_check = ON",   "PRAGMA mmap_size = 0", /* a bad sector would be SIGBUS */
     };
-    st_sql outcome = ST_SQL_DONE;
+    st_sql outcome = st_db_set_cache(db, CACHE_KIB);
     for (size_t i = 0; i < sizeof pragmas / sizeof *pragmas && outcome == ST_SQL_DONE; i++) {
         outcome = st_db_run(db, pragmas[i]);
     }

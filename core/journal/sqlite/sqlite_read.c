@@ -52,6 +52,8 @@ static st_status status_of(st_sql outcome)
 
 /* --- connections --- */
 
+enum { CACHE_KIB = 2 << 10 };
+
 static st_sql open_one(st_db *db, const char *path)
 {
     st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
@@ -60,7 +62,7 @@ static st_sql open_one(st_db *db, const char *path)
         outcome = st_db_run(db, "PRAGMA mmap_size = 0");
     }
     if (outcome == ST_SQL_DONE) {
-        outcome = st_db_run(db, "PRAGMA cache_size = -2048");
+        outcome = st_db_set_cache(db, CACHE_KIB);
     }
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
