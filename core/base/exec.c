@@ -5,7 +5,8 @@ static const he_exec *host_of(const he_watch *watch)
     return watch != NULL && watch->exec != NULL && watch->exec->threads > 1 ? watch->exec : NULL;
 }
 
-/* `watch` is stepped between parts when it is not NULL. */
+/* Runs the parts on the host's threads, or here without a host; then `watch`, if not NULL, is
+ * stepped between parts. */
 static he_status run(const he_exec *host, he_watch *watch, uint32_t parts, he_part part,
                      void *context, he_error *err)
 {
@@ -54,7 +55,7 @@ he_status he_run_ranges(he_watch *watch, size_t count, he_range work, void *cont
 typedef struct lanes {
     he_range work;
     void *context;
-    size_t count, length, done; /* rows in all, of a lane, and of each that are done */
+    size_t count, length, done; /* rows in all; rows of a lane; rows that each lane has done */
 } lanes;
 
 static he_status run_lane(void *context, uint32_t lane, he_error *err)

@@ -22,21 +22,21 @@ void he_mem_set_hook(const he_mem_hook *replacement)
     hook = replacement != NULL ? *replacement : (he_mem_hook){library_resize, NULL};
 }
 
-/* Where ids are in no order, reading a large mesh misses the translation of addresses as often as
- * the caches; huge pages end that. Systems give them to those who ask. The pages of the block are
- * asked for to both ends: a mapping of which a part is different could not be moved when it grows,
- * only copied.
+/* Reading a large mesh whose ids are in no spatial order misses the TLB as often as the caches;
+ * transparent huge pages avoid that, and the system uses them only where madvise asks for them. The
+ * advice covers every page of the block: a mapping of which one part has other flags could not be
+ * moved when it grows, only copied.
  *
- * A block that is a mapping of its own begins right behind the C library's header. Any other lies
- * in a heap, where a large one may be put when much was freed, and what was said of its pages would
- * stay said of them: small blocks that come there later would take 2 MiB each. */
+ * A block that is a mapping of its own begins directly behind the C library's header. Other large
+ * blocks lie in the heap, when much was freed there before. Advice would stay on those pages after
+ * the block is freed, and small blocks allocated there later would take 2 MiB each. */
 enum { PAGE = 4096, LARGE_BLOCK = 4 << 20, HEADER = 2 * sizeof(size_t) };
 
 static void ask_for_huge_pages(void *memory, size_t size)
 {
     size_t before = (uintptr_t)memory % PAGE, length = (before + size + PAGE - 1) / PAGE * PAGE;
     if (before <= HEADER) {
-        /* Nothing depends on the answer. */
+        /* The result is ignored: without huge pages everything works, only slower. */
         (void)madvise((char *)memory - before, length, MADV_HUGEPAGE);
     }
 }
@@ -129,7 +129,7 @@ void he_ids_reverse(he_ids *list)
     }
 }
 
-/* Up to this many are sorted by insertion, more by radix. */
+/* Up to this many ids are sorted by insertion, more by radix sort. */
 enum { FEW = 96 };
 
 static void sort_few(uint32_t *ids, size_t count)

@@ -1,10 +1,10 @@
-/* mem.h - every byte core holds comes from here.
+/* mem.h - the allocator: all memory of core and api comes from here.
  *
- * The hook is the only global in core. It is set once, before the first thread; tests install
- * one that fails the N-th call, the server one that counts. All functions accept NULL where free
- * does. Sizes are multiplied with an overflow check: a product that does not fit fails like an
- * allocation. Blocks of 4 MiB and more that are a mapping of their own are put on huge pages where
- * the system offers them. */
+ * The hook is the only global in the kernel. It is set once, before the first thread starts; tests
+ * install one that fails the N-th call, the server one that counts bytes. All functions accept NULL
+ * where free does. Sizes are multiplied with an overflow check: a product that does not fit fails
+ * like an allocation. A block of 4 MiB or more that is a mapping of its own uses transparent huge
+ * pages where the system has them. */
 #ifndef HE_BASE_MEM_H
 #define HE_BASE_MEM_H
 
@@ -12,7 +12,7 @@
 
 #include <stddef.h>
 
-/* realloc with its meaning fixed: size 0 frees and returns NULL. */
+/* `resize` is realloc with one meaning everywhere: size 0 frees the block and returns NULL. */
 typedef struct he_mem_hook {
     void *(*resize)(void *context, void *memory, size_t size);
     void *context;
@@ -24,12 +24,14 @@ void he_mem_set_hook(const he_mem_hook *hook);
 void *he_mem_alloc(size_t size);
 void *he_mem_resize(void *memory, size_t size);
 void he_mem_free(void *memory);
-/* count * size bytes, zeroed. */
+/* Returns count * size bytes, zeroed; NULL if memory is out. */
 void *he_mem_zero(size_t count, size_t size);
-/* Grow or make an array: on failure NULL, and the old block is still the caller's. */
+/* Makes an array (`memory` is NULL) or resizes it. Returns NULL if memory is out; the caller then
+ * still owns the old block. */
 void *he_mem_array(void *memory, size_t count, size_t size);
 
-/* The capacity to grow to so that `need` fits and appending stays amortised constant. */
+/* Returns the capacity to grow to so that `need` fits and appending takes amortised constant
+ * time. */
 size_t he_mem_grown(size_t capacity, size_t need);
 
 /* A growable list of ids, used for every answer of unknown length. {0} is empty. */
@@ -41,11 +43,12 @@ typedef struct he_ids {
 HE_NODISCARD he_status he_ids_reserve(he_ids *list, size_t extra, he_error *err);
 HE_NODISCARD he_status he_ids_add(he_ids *list, uint32_t id, he_error *err);
 void he_ids_reverse(he_ids *list);
-/* In rising order, each id once. On HE_NO_MEMORY the list is as it was. */
+/* Sorts the ids and removes repeats.
+ * Returns HE_NO_MEMORY if memory is out; the list is then as it was. */
 HE_NODISCARD he_status he_ids_sort(he_ids *list, he_error *err);
-void he_ids_clear(he_ids *list); /* frees */
+void he_ids_clear(he_ids *list); /* frees the array */
 
-/* A set of bits, all zero at first. NULL when memory is out. */
+/* Returns a bit set with all bits zero; NULL if memory is out. */
 uint64_t *he_bits_new(size_t count);
 static inline int he_bits_get(const uint64_t *bits, size_t i)
 {

@@ -1,13 +1,13 @@
 /* siphash.h - a keyed hash of 128 bits: SipHash-2-4-128.
  *
  * J.-P. Aumasson and D. J. Bernstein, "SipHash: a fast short-input PRF" (INDOCRYPT 2012), with the
- * doubled output of its authors. Who does not know the key can neither foresee where a name falls
- * in a table nor make two bodies that agree.
+ * doubled output of its authors. Without the key an attacker can neither foresee the slot of a name
+ * in a hash table nor construct two bodies with equal hashes.
  *
  *     he_siphash h;
  *     he_siphash_begin(&h, key);
- *     he_siphash_add(&h, bytes, length);  any number of times; only the bytes count, not the cuts
- *     he_siphash_end(&h, out); */
+ *     he_siphash_add(&h, bytes, length);  any number of times; how the bytes are cut does not
+ * matter he_siphash_end(&h, out); */
 #ifndef HE_BASE_SIPHASH_H
 #define HE_BASE_SIPHASH_H
 
@@ -16,7 +16,7 @@
 
 typedef struct he_siphash {
     uint64_t v[4];
-    unsigned char tail[8]; /* of the word that is not yet whole */
+    unsigned char tail[8]; /* bytes of the last word, which is not complete yet */
     uint64_t length;
 } he_siphash;
 
@@ -24,7 +24,7 @@ void he_siphash_begin(he_siphash *hash, const uint64_t key[2]);
 void he_siphash_add(he_siphash *hash, const void *bytes, size_t length);
 void he_siphash_end(he_siphash *hash, uint64_t out[2]);
 
-/* All at once, the first half of it: for tables. */
+/* Returns the first 64 bits of the hash of one block of bytes, for hash tables. */
 uint64_t he_siphash_of(const uint64_t key[2], const void *bytes, size_t length);
 
 #endif

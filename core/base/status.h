@@ -30,11 +30,11 @@
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
     X(BEYOND_FLOAT, "beyond_float", "A coordinate is beyond the floats of the format")        \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
-    /* elements named by the caller */                                                        \
+    /* elements that the caller names */                                                      \
     X(NO_SUCH_ELEMENT, "no_such_element", "No such element was ever issued")                  \
     X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                          \
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
-    /* what the structure cannot hold */                                                      \
+    /* shapes that a half-edge mesh cannot represent */                                       \
     X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
     X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
     X(REPEATED_CORNER, "repeated_corner", "A face would visit a vertex twice")                \
@@ -43,7 +43,7 @@
     X(NOT_ORIENTABLE, "not_orientable", "Faces cannot be turned so that all agree")           \
     X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
     X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
-    /* what an edit asks of its place */                                                      \
+    /* preconditions of an edit on the elements around it */                                  \
     X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
     X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
     X(INTERIOR_VERTEX, "interior_vertex", "The vertex has no room for another face")          \
@@ -74,7 +74,7 @@
     X(RIM_MEETS_ITSELF, "rim_meets_itself", "The rim of the faces passes a vertex twice")     \
     X(NO_NORMAL, "no_normal", "The face has no area, so it faces nowhere")                    \
     X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of one name differ in type")            \
-    /* what marks forbid (marks.h) */                                                         \
+    /* edits that marks forbid (marks.h) */                                                   \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")
 
@@ -95,36 +95,36 @@ typedef enum he_kind {
     HE_KIND_COUNT
 } he_kind;
 
-/* Where in an input an error was found. */
+/* The unit of a place in an input: a line or a byte. */
 typedef enum he_place { HE_PLACE_NONE, HE_PLACE_LINE, HE_PLACE_BYTE } he_place;
 
 enum { HE_ERROR_TEXT = 192 };
 
 typedef struct he_error {
     he_status status;
-    he_kind kind;   /* of the element named; HE_KIND_COUNT when none is */
-    uint32_t id;    /* its id */
+    he_kind kind;   /* kind of the element that the error names; HE_KIND_COUNT if it names none */
+    uint32_t id;    /* id of that element */
     he_place place; /* unit of `at`: a line counts from 1, a byte from 0 */
     uint64_t at;
     char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, without the place */
 } he_error;
 
-/* "edge_split" for HE_..., never NULL. */
+/* Returns the slug of a status, such as "boundary_edge"; never NULL. */
 const char *he_status_slug(he_status status);
 const char *he_status_title(he_status status);
-/* "vertex", "halfedge", "edge", "face", "mesh" */
+/* Returns "vertex", "halfedge", "edge", "face" or "mesh". */
 const char *he_kind_name(he_kind kind);
-/* "vertices", "halfedges", "edges", "faces", "mesh" */
+/* Returns "vertices", "halfedges", "edges", "faces" or "mesh". */
 const char *he_kind_plural(he_kind kind);
 
-/* Fill `err` (which may be NULL) and return `status`, so that a refusal is one statement:
- *     return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has one face", e.i);      */
+/* Fills `err` (which may be NULL) and returns `status`, so that a refusal is one statement:
+ *     return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has one face", e.i); */
 he_status he_fail(he_error *err, he_status status, he_kind kind, uint32_t id, const char *format,
                   ...) __attribute__((format(printf, 5, 6)));
-/* The same where no element is to be named. */
+/* he_fail for an error that names no element. */
 he_status he_fail_plain(he_error *err, he_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* The same for an error at a line or byte of an input. */
+/* he_fail for an error at a line or byte of an input. */
 he_status he_fail_at(he_error *err, he_status status, he_place place, uint64_t at,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 

@@ -5,11 +5,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Bytes of the character that begins at `bytes`, 0 where there is none. `length` > 0. */
+/* Returns the number of bytes of the character that begins at `bytes`, or 0 if no valid one begins
+ * there. `length` is above 0. */
 size_t he_utf8_character(const char *bytes, size_t length);
 bool he_is_utf8(const char *bytes, size_t length);
-/* NAME for number 1, else NAME_2 and so on, in `size` bytes, its NUL included: the name is cut
- * where that is too long, between letters. `size` is 16 at least. */
+/* Writes NAME for number 1, else NAME_2 and so on, to `out`. `size` is its size with the NUL, at
+ * least 16; a name that does not fit is cut between two characters. */
 void he_name_number(const char *name, unsigned number, char *out, size_t size);
 
 #endif
