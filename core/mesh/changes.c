@@ -1,4 +1,4 @@
-/* What deltas did to elements, net: he_changes of delta.h. */
+/* he_changes of delta.h: the net effect of deltas on elements. */
 #include "mesh/delta.h"
 
 #include "mesh/column.h"
@@ -6,9 +6,10 @@
 
 #include <string.h>
 
-/* One word record, keyed so that records of the same word come together in the order of writing. */
+/* A record of one word with a key by which records of one word sort together, in the order of
+ * writing. */
 typedef struct word_record {
-    uint64_t key; /* column, word, row */
+    uint64_t key; /* column, word and row */
     uint32_t before, after;
 } word_record;
 
@@ -119,8 +120,9 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* One word, of this attribute where it is one's, went from `before` to `after`, net. Rows that died
- * or were born show among the modified too; those are dropped at the end. */
+/* Notes that one word went from `before` to `after`, net; `attribute` is NULL unless it is a word
+ * of an attribute. Rows that died or were born are noted as modified too; keep_modified drops them
+ * at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
                            uint32_t column, uint32_t row, uint32_t before, uint32_t after,
                            he_error *err)
@@ -168,14 +170,15 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* What became of a slot for columns of attributes. */
+/* The first column that a slot of attributes had. */
 typedef struct attribute_slot {
-    const he_column *before; /* the column that was there first; NULL where none was */
-    bool has_changed;        /* a column came or went */
-    bool is_unknown;         /* what was there first is there again */
+    const he_column *before; /* the column at first; NULL if there was none */
+    bool has_changed;        /* a column was added or dropped */
+    bool is_unknown;         /* the first column is the one that is there again now */
 } attribute_slot;
 
-/* "" beyond the labels there are, as bytes of a damaged store may say; the checker names those. */
+/* Returns the label of a row; "" if the index is beyond the labels, as in a damaged store, which
+ * he_check reports. */
 static const char *label_of(const he_column *column, const unsigned char *row, uint32_t i)
 {
     uint32_t index;
@@ -183,7 +186,7 @@ static const char *label_of(const he_column *column, const unsigned char *row, u
     return index < he_labels_count(column->labels) ? he_labels_get(column->labels, index) : "";
 }
 
-/* Do rows name the same? One column may be NULL, all of whose rows are the default of the other. */
+/* Do rows have equal labels? If one column is NULL, all its rows have the default of the other. */
 static bool same_labels(const he_column *a, const he_column *b, size_t row)
 {
     const he_column *x = a != NULL ? a : b, *y = b != NULL ? b : a;
@@ -196,17 +199,17 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
     return same;
 }
 
-/* The words of all parts, in the order of their keys and, for one key, in that in which they took
+/* The word records of all parts, sorted by key and, for one key, in the order in which they took
  * effect. */
 typedef struct words {
     word_record *records;
     size_t count;
-    attribute_slot *slots; /* of the columns of attributes */
+    attribute_slot *slots; /* slots of attribute columns */
     size_t slot_count;
 } words;
 
-/* A record that says that a column came or went. The delta has the column that is not there now.
- * A slot beyond those of the mesh is one of a content that was replaced. */
+/* Notes a record that added or dropped a column. The delta owns the column that is not in the mesh
+ * now. A slot beyond those of the mesh belongs to a content that was replaced. */
 static void note_slot(words *w, const he_change_part *part, const he_record *r)
 {
     if (r->row >= w->slot_count) {
@@ -221,7 +224,8 @@ static void note_slot(words *w, const he_change_part *part, const he_record *r)
     slot->has_changed = true;
 }
 
-/* Does the column that is there now hold what is written to the slot from here on? */
+/* Has the slot's column changed already? Words written to it afterwards need no record: the column
+ * now in the mesh has them, and is compared with the first as a whole. */
 static bool is_written_later(const words *w, uint32_t slot)
 {
     return slot < w->slot_count && w->slots[slot].has_changed;
@@ -285,8 +289,8 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     return status == HE_OK ? sort_records(&w->records, w->count, mesh->watch, err) : status;
 }
 
-/* The attribute whose values the words of this column are. NULL for words of the structure, and of
- * a column without labels that went: it shows as a whole. */
+/* Returns the attribute that the words of this column belong to; NULL for words of the structure,
+ * and for a column without labels that was dropped, which is reported as a whole. */
 static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32_t column)
 {
     if (column < HE_COL_ATTRIBUTE) {
@@ -299,8 +303,8 @@ static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32
     return slot->before != NULL && slot->before->labels != NULL ? slot->before : NULL;
 }
 
-/* What came or went, or took the place of another of its name: the rows whose labels say something
- * else than before. */
+/* Notes the rows whose label differs when a column was added, dropped or replaced by one of its
+ * name. */
 static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
                              const he_column *after, he_error *err)
 {
@@ -375,7 +379,7 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
     return status;
 }
 
-/* Modified means alive on both sides. */
+/* An element is modified only if it lives both before and after. */
 static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
 {
     he_ids *list = &out->modified[kind];

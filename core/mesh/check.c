@@ -12,9 +12,9 @@ typedef struct checker {
     const he_mesh *m;
     he_problem *problems;
     size_t capacity, total;
-    uint64_t *in_face; /* a bit a half-edge: reached from its face */
-    uint64_t *in_ring; /* a bit a half-edge: reached by turning about its origin */
-    uint32_t *stamp;   /* a word a vertex: who met it last */
+    uint64_t *in_face; /* one bit a half-edge: reached from its face */
+    uint64_t *in_ring; /* one bit a half-edge: reached by turning about its origin */
+    uint32_t *stamp;   /* one word a vertex: one more than the last face or vertex that met it */
 } checker;
 
 static void broken(checker *c, int rule, he_kind kind, uint32_t id, const char *format, ...)
@@ -71,7 +71,8 @@ static void check_edge_links(checker *c, uint32_t e)
     }
 }
 
-/* I1 with the stored half-edges of vertices and faces: whatever fails here cannot be followed. */
+/* I1, with the stored half-edges of vertices and faces: later passes cannot follow a link that
+ * fails here. */
 static void check_links(checker *c)
 {
     const he_content *k = &c->m->c;
@@ -298,7 +299,8 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
 he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
                            size_t capacity, size_t *total, he_error *err)
 {
-    /* Later passes follow the links that the first has found to lead somewhere. */
+    /* In order: the later passes follow links, so they run only if the first finds all links
+     * valid. */
     static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
                                                   check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };

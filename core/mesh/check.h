@@ -1,7 +1,7 @@
-/* check.h - is a mesh what mesh.h promises?
+/* check.h - validation: does a mesh satisfy the invariants of mesh.h?
  *
- * Tests the invariants I1 to I13 on any content whatever, corrupt links included, in time linear in
- * the mesh. Links that name nothing are reported alone: the other tests could not follow them. */
+ * Tests I1 to I13 on any content, corrupt links included, in time linear in the mesh. If a link
+ * names no live element, only the links are reported: the other tests would have to follow them. */
 #ifndef HE_MESH_CHECK_H
 #define HE_MESH_CHECK_H
 
@@ -16,12 +16,14 @@ typedef struct he_problem {
     char text[HE_PROBLEM_TEXT];
 } he_problem;
 
-/* Write up to `capacity` broken invariants to `problems` and how many there are in all to `*total`
- * (which may exceed capacity). With capacity 1 it stops at the first. Fails only with
- * HE_NO_MEMORY. A mesh that passes gives total 0. */
+/* Writes up to `capacity` broken invariants to `problems`, and to `*total` how many there are in
+ * all (which may exceed capacity; 0 if the mesh is valid). With capacity 1 the check stops at the
+ * first.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);
-/* he_check for work that is watched: it can also fail with HE_CANCELLED, between its passes. */
+/* he_check with a watch, which is stepped between the passes.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
                                         size_t capacity, size_t *total, he_error *err);
 

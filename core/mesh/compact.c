@@ -11,9 +11,9 @@ void he_maps_clear(he_maps *maps)
     *maps = (he_maps){0};
 }
 
-/* Sixty-four rows of a table: which of them live, and how many do before them. The new id of a row
- * is a count of bits. Where links lead anywhere, tables of new ids would come from memory; these
- * are an eighth as long and stay in the cache. */
+/* Sixty-four rows of a table: a bit for each that lives, and how many live before them. The new id
+ * of a row is a count of bits. Tables of new ids would be read from memory at random; these are an
+ * eighth as long and stay in the cache. */
 typedef struct block {
     uint64_t rows;
     uint32_t before;
@@ -30,7 +30,7 @@ static size_t block_count(uint32_t issued)
     return (size_t)issued / BLOCK_ROWS + 1;
 }
 
-/* The live rows of a table: those whose `stride`-th link is not dead. */
+/* Finds the live rows of a table: those whose `stride`-th link is not dead. */
 static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
 {
     block *blocks = he_mem_array(NULL, block_count(issued), sizeof *blocks);
@@ -48,7 +48,7 @@ static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
     return blocks;
 }
 
-/* Bits that are set, counted in parallel in fields of 2, 4 and 8; the product adds those up. */
+/* Counts the bits that are set, in parallel in fields of 2, 4 and 8; the product adds those up. */
 static uint32_t count_bits(uint64_t bits)
 {
     bits -= bits >> 1 & 0x5555555555555555u;
@@ -57,7 +57,7 @@ static uint32_t count_bits(uint64_t bits)
     return (uint32_t)(bits * 0x0101010101010101u >> 56);
 }
 
-/* The new id of a live row. */
+/* Returns the new id of a live row. */
 static uint32_t rank(const block *blocks, uint32_t row)
 {
     const block *at = &blocks[row / BLOCK_ROWS];
@@ -69,11 +69,11 @@ static uint32_t rank_halfedge(const block *edges, uint32_t h)
     return h == HE_NONE ? HE_NONE : 2 * rank(edges, h >> 1) + (h & 1);
 }
 
-/* Live rows one after another: `row` is the old id and `fresh` the new one. Bits are taken from the
- * lowest up, so that which rows live is nothing to be guessed at. */
+/* Iterates over live rows: `row` is the old id and `fresh` the new one. It takes bits from the
+ * lowest up, so that no branch depends on which rows live. */
 typedef struct walk {
     const block *blocks;
-    uint64_t left; /* of the block */
+    uint64_t left; /* bits of the present block that are not visited */
     size_t at;
     uint32_t row, fresh;
 } walk;
@@ -159,7 +159,7 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* `per` rows of the column for each of the table. */
+/* Moves the live rows; the column has `per` rows for each of the table. */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)
 {
@@ -249,7 +249,7 @@ static he_status make_room(const he_content *from, he_content *to, he_error *err
     return status;
 }
 
-/* NULL when memory is out. */
+/* Returns NULL if memory is out. */
 static uint32_t *map_rows(const block *blocks, uint32_t issued)
 {
     uint32_t *map = he_mem_array(NULL, issued, sizeof *map);

@@ -4,18 +4,20 @@
 
 #include "mesh/mesh.h"
 
-/* old id -> new id for every id issued before, HE_NONE for those that were dead. Half-edge
- * 2e + s becomes 2 * edge[e] + s. {0} is empty. */
+/* Maps every id issued before to its new id, or to HE_NONE if it was dead. Half-edge 2e + s becomes
+ * 2 * edge[e] + s. {0} is empty. */
 typedef struct he_maps {
     uint32_t *vertex, *edge, *face;
-    uint32_t vertices, edges, faces; /* entries in each */
+    uint32_t vertices, edges, faces; /* entries of each array */
 } he_maps;
 
 void he_maps_clear(he_maps *maps);
 
-/* Drop the dead rows: live elements keep their order and take the ids 0, 1, 2... Counts, links and
- * attributes are otherwise unchanged; memory shrinks to fit. Recorded as one replace. `maps` may be
- * NULL, else it is the caller's to clear. HE_NO_MEMORY, HE_CANCELLED. */
+/* Drops the dead rows: live elements keep their order and get the ids 0, 1, 2... Counts, links and
+ * attributes are otherwise unchanged; memory shrinks to fit. The delta records one replacement.
+ * `maps` may be NULL; otherwise the caller clears it.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);
 
 #endif

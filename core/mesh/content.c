@@ -8,7 +8,7 @@ static he_status no_memory(const char *what, size_t rows, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", rows, what);
 }
 
-/* Resize one column; on failure the old block and the old capacity still hold. */
+/* Resizes one column; on failure the old block and the old capacity remain. */
 static bool resize(void *column, size_t rows, size_t size)
 {
     void *block;
@@ -21,7 +21,8 @@ static bool resize(void *column, size_t rows, size_t size)
     return true;
 }
 
-/* Exactly `rows` at first, amortised afterwards: a built mesh carries no slack. */
+/* The first allocation is exact, later ones grow by he_rows_grown: a mesh just built has no
+ * slack. */
 static size_t grown(const he_rows *table, size_t rows)
 {
     size_t capacity = table->issued == 0 ? rows : he_rows_grown(table->capacity, rows);
@@ -88,13 +89,13 @@ void he_content_clear(he_content *c)
     *c = (he_content){0};
 }
 
-/* Small enough that a copy can be given up between two. */
+/* A copy can be cancelled between two blocks of this many bytes, so it is small. */
 enum { COPY_BLOCK = 1 << 20 };
 
-/* The copying of columns one after another. */
+/* Progress of copying columns one after another. */
 typedef struct copying {
     he_watch *watch;
-    size_t done, bytes; /* of all of them */
+    size_t done, bytes; /* bytes of all columns together */
 } copying;
 
 static he_status copy_rows(copying *c, void *to, const void *from, size_t rows, size_t size,

@@ -1,4 +1,4 @@
-/* What a delta does to a content: he_content_apply, _issue and _withdraw of content.h. */
+/* Applies the records of a delta: he_content_apply, _issue and _withdraw of content.h. */
 #include "mesh/content.h"
 
 #include "mesh/write.h"
@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Live rows are counted by the words that turn from dead to alive and back. */
+/* The live count changes with each word that turns from dead to alive or back. */
 static void put_liveness(he_rows *table, uint32_t before, uint32_t after)
 {
     table->live += (uint32_t)(before == HE_DEAD) - (uint32_t)(after == HE_DEAD);
@@ -48,7 +48,7 @@ static void swap_content(void **objects, he_content *c, const he_record *r)
     *other = here;
 }
 
-/* Bring one record's place from `before` to `after`. */
+/* Changes the word or slot of one record from `before` to `after`. */
 static void apply(void **objects, he_content *c, const he_record *r, uint32_t before,
                   uint32_t after)
 {

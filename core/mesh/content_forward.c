@@ -1,10 +1,12 @@
-/* Forwards over a delta onto rows that are not issued yet: he_content_forward of content.h. */
+/* he_content_forward of content.h: a delta is applied to a content that has not issued its rows
+ * yet. */
 #include "mesh/content.h"
 #include "mesh/delta.h"
 
 #include <string.h>
 
-/* The records from..to are written to one content; a replace lies between two such spans. */
+/* The records from..to, all written to one content; a replacement of the content separates two
+ * spans. */
 typedef struct span {
     size_t from, to;
 } span;
@@ -23,7 +25,8 @@ static void raise(uint32_t *mark, uint32_t row)
     *mark = *mark <= row ? row + 1 : *mark;
 }
 
-/* The marks at the end of a span: every row that an edit issues has its links written. */
+/* Computes the high-water marks at the end of a span: an edit writes the links of every row it
+ * issues. */
 static void marks_after(const he_content *c, const he_delta *delta, span s,
                         uint32_t marks[HE_KIND_COUNT])
 {
@@ -50,7 +53,7 @@ static he_status refuse(size_t i, size_t *refused, const char *what, he_error *e
     return he_fail_plain(err, HE_CORRUPT, "change %zu %s", i, what);
 }
 
-/* A slot behind the last, for a column that will come. */
+/* Makes a slot after the last, for a column to come. */
 static he_status add_slot(he_content *c, he_error *err)
 {
     if (c->column_count == c->column_capacity) {
@@ -66,7 +69,7 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* A slot for the column that record i brings, and in the column the rows that are issued. */
+/* Makes a slot for the column that record i adds, and in that column the issued rows. */
 static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
                               size_t *refused, he_error *err)
 {
@@ -86,7 +89,7 @@ static he_status ready_column(he_content *c, const he_delta *delta, size_t i, vo
     return status == HE_OK && r->row == c->column_count ? add_slot(c, err) : status;
 }
 
-/* A slot for the material that record i brings. */
+/* Makes a slot for the material that record i adds. */
 static he_status ready_material(he_content *c, const he_delta *delta, size_t i, size_t *refused,
                                 he_error *err)
 {
@@ -104,7 +107,7 @@ static he_status ready_material(he_content *c, const he_delta *delta, size_t i, 
     return status;
 }
 
-/* Slots for the columns and materials that come in a span. */
+/* Makes slots for the columns and materials that a span adds. */
 static he_status ready_slots(he_content *c, const he_delta *delta, span s, void **objects,
                              size_t *refused, he_error *err)
 {
@@ -119,7 +122,7 @@ static he_status ready_slots(he_content *c, const he_delta *delta, span s, void 
     return status;
 }
 
-/* All memory that going forward takes. */
+/* Allocates all memory that applying the delta takes. */
 static he_status ready(he_content *c, const he_delta *delta, void **objects,
                        const uint32_t issued[HE_KIND_COUNT], size_t *refused, he_error *err)
 {
@@ -167,7 +170,7 @@ static bool attribute_is(const he_content *c, const he_record *r)
            word_is(he_column_value(column, r->row), column->row_bytes, r);
 }
 
-/* Is the slot free, and the name of the column that comes? */
+/* Is the slot free, and no column of the domain called like the one to be added? */
 static bool is_free(const he_content *c, size_t slot, const he_column *column)
 {
     for (size_t i = 0; i < c->column_count; i++) {
@@ -180,7 +183,8 @@ static bool is_free(const he_content *c, size_t slot, const he_column *column)
     return c->columns[slot] == NULL;
 }
 
-/* Does the slot hold the row that record r was made on, and no other row the name that comes? */
+/* Does the slot hold the material that record r replaces, and has no other row the new one's
+ * name? */
 static bool material_is(const he_content *c, const he_record *r, const he_material *comes)
 {
     const he_material *row = c->materials.rows[r->row];
@@ -189,7 +193,7 @@ static bool material_is(const he_content *c, const he_record *r, const he_materi
     return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
 }
 
-/* Does the content hold what the record was made on? */
+/* Does the content hold the `before` of the record? */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
     size_t halfedges = 2 * (size_t)c->edges.issued;

@@ -36,11 +36,11 @@ size_t he_object_bytes(uint32_t column, const void *object)
     if (column == HE_COL_MATERIAL) {
         return he_material_bytes(object);
     }
-    /* Each edit that adds or renames a label leaves the labels there were to its delta. */
+    /* Labels count too: an edit that adds or renames a label leaves the old labels to its delta. */
     return he_column_bytes(object) + he_labels_own_bytes(((const he_column *)object)->labels);
 }
 
-/* Objects from `from` on are what the mesh does not hold at this moment. */
+/* Frees the objects from `from` on, which the mesh does not hold at this moment. */
 static void free_objects(he_delta *d, size_t from)
 {
     for (size_t i = 0; i < d->count; i++) {
@@ -102,10 +102,10 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* Records between two looks at the watch; each takes a few misses of the cache. */
+/* How many records are folded between two steps of the watch; each takes a few cache misses. */
 enum { FOLD_STRIDE = 16 * HE_WATCH_STRIDE };
 
-/* Open addressing; a place holds one more than the index of a record, 0 when it is free. */
+/* Open addressing; a slot holds one more than the index of a record, 0 if it is free. */
 he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err)
 {
     uint32_t bits = 4;
@@ -146,7 +146,7 @@ he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err
             table[at] = kept;
         }
     }
-    /* What was not reached follows what was. */
+    /* After a cancellation the records that were not folded follow those that were. */
     memmove(d->records + kept, d->records + i, (d->count - i) * sizeof *d->records);
     d->count -= i - kept;
     he_mem_free(table);

@@ -28,9 +28,9 @@ typedef enum he_col {
     HE_COL_VERTEX_HALFEDGE,
     HE_COL_FACE_HALFEDGE,
     HE_COL_POSITION,
-    /* not words of a column */
+    /* from here to HE_COL_REPLACED: records that are not about words of a column */
     HE_COL_PARENT,       /* row = child, before = parent, word = kind */
-    HE_COL_MERGED,       /* row = the one gone, before = the one it became part of, word = kind */
+    HE_COL_MERGED,       /* row = the deleted one, before = the one it merged into, word = kind */
     HE_COL_COLUMN_ADDED, /* row = slot, before = object */
     HE_COL_COLUMN_DROPPED,
     HE_COL_MATERIAL, /* row = slot, before = object, after = mark of the row before the edit, or 0
@@ -46,11 +46,12 @@ typedef struct he_record {
     uint32_t before, after;
 } he_record;
 
-/* Open for reading; only write.h, delta.c and core/stored write it. */
+/* Anyone may read the fields; only write.h, delta.c and core/stored write them. */
 struct he_delta {
     he_record *records;
     size_t count, capacity;
-    void **objects; /* he_column, he_material or he_content, by the record that names it */
+    void *
+        *objects; /* he_column, he_material or he_content, depending on the record that names it */
     size_t object_count, object_capacity;
 };
 
@@ -60,66 +61,72 @@ static inline bool he_has_object(const he_record *r)
     return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
 }
 
-/* A point inside a recording to which he_delta_rollback can return. */
+/* A point of a recording to which he_delta_rollback can return. */
 typedef struct he_savepoint {
     size_t records, objects;
     uint32_t issued[HE_KIND_COUNT];
 } he_savepoint;
 
-he_delta *he_delta_new(void); /* empty; NULL when memory is out */
-/* Make room for this many more. */
+he_delta *he_delta_new(void); /* empty; NULL if memory is out */
+/* Makes room for this many more records and objects. */
 HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
                                         he_error *err);
 void he_delta_free(he_delta *delta);
-/* Forget the records but keep the memory. */
+/* Removes the records but keeps the memory. */
 void he_delta_empty(he_delta *delta);
-/* What it takes: the room for its records, and of columns and contents the rows, so that a delta
- * that was read from its bytes takes what it took before. */
+/* Returns the memory of a delta: the capacity of its records, but only the rows (not the capacity)
+ * of its columns and contents, so that a delta read back from storage counts as much as before. */
 size_t he_delta_bytes(const he_delta *delta);
-/* Give back what capacity holds beyond the records; keeps it when memory is out. */
+/* Frees the capacity beyond the records; if memory is out, the capacity stays. */
 void he_delta_trim(he_delta *delta);
 
-/* Keep of the records from `from` on one for each word, from what it was before the first to what
- * it became by the last; notes of lineage stay. For edits that write the same words many times:
- * the delta is then no longer than what they touched. No savepoint after `from` may be gone back
- * to, and no column or content was replaced since. HE_NO_MEMORY leaves the records as they are;
- * HE_CANCELLED leaves some of them folded, which lead to the same states. */
+/* Folds the records from `from` on into one for each word, from its value before the first to its
+ * value after the last; lineage records stay. Edits that write a word many times use it, so that
+ * their delta is no longer than what they touched. Requires that no savepoint after `from` is
+ * rolled back to, and that no column or content was replaced since.
+ * Returns HE_NO_MEMORY if memory is out; the records are as they were.
+ * Returns HE_CANCELLED if the watch gave up; some records are folded, and undo and redo still lead
+ * to equal states. */
 HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_watch *watch, he_error *err);
 
-/* Record all writes to `mesh` in `delta` from here on; NULL stops. Returns what was there. */
+/* Records all writes to `mesh` in `delta` from here on; NULL ends the recording. Returns the delta
+ * that recorded before, or NULL. */
 he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta);
 
-/* These change `mesh` without recording. `delta` must be the one that leads to (undo) or from
- * (redo) the present state. */
+/* Undo and redo change `mesh` without recording. The mesh must be in the state after (undo) or
+ * before (redo) the delta. */
 void he_delta_undo(he_delta *delta, he_mesh *mesh);
 void he_delta_redo(he_delta *delta, he_mesh *mesh);
 
-/* Bring a mesh forward over a delta that was made on a mesh like it: one that was loaded, say, and
- * has not issued the rows of the delta. The delta holds what its edit brought in (columns, a
- * content), as one that was undone does; afterwards it holds what the edit took out, the mesh has
- * the high-water marks `issued`, indexed by kind, and undo and redo go on from there. HE_CORRUPT
- * when the mesh is not what the edit was made on; *refused, which may be NULL, is then the index of
- * the first record that shows it. HE_NO_MEMORY. After either the mesh is as it was. */
+/* Applies a delta forwards to a mesh that has not issued the delta's rows, such as one just loaded.
+ * The delta must hold the objects its edit brought in (columns, a content), as after an undo;
+ * afterwards it holds those the edit took out, the mesh has the high-water marks `issued`, indexed
+ * by kind, and undo and redo work as usual. On failure the mesh is as it was.
+ * Returns HE_CORRUPT if the mesh is not in the state the edit was made on; *refused, which may be
+ * NULL, is then the index of the first record that differs.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delta_forward(he_delta *delta, he_mesh *mesh,
                                         const uint32_t issued[HE_KIND_COUNT], size_t *refused,
                                         he_error *err);
 
-/* Before undoing or redoing a delta that replaced the content: give the other side the ids that
- * `mesh` has issued meanwhile, as dead ones, so that they are not issued again. Without, the ids
- * are as far as they were. HE_NO_MEMORY. */
+/* The caller must call this before it undoes or redoes a delta that replaced the content. It
+ * issues, as dead ids in the stored content, the ids that `mesh` has issued meanwhile, so that they
+ * are never issued again. Without it the high-water marks would fall back.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_error *err);
 
-/* Release an object of a record of this column; NULL is allowed. For core/mesh. */
+/* Frees an object of a record of this column; NULL is allowed. Only core/mesh calls this. */
 void he_object_free(uint32_t column, void *object);
-/* What one costs. */
+/* Returns the memory of such an object. */
 size_t he_object_bytes(uint32_t column, const void *object);
 
-/* Issue dead rows up to the high-water marks, indexed by kind; lower ones change nothing. For what
- * is known to have been issued on the mesh's way. After HE_NO_MEMORY some may be. */
+/* Issues dead rows up to the high-water marks, indexed by kind; marks below the present ones change
+ * nothing. A replay uses it for ids that were issued and deleted before its starting point.
+ * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
 HE_NODISCARD he_status he_mesh_issue(he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],
                                      he_error *err);
 
-/* Only while recording. */
+/* Returns the present point of the recording. The mesh must be recording. */
 he_savepoint he_delta_mark(const he_mesh *mesh);
 void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 
@@ -132,22 +139,22 @@ void he_delta_rollback(he_mesh *mesh, he_savepoint to);
 typedef struct he_changes {
     he_ids created[HE_KIND_COUNT], deleted[HE_KIND_COUNT], modified[HE_KIND_COUNT];
     he_ids parents[HE_KIND_COUNT], merged[HE_KIND_COUNT];
-    bool replaced;   /* the content as a whole: the sets are empty */
-    bool renumbered; /* and ids mean other elements than before */
-    bool others; /* what no set shows: a column or material came or went, or a value of the mesh,
-                    or a link or value of a half-edge that runs along a hole, differs. Where a
-                    column with labels came or went, or took the place of another of its name,
-                    elements are modified whose label says something else than before; where there
-                    was or is none, than the default */
+    bool replaced;   /* the whole content was replaced; the sets are empty */
+    bool renumbered; /* replaced, and ids mean other elements than before */
+    /* There are changes that no set shows: a column or material came or went, or a value of the
+     * mesh, or a link or value of a boundary half-edge, differs. When a column with labels comes,
+     * goes or replaces another of its name, `modified` has the elements whose label differs from
+     * before; an element without a column counts as having the default. */
+    bool others;
 } he_changes;
 
-/* Records `from`..`to` of `delta`, with `mesh` in the state after `to`, or, when `undone`, before
- * `from`: then created and deleted are what undoing them did. HE_HALFEDGE lists stay empty:
- * half-edges follow their edges. */
+/* Finds the net changes of the records `from`..`to` of `delta`, with `mesh` in the state after
+ * `to`. With `undone`, `mesh` is in the state before `from`, and created and deleted are what the
+ * undo did. The lists of HE_HALFEDGE stay empty: half-edges change with their edges. */
 HE_NODISCARD he_status he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from,
                                        size_t to, bool undone, he_changes *out, he_error *err);
-/* The same of several deltas, or parts of them, in the order in which they were applied, with
- * `mesh` in the state after the last: what is done by one and undone by another does not show. */
+/* Finds the net changes of several deltas, or of parts of them, in the order in which they were
+ * applied, with `mesh` in the state after the last: changes that cancel out are not listed. */
 typedef struct he_change_part {
     const he_delta *delta;
     size_t from, to;
@@ -156,7 +163,7 @@ typedef struct he_change_part {
 HE_NODISCARD he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts,
                                       size_t count, he_changes *out, he_error *err);
 void he_changes_clear(he_changes *changes);
-/* Nothing at all happened? Then no revision is made. */
+/* Is nothing changed at all? The store then makes no revision. */
 bool he_changes_none(const he_changes *changes);
 
 #endif

@@ -5,8 +5,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Text is one block of NUL-ended strings; the hash table holds indices + 1, open addressing. A
- * file may name a million groups: adding stays constant time. */
+/* The text is one block of NUL-ended strings; the hash table holds indices + 1, with open
+ * addressing. A file may name a million groups, so adding must take constant time. */
 struct he_labels {
     atomic_uint references;
     char *text;
@@ -77,7 +77,7 @@ bool he_labels_equal(const he_labels *a, const he_labels *b)
             (a->text_length == 0 || memcmp(a->text, b->text, a->text_length) == 0));
 }
 
-/* The slot that holds the string, or the free one where it belongs. */
+/* Returns the slot that holds the string, or the free one where it belongs. */
 static size_t slot_of(const he_labels *labels, const char *text, size_t length)
 {
     size_t mask = labels->slot_count - 1;

@@ -1,5 +1,5 @@
-/* layout.h - the fields behind mesh.h. Only core/ includes this: to read, use walk.h; to write,
- * write.h. */
+/* layout.h - the fields behind mesh.h. Only core/ includes this. Code that reads a mesh uses
+ * walk.h, code that writes one uses write.h. */
 #ifndef HE_MESH_LAYOUT_H
 #define HE_MESH_LAYOUT_H
 
@@ -7,13 +7,14 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* One table of rows. `issued` only grows, except in he_compact and where nothing was published. */
+/* One table of rows. `issued` only grows, except in he_compact and when an edit that was never
+ * published is rolled back. */
 typedef struct he_rows {
     uint32_t issued, live, capacity;
 } he_rows;
 
-/* Parallel arrays beat records 1.5 to 2.8 times in traversal. A half-edge's links sit in four of
- * them, indexed by half-edge: 2 * edges.capacity entries each. */
+/* Parallel arrays make traversal 1.5 to 2.8 times faster than records. A half-edge's links are in
+ * four arrays, indexed by half-edge: 2 * edges.capacity entries each. */
 typedef struct he_content {
     he_rows vertices, edges, faces;
     uint32_t boundary_halfedges;
@@ -26,15 +27,15 @@ typedef struct he_content {
     he_materials materials;
 } he_content;
 
-/* Rows issued in an attribute's domain. */
+/* Returns how many rows are issued in an attribute's domain. */
 size_t he_content_issued(const he_content *content, he_kind domain);
 
 struct he_mesh {
     he_content c;
     he_delta *delta;      /* where writes are recorded, or NULL */
-    he_watch *watch;      /* who is told of long work, or NULL */
+    he_watch *watch;      /* reports progress of long work and may cancel it; or NULL */
     bool expendable;      /* see he_mesh_expend */
-    struct he_kept *kept; /* of a mesh that stays as it is: see long_faces.h. Else NULL */
+    struct he_kept *kept; /* the caches of a mesh that is never edited (long_faces.h); else NULL */
 };
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <stdatomic.h>
 
-/* Written once, by the first thread that has made them. */
+/* The pointer is set once, by the first thread that has made the triangulations. */
 struct he_kept {
     _Atomic(he_long_faces *) long_faces;
 };

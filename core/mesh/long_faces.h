@@ -1,34 +1,36 @@
-/* long_faces.h - the triangulations of the long faces of a mesh that stays as it is, kept with it.
+/* long_faces.h - a cache of the triangulations of long faces.
  *
- * To cut a face of very many corners takes a while, and the arrays for a renderer, each format of
- * triangles and the tree of boxes of one revision all need it cut. A mesh that many readers share
- * and nobody writes to, such as a copy at a revision (replay.h), KEEPS the triangulations of its
- * faces of more than HE_EXACT_CORNERS corners from the first time that somebody wants them all.
- * he_triangulation_make takes them from there.
+ * Triangulating a face of very many corners takes long, and several readers of one revision need
+ * it: the arrays for a renderer, each format of triangles and the tree of boxes. A mesh that many
+ * threads read and none writes, such as a snapshot (replay.h), CACHES the triangulations of its
+ * faces of more than HE_EXACT_CORNERS corners the first time that a caller wants all of them.
+ * he_triangulation_make reads the cache.
  *
- * What is kept belongs to the mesh. It comes from he_mem, so it is counted. */
+ * The cache belongs to the mesh. Its memory comes from he_mem, so it is counted. */
 #ifndef HE_MESH_LONG_FACES_H
 #define HE_MESH_LONG_FACES_H
 
 #include "mesh/mesh.h"
 
-/* Lets the mesh keep triangulations. Returns HE_NO_MEMORY if memory is out. */
+/* Allows the mesh to have the cache.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_long_faces_allow(he_mesh *mesh, he_error *err);
-/* Before the mesh changes, while no one else reads it. It may keep them again afterwards. */
+/* Empties the cache. The caller must do this before the mesh changes, while no other thread reads
+ * the mesh. It may be filled again afterwards. */
 void he_long_faces_forget(he_mesh *mesh);
-/* Frees all that `allow` and `keep` made: for he_mesh_free. */
+/* Frees the cache; called by he_mesh_free. */
 void he_long_faces_clear(he_mesh *mesh);
-/* Bytes that are kept. */
+/* Returns the bytes of the cache. */
 size_t he_long_faces_bytes(const he_mesh *mesh);
 
-/* A triangulation that is kept, with HE_ANY_DIAGONALS alone; borrowed. */
+/* A cached triangulation, made with HE_ANY_DIAGONALS; borrowed. */
 typedef struct he_long_face {
-    uint32_t face, n; /* corners */
+    uint32_t face, n; /* the face, and how many corners it has */
     bool degenerate;
-    uint32_t *corners; /* three a triangle, as in triangulation.h */
+    uint32_t *corners; /* three for each triangle, as in triangulation.h */
 } he_long_face;
 
-/* In the order of faces. Made by long_faces_keep.c. */
+/* All cached triangulations, in the order of faces. long_faces_keep.c makes them. */
 typedef struct he_long_faces {
     size_t count;
     he_long_face face[];
@@ -36,13 +38,14 @@ typedef struct he_long_faces {
 
 /* Accepts NULL. */
 void he_long_faces_free(he_long_faces *all);
-/* May the mesh keep them, and does not yet? */
+/* Is the cache allowed and still empty? */
 bool he_long_faces_are_wanted(const he_mesh *mesh);
-/* Keeps `all`, which is taken, for a mesh that may keep them; where another thread was first, its
- * stay and `all` is freed. */
+/* Fills the cache with `all`, which it takes. If another thread was first, that one's cache stays
+ * and `all` is freed. The cache must be allowed. */
 void he_long_faces_put(const he_mesh *mesh, he_long_faces *all);
 
-/* NULL when the loop is not that of a face, from its stored half-edge, or none is kept. */
+/* Finds the triangulation of the face whose stored half-edge is `first`. Returns NULL if `first` is
+ * not one, or its face is not in the cache. */
 const he_long_face *he_long_faces_find(const he_mesh *mesh, he_halfedge first);
 
 #endif

@@ -1,56 +1,58 @@
-/* marks.h - attributes that edits heed.
+/* marks.h - attributes that edits respect.
  *
- * A mark is a bool attribute of one component under one of these names. Under another type or
- * number of components a name means nothing.
+ * A mark is a bool attribute of one component under one of these names. An attribute of another
+ * type or number of components is no mark.
  *
- *     feature    on edges: part of a line whose shape is to be kept
- *     locked     on vertices, edges, faces: stays as it is
- *     selected   on anything: a set that requests may name; edits do not heed it
+ *     feature    on edges: part of a feature line, whose shape is preserved
+ *     locked     on vertices, edges, faces: the element stays as it is
+ *     selected   on anything: a set that requests may name; edits ignore it
  *
- * LOCKED. Refused with HE_LOCKED_ELEMENT, naming it, is every edit that would take a locked element
- * away, move a locked vertex, give a locked edge another end, or give a locked face another corner
- * or take one from it. A vertex that moves takes its edges and faces along: lock the corners to
- * hold those in place. Cutting is allowed (edge_bisect, edge_split, edge_cut, face_split,
- * face_poke, face_triangulate, plane_split, vertex_split, vertex_split_corners): the element keeps
- * its part, and its mark; the other part has the mark too where the column's rule is copy. A vertex
- * that is made between others (on an edge that is cut, in a face) is no part of any: it has the
- * column's default, under any rule, so a lock never spreads to midpoints. What
- * becomes one with a locked element of its kind leaves no trace in its attributes: they stay.
+ * LOCKED. An edit is refused with HE_LOCKED_ELEMENT, naming the element, if it would delete a
+ * locked element, move a locked vertex, give a locked edge another end, or add a corner to a locked
+ * face or remove one. A vertex that moves takes its edges and faces along: lock the corners to hold
+ * those in place. Cutting is allowed (edge_bisect, edge_split, edge_cut, face_split, face_poke,
+ * face_triangulate, plane_split, vertex_split, vertex_split_corners): one part keeps the id and its
+ * mark; the other part has the mark too if the column's rule is copy. A new vertex between others
+ * (on an edge that is cut, inside a face) has the column's default under any rule, so a lock never
+ * spreads to midpoints. When elements of one kind are merged and one is locked, the attributes of
+ * the locked one stay unchanged.
  *
  * FEATURE. edge_flip of a feature edge is refused with HE_FEATURE_EDGE. A vertex with exactly two
- * feature edges is inside a line, one with another number, other than none, is an end or a corner
- * of lines. edge_collapse is refused, naming an edge, where
+ * feature edges is inside a feature line; one with any other number above zero is an end or a
+ * corner of lines. edge_collapse is refused, naming an edge, where
  *
- *     F1   the edge is no feature and the origin, which goes, has one;
+ *     F1   the edge is no feature and the origin, which is deleted, has a feature edge;
  *     F2   the edge is a feature and the origin is an end or a corner;
- *     F3   the other side of a triangle beside the edge goes, and is a feature;
+ *     F3   the side of a triangle beside the edge that is deleted is a feature;
  *     F4   the target would move and has a feature edge, unless the edge is one of exactly two.
  *
- * So a line can be thinned out along itself, and what is beside it be drawn onto it. A vertex moves
- * where its position comes out as another one: a point that rounds to where it is moves nothing.
+ * So a feature line can be simplified along itself, and vertices beside it can be collapsed onto
+ * it. A vertex moves if its position changes: a new point that rounds to the old position is no
+ * move.
  *
- * delaunay leaves edges alone that edge_flip would refuse. Edits whose whole purpose is to take
- * something away (face_join, face_delete), and welds, do not heed `feature`: of edges that become
- * one, the one that stays says whether it is one. */
+ * delaunay skips the edges that edge_flip would refuse. Edits that exist to delete something
+ * (face_join, face_delete), and welds, ignore `feature`: when edges are merged, the mark of the one
+ * that stays decides. */
 #ifndef HE_MESH_MARKS_H
 #define HE_MESH_MARKS_H
 
 #include "mesh/layout.h"
 
-/* The columns of a mesh that are marks, NULL where there is none. Valid until a column comes or
- * goes. */
+/* The columns of a mesh that are marks; NULL for each that it has not. Valid until a column is
+ * added or removed. */
 typedef struct he_marks {
     const he_column *feature;
-    const he_column *locked[HE_KIND_COUNT]; /* of HE_VERTEX, HE_EDGE, HE_FACE */
+    const he_column *locked[HE_KIND_COUNT]; /* indexed by HE_VERTEX, HE_EDGE, HE_FACE */
 } he_marks;
 
 /* Is it a bool column of one component with that name? */
 bool he_is_mark(const he_column *column, const char *name);
-/* The bool column of one component with that domain and name, NULL when there is none. */
+/* Finds the mark of that domain and name. Returns NULL if the mesh has none. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);
 
 bool he_marks_search(const he_mesh *m, he_marks *out);
-/* False when there are no marks edits heed. Costs one test in a mesh without attributes. */
+/* Finds the marks that edits respect. Returns false if there are none, which costs one test in a
+ * mesh without attributes. */
 static inline bool he_marks_find(const he_mesh *m, he_marks *out)
 {
     return m->c.column_count > 0 && he_marks_search(m, out);
@@ -68,10 +70,11 @@ static inline bool he_is_locked(const he_marks *marks, he_kind kind, uint32_t id
 {
     return he_is_marked(marks->locked[kind], id);
 }
-/* HE_LOCKED_ELEMENT for a locked one. An id of HE_NONE is never locked. */
+/* Returns HE_LOCKED_ELEMENT if the element is locked. An id of HE_NONE is never locked. */
 HE_NODISCARD he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id,
                                            he_error *err);
-/* The same of each edge and face about the origin of a half-edge, counter-clockwise from it. */
+/* he_require_unlocked for each edge and face around the origin of a half-edge, counter-clockwise
+ * from it. */
 HE_NODISCARD he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks,
                                                  he_halfedge first, he_error *err);
 

@@ -179,7 +179,7 @@ const he_materials *he_mesh_materials(const he_mesh *mesh)
     return &mesh->c.materials;
 }
 
-/* Columns are equal when every row is, rows of defaults that only one stores included. */
+/* Columns are equal if every row is, including default rows that only one of them stores. */
 static bool columns_equal(const he_column *a, const he_column *b)
 {
     if (a == NULL || b == NULL) {
@@ -231,7 +231,7 @@ bool he_mesh_equal_live(const he_mesh *first, const he_mesh *second)
         !same(a->face_halfedge, b->face_halfedge, f, sizeof(uint32_t))) {
         return false;
     }
-    /* The live counts agree and so do all common rows, so the rows only one has are dead. */
+    /* The live counts and all common rows are equal, so the rows that only one has are dead. */
     size_t columns = a->column_count > b->column_count ? a->column_count : b->column_count;
     for (size_t i = 0; i < columns; i++) {
         if (!columns_equal(slot(a, i), slot(b, i))) {

@@ -61,7 +61,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Handles: one kind cannot be passed for another. */
+/* Typed handles: the compiler refuses one kind where another is expected. */
 typedef struct he_vertex {
     uint32_t i;
 } he_vertex;
@@ -77,7 +77,7 @@ typedef struct he_face {
 
 #define HE_NONE     UINT32_MAX             /* absent: the face of a boundary half-edge */
 #define HE_DEAD     (UINT32_MAX - 1u)      /* what every link of a dead row holds */
-#define HE_MAX_ROWS (UINT32_MAX / 2u - 1u) /* of vertices, edges, faces: 2e + 1 must fit */
+#define HE_MAX_ROWS (UINT32_MAX / 2u - 1u) /* most rows of a table: 2e + 1 must fit */
 
 typedef struct he_vec3 {
     double x, y, z;
@@ -88,53 +88,56 @@ typedef struct he_column he_column;
 typedef struct he_materials he_materials;
 typedef struct he_delta he_delta;
 
-/* An empty mesh, or NULL when memory is out. */
+/* Returns an empty mesh, or NULL if memory is out. */
 he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
-/* An independent copy with the same ids, dead rows and attributes; nothing is recorded in it. */
+/* Makes an independent copy with equal ids, dead rows and attributes; it records nothing. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
-/* The same under a watch (which may be NULL), that then is the copy's. */
+/* he_mesh_copy with a watch (which may be NULL), which afterwards belongs to the copy. */
 HE_NODISCARD he_status he_mesh_copy_watched(const he_mesh *mesh, he_watch *watch, he_mesh **out,
                                             he_error *err);
-/* Do two meshes hold the same: every issued row of every column, and the high-water marks? */
+/* Are two meshes equal: every issued row of every column, and the high-water marks? */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
-/* The same without the rows only one of them has issued, if those are dead. */
+/* he_mesh_equal that ignores rows which only one of them has issued, if those are dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Tell `watch` about all long work with this mesh, which may then fail with HE_CANCELLED; NULL
- * stops. For a mesh that nobody else uses; the watch outlives its use. */
+/* Steps `watch` during all long work with this mesh, which may then fail with HE_CANCELLED; NULL
+ * removes the watch. No other thread may use the mesh, and the watch must outlive its use. */
 void he_mesh_watch(he_mesh *mesh, he_watch *watch);
-/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled: a
- * cancelled edit then leaves it half done, for taking back much work takes about as long as doing
- * it. Any other failure leaves it as it was, as always. */
+/* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. A
+ * cancelled edit then leaves it half edited, because a rollback takes about as long as the edit
+ * did. Any other failure leaves it as it was. */
 void he_mesh_expend(he_mesh *mesh);
 
-/* What a mesh costs, counted from the capacities of its columns. */
+/* Returns the memory of a mesh, counted from the capacities of its columns. */
 size_t he_mesh_bytes(const he_mesh *mesh);
 
-/* Live elements. Half-edges are twice the edges. */
+/* Return the numbers of live elements. There are twice as many half-edges as edges. */
 uint32_t he_mesh_vertices(const he_mesh *mesh);
 uint32_t he_mesh_edges(const he_mesh *mesh);
 uint32_t he_mesh_faces(const he_mesh *mesh);
 uint32_t he_mesh_boundary_halfedges(const he_mesh *mesh);
 uint32_t he_mesh_count(const he_mesh *mesh, he_kind kind);
-/* The high-water mark: how many ids of this kind were ever issued. */
+/* Returns the high-water mark: how many ids of this kind were ever issued. */
 uint32_t he_mesh_issued(const he_mesh *mesh, he_kind kind);
 bool he_mesh_is_live(const he_mesh *mesh, he_kind kind, uint32_t id);
-/* The first live id from `from` on, HE_NONE where there is none. */
+/* Returns the first live id at or after `from`, HE_NONE if there is none. */
 uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
-/* HE_OK, HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT with the element named. */
+/* Returns HE_OK if the element is live; an error names the element.
+ * Returns HE_NO_SUCH_ELEMENT if the id was never issued.
+ * Returns HE_DELETED_ELEMENT if the element is dead. */
 HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
                                        he_error *err);
 
-/* Attribute columns, in the order they were added; NULL where none has that domain and name. */
+/* Attribute columns, in the order they were added. `find` returns NULL if none has that domain and
+ * name. */
 size_t he_mesh_columns(const he_mesh *mesh);
-/* The i-th slot, NULL when its column was dropped. */
+/* Returns the column of slot i, NULL if that was dropped. */
 const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
-/* Where a column of the mesh stands among its slots. */
+/* Returns the slot of a column of the mesh. */
 size_t he_mesh_column_slot(const he_mesh *mesh, const he_column *column);
-/* The table of materials; valid until one comes or goes. */
+/* Returns the table of materials, valid until a material is added or removed. */
 const he_materials *he_mesh_materials(const he_mesh *mesh);
 
 #endif

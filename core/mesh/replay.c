@@ -5,11 +5,11 @@
 
 #include <assert.h>
 
-/* What one delta's crossing took out of the copy, in the order of the delta's objects. */
+/* The objects that crossing one delta took out of the copy, in the order of the delta's objects. */
 typedef struct other_side {
     uint64_t key;
     void **objects;
-    uint32_t *columns; /* of the record that names each */
+    uint32_t *columns; /* for each object, the column of the record that names it */
     size_t count;
     struct other_side *next;
 } other_side;
@@ -101,7 +101,7 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     return he_content_copy(object, NULL, copy, err);
 }
 
-/* Room for copies of that many objects; NULL when memory is out. */
+/* Makes room for copies of `count` objects. Returns NULL if memory is out. */
 static other_side *side_new(uint64_t key, size_t count)
 {
     other_side *side = he_mem_alloc(sizeof *side);
@@ -117,7 +117,7 @@ static other_side *side_new(uint64_t key, size_t count)
     return side;
 }
 
-/* Copies of what the delta holds. */
+/* Copies the objects of a delta. */
 static he_status side_of(const he_delta *delta, uint64_t key, other_side **out, he_error *err)
 {
     other_side *side = side_new(key, delta->object_count);
@@ -151,7 +151,7 @@ static other_side *find_side(const he_replay *replay, uint64_t key)
     return side;
 }
 
-/* The objects that crossing will exchange with the copy; NULL where the delta has none. */
+/* Finds the objects that the crossing will exchange with the copy; NULL if the delta has none. */
 static he_status require_side(he_replay *replay, const he_crossing *crossing, void ***objects,
                               he_error *err)
 {
@@ -175,7 +175,8 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     return HE_OK;
 }
 
-/* A content that is brought in has the marks it had when it was taken out. */
+/* Moves backwards. A content that comes back has the high-water marks of when it was taken out, so
+ * rows are issued or taken back until they are those of the crossing. */
 static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
 {
     he_content_apply(c, crossing->delta, 0, crossing->delta->count, true, objects);
@@ -198,6 +199,6 @@ he_status he_replay_cross(he_replay *replay, const he_crossing *crossing, he_err
     status = crossing->undo
                  ? back(c, crossing, objects, err)
                  : he_content_forward(c, crossing->delta, objects, crossing->issued, NULL, err);
-    assert(status != HE_CORRUPT); /* the log knows where the copy is */
+    assert(status != HE_CORRUPT); /* the copy is always at the point that the log expects */
     return status;
 }

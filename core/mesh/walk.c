@@ -44,8 +44,8 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
-/* A ring is turned about both ways at once, half of it each: where links come from memory one after
- * another that takes half the time. Has all of it been seen? */
+/* A ring is walked in both directions at once, half of it each: when links come from memory one
+ * after another that halves the waiting time. Returns whether the whole ring has been visited. */
 static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
 {
     if (up->i == down->i) {
@@ -59,8 +59,8 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-/* Rounds about the first vertex before the second one's ring is looked at too, which is as far away
- * in memory and seldom needed. */
+/* How many steps around the first vertex are made before the second vertex's ring is searched too,
+ * which is as far away in memory and seldom needed. */
 enum { ALONE = 8 };
 
 static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)

@@ -1,5 +1,5 @@
-/* walk.h - reading a mesh, inline. The caller passes live elements of this mesh: these functions
- * check nothing. Ids that come from outside go through he_mesh_require first. */
+/* walk.h - inline functions that read a mesh. The caller passes live elements of this mesh: these
+ * functions check nothing. Ids from outside go through he_mesh_require first. */
 #ifndef HE_MESH_WALK_H
 #define HE_MESH_WALK_H
 
@@ -13,7 +13,7 @@ static inline he_edge he_edge_of(he_halfedge h)
 {
     return (he_edge){h.i >> 1};
 }
-/* Half-edge 2e (side 0) or 2e + 1 (side 1). */
+/* Returns half-edge 2e (side 0) or 2e + 1 (side 1). */
 static inline he_halfedge he_edge_halfedge(he_edge e, unsigned side)
 {
     return (he_halfedge){2u * e.i + side};
@@ -34,12 +34,12 @@ static inline he_vertex he_target(const he_mesh *m, he_halfedge h)
 {
     return (he_vertex){m->c.origin[h.i ^ 1u]};
 }
-/* HE_NONE on a boundary half-edge. */
+/* Returns HE_NONE for a boundary half-edge. */
 static inline he_face he_face_of(const he_mesh *m, he_halfedge h)
 {
     return (he_face){m->c.face[h.i]};
 }
-/* HE_NONE at an isolated vertex. */
+/* Returns HE_NONE for an isolated vertex. */
 static inline he_halfedge he_vertex_halfedge(const he_mesh *m, he_vertex v)
 {
     return (he_halfedge){m->c.vertex_halfedge[v.i]};
@@ -53,21 +53,21 @@ static inline he_vec3 he_position(const he_mesh *m, he_vertex v)
     return m->c.position[v.i];
 }
 
-/* The next half-edge that leaves the same origin. */
+/* Returns the next half-edge counter-clockwise that leaves the same origin. */
 static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
 {
     return he_twin(he_prev(m, h));
 }
 
-/* The one before it in that order. */
+/* Returns the half-edge that precedes h in counter-clockwise order around their origin. */
 static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
 {
     return (he_halfedge){m->c.next[h.i ^ 1u]};
 }
 
-/* An edit in a random place of a large mesh waits for memory and for little else. These ask for the
- * rows it will read all at once, so that it waits once and not for one after another. Any id may be
- * given, and links may be dead. */
+/* An edit at a random place of a large mesh spends most of its time waiting for memory. The
+ * prefetch functions request all the rows it will read at once, so that it waits once and not for
+ * each row. They accept any id, and dead links. */
 static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
 {
     if (h.i < 2u * m->c.edges.issued) {
@@ -77,7 +77,8 @@ static inline void he_prefetch_links(const he_mesh *m, he_halfedge h)
         __builtin_prefetch(&m->c.face[h.i], 1);
     }
 }
-/* The half-edges before and after the two of an edge, its faces, and what leaves its ends. */
+/* Prefetches the half-edges before and after the two of an edge, its faces, and the stored
+ * half-edges of its ends. */
 static inline void he_prefetch_about(const he_mesh *m, he_edge e)
 {
     for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
@@ -92,7 +93,7 @@ static inline void he_prefetch_about(const he_mesh *m, he_edge e)
     }
 }
 
-/* The ends' positions. */
+/* Prefetches the positions of an edge's ends. */
 static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
 {
     for (uint32_t h = 2u * e.i; h <= 2u * e.i + 1u && e.i < m->c.edges.issued; h++) {
@@ -102,8 +103,8 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
-/* For whoever edits one edge after another and knows which come: `next` at once after this edit,
- * `soon` after that. The waiting for them happens during the edits before. */
+/* Prefetches for a loop over edges that knows which come next: `next` directly after the present
+ * edit, `soon` after that one. Memory is then read during the edits before. */
 static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
 {
     he_prefetch_links(m, he_edge_halfedge(soon, 0));
@@ -127,7 +128,7 @@ static inline bool he_is_isolated(const he_mesh *m, he_vertex v)
 {
     return m->c.vertex_halfedge[v.i] == HE_NONE;
 }
-/* True of an isolated vertex too. */
+/* An isolated vertex counts as boundary too. */
 static inline bool he_is_boundary_vertex(const he_mesh *m, he_vertex v)
 {
     uint32_t h = m->c.vertex_halfedge[v.i];
@@ -152,20 +153,20 @@ static inline bool he_is_triangle(const he_mesh *m, he_halfedge h)
     return !he_is_boundary_halfedge(m, h) && m->c.next[m->c.next[m->c.next[h.i]]] == h.i;
 }
 
-/* Edges at a vertex; linear in the answer. */
+/* Returns the number of edges at a vertex, in time linear in it. */
 uint32_t he_vertex_degree(const he_mesh *m, he_vertex v);
-/* Corners of a face; linear in the answer. */
+/* Returns the number of corners of a face, in time linear in it. */
 uint32_t he_face_degree(const he_mesh *m, he_face f);
-/* Half-edges of the loop of h: of a face, or of a hole; linear in the answer. */
+/* Returns the number of half-edges in the loop of h, of a face or a hole, in time linear in it. */
 uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
-/* Fans at a vertex: 0 isolated, 1 manifold, more at a bow-tie. */
+/* Returns the number of fans at a vertex: 0 if isolated, 1 if manifold, more at a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
-/* The half-edge from a to b, HE_NONE when no edge joins them. Turns about a, and where that takes
- * long about b in step with it, so it costs the smaller degree. */
+/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches the ring of a,
+ * and if that is long the ring of b in turn with it, so it costs the smaller degree. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
-/* The same from the origin of a half-edge. */
+/* he_find_halfedge from the origin of a half-edge. */
 he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to);
-/* The same, adding what it cost: for whoever limits that. */
+/* he_find_halfedge that adds its cost to `*steps`, for callers with a budget. */
 he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "mesh/content.h"
 
-/* Words of 32 bits in one row of a column; the last may be short. */
+/* Returns the 32-bit words of one row of a column; the last word may be short. */
 static size_t row_words(const he_column *column)
 {
     return (column->row_bytes + 3u) / 4u;
@@ -117,7 +117,7 @@ he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
     return status;
 }
 
-/* Record the words of a row that differ. */
+/* Records the words of a row that differ. */
 static void record_row(he_mesh *m, uint32_t column, uint32_t row, const void *stored,
                        const void *value, size_t row_bytes)
 {
@@ -192,7 +192,7 @@ void he_delete_face(he_mesh *m, he_face f)
     m->c.faces.live--;
 }
 
-/* A slot that is free, or the one behind the last. */
+/* Returns the first free slot, or the slot after the last. */
 static size_t free_slot(const he_content *c)
 {
     size_t slot = 0;
@@ -217,7 +217,7 @@ static he_status slot_for_column(he_mesh *m, he_error *err)
     return m->delta == NULL ? HE_OK : he_delta_reserve(m->delta, 1, 1, err);
 }
 
-/* The record's object is what stands on the other side of the change. */
+/* Records a change of an object; the record owns the object that the mesh does not hold. */
 static void record_object(he_mesh *m, uint32_t column, uint32_t row, uint32_t after, void *object)
 {
     he_delta *d = m->delta;

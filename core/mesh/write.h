@@ -17,19 +17,19 @@
 #include <assert.h>
 #include <string.h>
 
-/* What COMMIT will use at most. `records` is beyond those for new rows, which are added here:
- * links, position and attributes of each. */
+/* The most that COMMIT will use. he_reserve adds the records of new rows itself: the links,
+ * position and attributes of each. */
 typedef struct he_need {
     uint32_t vertices, edges, faces;
     size_t deleted_vertices, deleted_edges, deleted_faces; /* rows that will die */
     size_t links;      /* link words written on rows that stay */
     size_t positions;  /* positions written on rows that stay */
     size_t attributes; /* attribute rows written on rows that stay (of every column) */
-    size_t lineage;    /* parents and merges noted */
+    size_t lineage;    /* records of parents and merges */
 } he_need;
 
-/* Records COMMIT can make at most of a new or dying row, its attributes aside: each link once more
- * than it has links, since an edit may write a link twice. */
+/* The most records that COMMIT makes of a new or dying row, without its attributes: one more for
+ * each link than it has links, since an edit may write a link twice. */
 enum {
     HE_POSITION_RECORDS = sizeof(he_vec3) / 4,
     HE_VERTEX_RECORDS = 2 + HE_POSITION_RECORDS,
@@ -37,10 +37,12 @@ enum {
     HE_FACE_RECORDS = 2
 };
 
-/* HE_NO_MEMORY or HE_IDS_EXHAUSTED leave the mesh as it was. Most edits find room and go through
- * no call. */
+/* The slow part of he_reserve: most edits find enough room without a call. On failure the mesh is
+ * as it was.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err);
-/* Is there room already, in a mesh without attributes? */
+/* Does the mesh have no attributes, and enough room already? */
 static inline bool he_has_room(const he_mesh *m, const he_need *need)
 {
     const he_content *c = &m->c;
@@ -60,8 +62,9 @@ static inline he_status he_reserve(he_mesh *m, he_need need, he_error *err)
     return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
 }
 
-/* Room for `count` records that the caller fills, NULL while nothing is recorded. Writes that
- * belong together ask once: each count depends on the one before. */
+/* Takes `count` records that the caller fills. Returns NULL while nothing is recorded. Writes that
+ * belong together take theirs in one call, because separate calls would each wait for the count
+ * that the call before has written. */
 static inline he_record *he_record_take(he_mesh *m, size_t count)
 {
     he_delta *d = m->delta;
@@ -120,7 +123,7 @@ static inline void he_set_face(he_mesh *m, he_halfedge h, he_face f)
     m->c.boundary_halfedges += (uint32_t)(f.i == HE_NONE) - (uint32_t)(before == HE_NONE);
     m->c.face[h.i] = f.i;
 }
-/* All of a half-edge: of a new one, or the same dead value everywhere. */
+/* Writes all links of a half-edge, either of a new one or of one that dies. */
 static inline void he_set_halfedge(he_mesh *m, he_halfedge h, he_halfedge next, he_halfedge prev,
                                    he_vertex origin, he_face f)
 {
@@ -157,10 +160,10 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
     }
     m->c.position[v.i] = position;
 }
-/* Copy row_bytes from `value` into a row of attribute slot i. */
+/* Copies row_bytes from `value` into a row of attribute slot i. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* The dead value in a row of a link table: what a row holds when it is issued. */
+/* Writes the dead value to a row of a link table, as a row has when it is issued. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -177,7 +180,7 @@ static inline void he_clear_face(he_content *c, uint32_t f)
     c->face_halfedge[f] = HE_DEAD;
 }
 
-/* Issue default rows in every attribute, as far as its domain has; he_reserve made room. */
+/* Issues default rows in every attribute, as many as its domain has; he_reserve made room. */
 void he_issue_values(he_mesh *m);
 static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
 {
@@ -190,7 +193,7 @@ static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
     return row;
 }
 
-/* A new row: dead in every link column until the caller has written them, attributes at their
+/* Issues a row: dead in every link column until the caller writes them, attributes at their
  * default. he_reserve has made room. */
 static inline he_vertex he_new_vertex(he_mesh *m)
 {
@@ -210,12 +213,13 @@ static inline he_face he_new_face(he_mesh *m)
     he_clear_face(&m->c, f);
     return (he_face){f};
 }
-/* Write the dead value everywhere in the row. Nobody may still link to it. */
+/* Writes the dead value everywhere in the row. No live element may still link to it. */
 void he_delete_vertex(he_mesh *m, he_vertex v);
 void he_delete_edge(he_mesh *m, he_edge e);
 void he_delete_face(he_mesh *m, he_face f);
 
-/* Where an element came from, and what a deleted one became part of. Only noted while recording. */
+/* Record which element a new one came from, and which one a deleted one was merged into. Without a
+ * recording they do nothing. */
 static inline void he_note_parent(he_mesh *m, he_kind kind, uint32_t child, uint32_t parent)
 {
     he_record_word(m, HE_COL_PARENT, (uint32_t)kind, child, parent, 0);
@@ -225,10 +229,10 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
     he_record_word(m, HE_COL_MERGED, (uint32_t)kind, gone, into, 0);
 }
 
-/* Carry the attributes of every column in a domain by its rule. Kinds: HE_VERTEX, HE_HALFEDGE,
- * HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or leaves the default;
- * `copy` copies unless the rule is default. Without such columns these do nothing, and cost one
- * test where there are none at all. */
+/* Set the attributes of a row in every column of a domain by the column's rule. Kinds: HE_VERTEX,
+ * HE_HALFEDGE, HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or leaves the
+ * default; `copy` copies unless the rule is default. Without such columns these do nothing, and in
+ * a mesh without attributes they cost one test. */
 void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
 static inline void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b,
                                     double t)
@@ -244,10 +248,10 @@ static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t
         he_values_copy(m, kind, to, from);
     }
 }
-/* The mean of n rows; copies the first where the rule is copy. */
+/* Sets a row to the mean of n rows; copies the first if the rule is copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* Interpolated columns become linear from `other` (t = 0) to what `row` had (t = 1), all others
- * keep what it had. */
+/* Interpolated columns become linear from `other` (t = 0) to the value of `row` (t = 1); all other
+ * columns keep the value of `row`. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
 static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
 {
@@ -255,7 +259,7 @@ static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t
         he_values_mix(m, kind, row, other, t);
     }
 }
-/* A row that stays takes in one that goes: mixed likewise, unless the one that stays is locked. */
+/* Merges the values of row `gone` into row `into` by he_values_mix, unless `into` is locked. */
 void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
 static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
 {
@@ -263,7 +267,7 @@ static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint3
         he_values_merge(m, kind, into, gone, t);
     }
 }
-/* The value itself, whatever the rule: a corner that changes its half-edge. */
+/* Copies the values whatever the rule, for a corner that changes its half-edge. */
 void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
 static inline void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
@@ -271,33 +275,36 @@ static inline void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t
         he_values_move(m, kind, to, from);
     }
 }
-/* Are there columns in this domain? Lets a hot edit skip the calls. */
+/* Are there columns in this domain? Lets a frequent edit skip the calls. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
-/* Make ready for he_set_attribute of so many rows of one column. HE_NO_MEMORY. */
+/* Makes room for he_set_attribute on `rows` rows of one column.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
 
-/* Structure of columns, recorded. `takes`: the column belongs to the mesh from success on. It must
- * have as many rows as the domain has issued. It gets the first free slot: history is linear, so a
- * record that names a slot is only applied while the same column is there. */
+/* Adding and dropping columns, recorded. On success the mesh owns `takes`, which must have as many
+ * rows as the domain has issued. It gets the first free slot: history is linear, so a record that
+ * names a slot is only applied while its column is there. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
-/* Put a material in a slot, in the place of the one that is there; NULL only takes that out. A slot
- * that is the first behind all is made. No other row has its name. `takes` is the mesh's from
- * success on. HE_LIMIT beyond HE_MATERIALS, HE_NO_MEMORY. */
+/* Puts a material in a slot, replacing the one that is there; NULL only removes that. The slot may
+ * be the first one after the last, which is then made. No other row may have the name. On success
+ * the mesh owns `takes`.
+ * Returns HE_LIMIT if there would be more than HE_MATERIALS slots.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,
                                             he_error *err);
-/* Swap the whole content with `takes` (emptied and freed on success), recorded as one replace that
- * keeps the old arrays; without recording they are freed. HE_KEEPS_IDS promises that every id
- * issued before is issued in `takes` and means the same element, or a dead one, and that columns
- * stay in their slots: such a replace can be undone and done again among other edits,
- * he_delta_ready permitting. */
+/* Swaps the whole content with `takes` (emptied and freed on success), recorded as one replacement
+ * that keeps the old arrays; without recording they are freed. HE_KEEPS_IDS promises that every id
+ * issued before is issued in `takes` and means the same element or a dead one, and that columns
+ * keep their slots: such a replacement can be undone and redone among other edits, after
+ * he_delta_ready. */
 typedef enum he_replacing { HE_KEEPS_IDS, HE_RENUMBERS } he_replacing;
 HE_NODISCARD he_status he_mesh_replace(he_mesh *m, he_mesh *takes, he_replacing how, he_error *err);
 
-/* A bracket around several edits that succeed or fail as one. While no delta is attached it brings
- * its own, so that it can roll back. he_edit_end returns `status` unchanged. A cancelled edit of an
- * expendable mesh (he_mesh_expend) is not rolled back. */
+/* A bracket around several edits that succeed or fail as one. If no delta is attached it attaches
+ * one of its own, so that it can roll back. he_edit_end returns `status` unchanged. A cancelled
+ * edit of an expendable mesh (he_mesh_expend) is not rolled back. */
 typedef struct he_bracket {
     he_delta *own;
     he_savepoint mark;
