@@ -37,7 +37,7 @@ he_status he_report_fail(const he_report *report, he_error *err)
                    (unsigned long long)(report->total - 1));
 }
 
-/* Corner rows of a soup column become half-edge rows. */
+/* Makes a half-edge column from a corner column of the soup. */
 static he_status build_corners(const he_column *from, size_t halfedges, const uint32_t *halfedge,
                                size_t corners, he_column **out, he_error *err)
 {
@@ -53,7 +53,7 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
     return HE_OK;
 }
 
-/* The columns whose rows keep their numbers are moved where they may be, which cannot fail, and so
+/* Columns whose rows keep their numbers are moved if that is allowed. Moving cannot fail, so it
  * comes last. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
@@ -92,7 +92,7 @@ static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedg
     return HE_OK;
 }
 
-/* Positions are moved when the soup may be emptied: they are the largest part of it. */
+/* Moves the positions if the soup may be emptied: they are the largest part of it. */
 static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_error *err)
 {
     size_t count = soup->vertex_count;
@@ -125,7 +125,7 @@ static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_erro
     return HE_OK;
 }
 
-/* Give back positions that build_vertices took. */
+/* Gives back the positions that build_vertices took. */
 static void return_positions(he_soup *soup, he_content *k)
 {
     if (soup->positions == NULL && k->position != NULL) {
@@ -138,7 +138,7 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
                              he_content *k, he_error *err)
 {
-    /* Memory that has been written to is worth keeping: the system clears each fresh page. */
+    /* Memory that has been written to is reused: the system clears each fresh page on first use. */
     k->next = turns->spare;
     turns->spare = NULL;
     he_status status = he_content_reserve_edges(k, turns->edges, err);
@@ -154,7 +154,7 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
-/* All that the structure cannot hold is found: faces by themselves, then edges and fans. */
+/* Finds all defects: invalid faces first, then edges and fans. */
 static he_status find_turns(const he_soup *soup, he_corners *corners, he_turns *turns,
                             he_report *report, uint64_t *total, he_error *err)
 {

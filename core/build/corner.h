@@ -1,4 +1,4 @@
-/* corner.h - the corners of a soup's faces by their numbers. For core/mesh only. */
+/* corner.h - finds the face and the neighbours of a corner by its number. For core/build only. */
 #ifndef HE_BUILD_CORNER_H
 #define HE_BUILD_CORNER_H
 
@@ -7,18 +7,19 @@
 
 typedef struct he_corners {
     const he_soup *soup;
-    uint32_t degree;   /* of all faces where that is 3 or 4, else 0 */
-    uint32_t *face_of; /* of each corner where `degree` is 0, else NULL */
+    uint32_t degree;   /* number of corners of every face if all have 3 or all have 4, else 0 */
+    uint32_t *face_of; /* face of each corner if `degree` is 0, else NULL */
 } he_corners;
 
 typedef struct he_corner {
-    uint32_t face, next, prev; /* the corners beside it in its face */
+    uint32_t face, next, prev; /* its face, and the corners after and before it in that face */
 } he_corner;
 
 HE_NODISCARD he_status he_corners_init(const he_soup *soup, he_corners *out, he_error *err);
 void he_corners_clear(he_corners *corners);
 
-/* `degree` is that of `all`, but a constant where a caller has a loop for each: to divide by. */
+/* `degree` must equal all->degree. Callers that have a loop for each degree pass a constant, so
+ * that the division is by a constant. */
 static inline he_corner he_corner_find(const he_corners *all, uint32_t c, uint32_t degree)
 {
     uint32_t face = degree != 0 ? c / degree : all->face_of[c];

@@ -18,11 +18,11 @@ static bool holds_default(const he_column *column, size_t row)
 typedef struct joining {
     he_soup *soup;
     const uint32_t *into, *from;
-    bool *has_corners; /* of each vertex */
+    bool *has_corners; /* for each vertex: does a corner use it? */
 } joining;
 
-/* Does vertex v, which has corners, say anything else than the one it becomes part of? Where the
- * rule is that new elements get the default, those that hold it say nothing. */
+/* Does vertex v, which has corners, have another value than the vertex it is joined to? If the rule
+ * is that new elements get the default, a default counts as no value. */
 static bool differs(const joining *j, const he_column *column, uint32_t v)
 {
     const unsigned char *value = he_column_value(column, v);
@@ -50,7 +50,7 @@ static he_column *find_column(const he_soup *soup, he_kind domain, const char *n
     return NULL;
 }
 
-/* Have the corners of vertices that go the values of these? */
+/* Do the corners of vertices that are joined have the values of those vertices already? */
 static bool is_kept(const joining *j, const he_column *corners, const he_column *column)
 {
     const he_soup *soup = j->soup;
@@ -63,7 +63,7 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* It takes the place of the vertex attribute, or is added to the list. */
+/* The column replaces the vertex attribute, or is added if that one stays. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {
@@ -104,7 +104,7 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     return status;
 }
 
-/* Does a vertex without corners have a value? */
+/* Does a vertex without corners have a value? Then the vertex attribute stays too. */
 static bool is_needed(const joining *j, const he_column *column)
 {
     size_t v = 0;

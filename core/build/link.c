@@ -3,22 +3,22 @@
 #include "base/exec.h"
 #include "build/pair.h"
 
-/* Passes over corners, edges, vertices. Each writes rows one after another and reads what lies
- * elsewhere: where ids are in no order, a word that is read from far away costs a third of one that
- * is written there. Until it gets its links, next[h] is the corner that half-edge h leaves. */
+/* Passes over corners, edges and vertices. Each writes rows in order and reads at random: where ids
+ * are in no spatial order, a random read costs a third of a random write. Until it gets its links,
+ * next[h] is the corner that half-edge h leaves. */
 typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
     he_content *c;
-    uint32_t *turn;  /* of each corner; from the second pass on its half-edge */
-    uint32_t *first; /* of each vertex, its first corner */
+    uint32_t *turn;  /* turn of each corner; from the second pass on, its half-edge */
+    uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
-    uint32_t edges[HE_MOST_LANES]; /* first numbers of edges of the lanes */
+    uint32_t edges[HE_MOST_LANES]; /* for each lane, the number of its first edge */
 } linking;
 
 /* --- numbers of edges ------------------------------------------------------------------------- */
 
-/* The first of an edge's corners is the one that numbers it. */
+/* Is it the first corner of its edge, by which the edge is numbered? */
 static inline bool is_first(uint32_t corner, uint32_t mate)
 {
     return mate == HE_NONE || mate > corner;
@@ -60,7 +60,7 @@ static he_status number_edges(void *context, uint32_t lane, size_t from, size_t 
     return HE_OK;
 }
 
-/* Counts of lanes become the numbers they begin at. */
+/* Turns the counts of the lanes into the numbers at which they begin. */
 static void place_edges(linking *l)
 {
     uint32_t at = 0;
@@ -160,7 +160,7 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
-/* The boundary half-edges, of which there are `count`. */
+/* Lists the `count` boundary half-edges. */
 static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
 {
     for (uint32_t h = 1; count > 0; h += 2) {
@@ -171,8 +171,8 @@ static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
     }
 }
 
-/* Boundary half-edges become those that their origins store, and prev chains the ones that leave
- * one vertex. */
+/* Stores boundary half-edges as halfedge(v) of their origins, and chains by prev the ones that
+ * leave one vertex. */
 static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -182,9 +182,9 @@ static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
     }
 }
 
-/* At a bow-tie, whose outgoing boundary half-edges are chained by prev from `head`: let each fan be
- * followed, counter-clockwise, by the next one of the chain. Turning clockwise inside a fan from
- * its outgoing boundary half-edge leads to its incoming one. */
+/* Links the fans of a bow-tie, whose outgoing boundary half-edges are chained by prev from `head`:
+ * each fan is followed, counter-clockwise, by the next one of the chain. Turning clockwise inside a
+ * fan from its outgoing boundary half-edge leads to its incoming one. */
 static void link_bowtie(he_content *k, uint32_t head)
 {
     uint32_t out = head;

@@ -80,8 +80,8 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner filed under the smaller vertex of its edge. The top bit of `far` says that it runs from
- * the larger vertex to the smaller. */
+/* A corner, sorted under the smaller vertex of its edge. The top bit of `far` says that it runs
+ * from the larger vertex to the smaller. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;
@@ -124,14 +124,14 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    uint32_t *mate; /* NULL: number the edges instead */
-    uint32_t *edge; /* of each corner, its number */
+    uint32_t *mate; /* if NULL, edges are numbered instead */
+    uint32_t *edge; /* number of each corner's edge */
     size_t edges;
     he_report *report;
     uint64_t *total;
 } pairing;
 
-/* Nobody before entry `a` runs along its edge. */
+/* Entry `a` is the first along its edge. */
 static void begin_edge(pairing *p, const filed *a)
 {
     if (p->mate == NULL) {
@@ -140,7 +140,7 @@ static void begin_edge(pairing *p, const filed *a)
     p->edges++;
 }
 
-/* Entry `b` runs along the same edge as the earlier entry `a`, the first of it. */
+/* Entry `b` runs along one edge with the earlier entry `a`, which is the first of that edge. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
@@ -180,8 +180,9 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
-/* The hub of a fan: `first` remembers, for every far vertex, where it was seen first. Values left
- * by other buckets do not point into this one, so it needs no clearing. */
+/* Pairs the entries of a vertex of high degree: `first` remembers for every far vertex the entry
+ * that named it first. Values left by other vertices do not point to entries of this one, so the
+ * array needs no clearing. */
 static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t begin, uint32_t end,
                        uint32_t *first)
 {
@@ -201,7 +202,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Meet all corners of each edge, in the order of the soup. */
+/* Visits all corners of each edge, in the order of the soup. */
 static he_status visit_edges(pairing *p, he_error *err)
 {
     const he_soup *soup = p->soup;
@@ -226,7 +227,7 @@ static he_status visit_edges(pairing *p, he_error *err)
         if (status != HE_OK) {
             goto out;
         }
-        /* Where ids are in no order what is written lies far apart: ask for it in time. */
+        /* Prefetch: where ids are in no spatial order, the words to be written lie far apart. */
         for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
             __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }

@@ -18,7 +18,7 @@ static bool is_proper(const he_soup *soup, size_t f, uint32_t *stamp)
            he_soup_find_repeat(soup->corners + begin, count, stamp, (uint32_t)f + 1) == count;
 }
 
-/* The proper faces, and which ones they are; positions are lent. */
+/* Copies the valid faces, and lists which ones they are. The positions are borrowed. */
 static he_status copy_proper(const he_soup *soup, he_soup *out, he_ids *from, he_error *err)
 {
     uint32_t *stamp = he_mem_zero(soup->vertex_count + 1, sizeof *stamp);
@@ -51,7 +51,7 @@ static he_status check(const he_soup *proper, he_report *report, uint64_t *total
     return status;
 }
 
-/* The defects of `rest`, with the numbers that their faces have in the soup. */
+/* Appends the defects of `rest`, with the face numbers of the whole soup. */
 static void append(const he_report *rest, const he_ids *from, he_report *report, uint64_t *total)
 {
     uint64_t told = 0;

@@ -1,4 +1,4 @@
-/* Filling a polygon soup, within its limits: he_soup of build.h. */
+/* Fills a polygon soup within its limits: he_soup of build.h. */
 #include "build/build.h"
 
 #include <math.h>
@@ -32,7 +32,7 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* Make room for one more row of an array; `most` is what the limits allow. */
+/* Makes room for one more row of an array; `most` is what the limits allow. */
 static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity, size_t count,
                       uint64_t limit, uint64_t most, const char *what, he_error *err)
 {

@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* What a part found that is to be told. */
+/* What a part has found, as flags. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
 enum { SMALL_VERTEX = 24 };
@@ -15,18 +15,19 @@ typedef struct turning {
     const he_soup *soup;
     const he_corners *corners;
     uint32_t lanes;
-    /* A row of all vertices for each lane: first how many corners, then where the next one goes. */
+    /* For each lane a row with one word for each vertex: first how many corners it has there, then
+     * where the next one goes. */
     uint32_t *places;
-    uint32_t *filed; /* corners, vertex by vertex */
+    uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *turn, *first;
-    unsigned char *found; /* by each part: the flags above */
-    size_t *matched;      /* by each part: corners with a turn */
-    unsigned all;         /* found by any */
+    unsigned char *found; /* the flags above, for each part */
+    size_t *matched;      /* corners with a turn, for each part */
+    unsigned all;         /* flags that any part has found */
 } turning;
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* `count` is a constant where this is inlined for the usual ones. */
+/* `count` is a constant where this is inlined for triangles and quads. */
 static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
@@ -39,7 +40,7 @@ static inline unsigned check_small(const uint32_t *corners, uint32_t count, size
     return BAD_FACE * bad;
 }
 
-/* The corners of large faces are left to he_soup_check_faces, their indices are not. */
+/* Checks a face, except for repeated corners of large faces, which he_soup_check_faces finds. */
 static unsigned check_face(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
@@ -52,7 +53,7 @@ static unsigned check_face(const uint32_t *corners, uint32_t count, size_t verti
     return bad != 0 ? BAD_FACE : LARGE_FACE;
 }
 
-/* Whether faces are proper, and how many corners each vertex has. */
+/* Checks the faces and counts the corners of each vertex. */
 static he_status count_corners(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     turning *t = context;
@@ -62,7 +63,7 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     (void)err;
     for (size_t f = from; f < to; f++) {
         const uint32_t first = soup->starts[f], count = he_soup_end(soup, f) - first;
-        if (count < 3) { /* of faces without corners alone there is no array either */
+        if (count < 3) { /* if no face has a corner, there is no array of corners */
             found |= BAD_FACE;
             break;
         }
@@ -81,8 +82,8 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     return HE_OK;
 }
 
-/* Counts become places: vertex by vertex, and at one vertex lane by lane, which is the order of the
- * soup. */
+/* Turns counts into places: vertex by vertex, and at one vertex lane by lane, which is the order of
+ * the soup. */
 static void place_corners(turning *t)
 {
     const size_t vertices = t->soup->vertex_count;
@@ -110,7 +111,7 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* Filing has moved each place on to where the next lane's, or the next vertex', begin. */
+/* Sorting has moved each place on to where the next lane, or the next vertex, begins. */
 static uint32_t begin_of(const turning *t, size_t v)
 {
     return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
@@ -121,11 +122,11 @@ static uint32_t end_of(const turning *t, size_t v)
     return t->places[(t->lanes - 1) * t->soup->vertex_count + v];
 }
 
-/* `follow` leads from each of a vertex' corners to the one beside it, `count` where there is none:
- * do the open fans take up all corners? */
+/* `follow` leads from each corner of a vertex to its turn, or is `count` if it has none. Do the
+ * open fans contain all corners? */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    uint32_t entered = 0, met = 0; /* bits; corners */
+    uint32_t entered = 0, met = 0; /* a bit for each corner; a number of corners */
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;
     }
@@ -148,10 +149,11 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
     return twice != 0;
 }
 
-/* Four words in a vector register, which compilers of this dialect have for every machine. */
+/* Four words in a vector register, an extension of GCC and Clang for every machine. */
 typedef uint32_t four __attribute__((vector_size(16)));
 
-/* follow[i] = the last k for which to[k] is from[i], or `count`. Arrays of SMALL_VERTEX words. */
+/* Sets follow[i] to the last k for which to[k] equals from[i], or to `count`. All are arrays of
+ * SMALL_VERTEX words. */
 static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
 {
     for (uint32_t begin = 0; begin < count; begin += 8) {
@@ -167,9 +169,10 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
-/* The turns about a vertex of few corners. That they form one ring shows that all is well; only
- * where they do not is it asked why. No branch depends on the ids, which may have no pattern. Two
- * faces that run along an edge in one direction leave one vertex towards the same other. */
+/* Finds the turns around a vertex of few corners. If they form one ring, all is well; only
+ * otherwise is the reason searched. No branch depends on the ids, which may have no pattern. Two
+ * faces that run along an edge in one direction show as two corners that leave one vertex for one
+ * other. */
 static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
                          const uint32_t *from, const uint32_t *to, size_t *matched)
 {
@@ -204,16 +207,17 @@ static inline void find_beside(const turning *t, const uint32_t *filed, uint32_t
     }
 }
 
-/* The hub of a fan. `leads` remembers, for every vertex, which entry leaves towards it, `follows`
- * which entry is beside an entry; `entered` has a bit an entry. Values left by other vertices do
- * not point among these, so they need no clearing. */
+/* The turns of a vertex of high degree. `leads` remembers, for every vertex, which entry leaves
+ * towards it, `follows` which entry is next around the vertex; `entered` has a bit for each entry.
+ * Values left by other vertices do not point to entries of this one, so the arrays need no
+ * clearing. */
 typedef struct hub_turns {
     uint32_t *leads, *follows;
     uint64_t *entered;
 } hub_turns;
 
-/* Corners of the fan from entry `from` on, but no more than `most`, since a fan that is not proper
- * may lead round beside its beginning. */
+/* Returns the number of corners of the fan from entry `from` on, but no more than `most`: a fan
+ * that is not valid may run in a circle that misses its beginning. */
 static uint32_t fan_length(const hub_turns *hub, uint32_t from, uint32_t end, uint32_t most)
 {
     uint32_t k = from, met = 0;
@@ -278,7 +282,7 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
     uint32_t begin = begin_of(t, from), end;
     for (size_t v = from; v < to; v++, begin = end) {
         end = end_of(t, v);
-        /* Where ids are in no order what is read and written lies far apart: ask for it in time. */
+        /* Prefetch: where ids are in no spatial order, the words read and written lie far apart. */
         for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
             __builtin_prefetch(&corners[filed[i + AHEAD]]);
             __builtin_prefetch(&t->turn[filed[i + AHEAD]], 1);
@@ -320,9 +324,9 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Once more vertex by vertex: those of many corners, which share what remembers, and with `report`
- * all of them to say which have a closed fan beside another. At the ends of edges that are wrong
- * there are no fans to speak of. */
+/* Visits the vertices again: those of many corners, which share two arrays, and with `report` all
+ * of them, to report which have a closed fan beside another. Vertices at the ends of invalid edges
+ * are skipped, because their fans are not defined. */
 static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *total, he_error *err)
 {
     const he_soup *soup = t->soup;
@@ -360,7 +364,7 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
     return status;
 }
 
-/* What parts have found. */
+/* Collects what the parts have found. */
 static void gather(turning *t, size_t parts)
 {
     for (size_t i = 0; i < parts; i++) {
@@ -451,7 +455,7 @@ he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *repo
         for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
             matched += t.matched[i];
         }
-        /* An edge with two faces was matched at both its ends. */
+        /* An edge with two faces was counted at both its ends. */
         *out = (he_turns){t.turn, t.first, t.filed, soup->corner_count - matched / 2};
         t.turn = t.first = t.filed = NULL;
     }
