@@ -1,5 +1,5 @@
-/* bytes.h - numbers as bytes, for core/stored and the frames of core/journal: writing moves a
- * pointer on, reading moves a cursor that never passes its end. */
+/* bytes.h - numbers as bytes, for core/stored and the frames of core/journal. Writing advances a
+ * pointer; reading advances a cursor that never passes its end. */
 #ifndef HE_STORED_BYTES_H
 #define HE_STORED_BYTES_H
 
@@ -40,12 +40,12 @@ static inline unsigned char *he_put_varint(unsigned char *to, uint64_t value)
     *to = (unsigned char)value;
     return to + 1;
 }
-/* A signed difference of two 32-bit numbers, as a number below 2^33. */
+/* Codes the signed difference of two 32-bit numbers as a number below 2^33. */
 static inline uint64_t he_difference(uint32_t value, uint32_t from)
 {
     return value >= from ? 2 * (uint64_t)(value - from) : 2 * (uint64_t)(from - value) - 1;
 }
-/* A link in a row: at most HE_LINK_BYTES. */
+/* Codes a link in a row, in at most HE_LINK_BYTES. */
 static inline uint64_t he_link_code(uint32_t link, uint32_t row)
 {
     return link == HE_NONE ? 0 : link == HE_DEAD ? 1 : 2 + he_difference(link, row);
@@ -59,7 +59,7 @@ static inline he_cursor he_cursor_over(const unsigned char *bytes, size_t size)
 {
     return (he_cursor){bytes, bytes, bytes + size};
 }
-/* HE_CORRUPT at the byte where the cursor stands. */
+/* Returns HE_CORRUPT, naming the byte at the cursor. */
 static inline he_status he_refuse_at(const he_cursor *c, he_error *err, const char *what)
 {
     return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, (uint64_t)(c->at - c->begin), "%s", what);
@@ -88,7 +88,8 @@ static inline bool he_take_u64(he_cursor *c, uint64_t *out)
 {
     return he_take_bytes(c, sizeof *out, out);
 }
-/* False at the end of the bytes, above `most`, and where fewer bytes would do. */
+/* Reads a varint. Returns false at the end of the bytes, if the value is above `most`, or if it is
+ * not coded in as few bytes as possible. */
 static inline bool he_take_varint(he_cursor *c, uint64_t most, uint64_t *out)
 {
     uint64_t value = 0;
@@ -111,7 +112,8 @@ static inline bool he_take_varint(he_cursor *c, uint64_t most, uint64_t *out)
     }
     return false;
 }
-/* `from` and a difference coded by he_difference; false where that is no 32-bit number. */
+/* Adds to `from` a difference coded by he_difference. Returns false if the sum does not fit 32
+ * bits. */
 static inline bool he_add_difference(uint32_t from, uint64_t code, uint32_t *out)
 {
     int64_t change = code & 1 ? -(int64_t)(code >> 1) - 1 : (int64_t)(code >> 1);

@@ -1,5 +1,5 @@
-/* content_code.h - the numbers in a coded content (stored.h) and its arrays, for core/stored only.
- */
+/* content_code.h - the constants of a coded content (stored.h) and its arrays, for core/stored
+ * only. */
 #ifndef HE_STORED_CONTENT_CODE_H
 #define HE_STORED_CONTENT_CODE_H
 
@@ -10,18 +10,19 @@
 enum {
     HE_CONTENT_START = 4 + 4 + 8,                  /* magic, version, bytes of the header */
     HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4, /* the last word is zero */
-    HE_CONTENT_SLOT = 1 + 8,                       /* kind, length */
-    HE_CONTENT_ARRAYS = 7,                         /* before the attributes' rows */
-    HE_PART_HEAD = 1 + 4                           /* coding, length */
+    HE_CONTENT_SLOT = 1 + 8,                       /* kind and length of a slot */
+    HE_CONTENT_ARRAYS = 7,                         /* arrays before the rows of attributes */
+    HE_PART_HEAD = 1 + 4                           /* coding and length of a part */
 };
 
 enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };
 
-/* What a link in HE_CODING_LINKS is a difference to: its row where both are half-edges, which run
- * along one face; else the link before it in the array, the row where there is none in the part. */
+/* The base of the differences in HE_CODING_LINKS. HE_LINKS_BY_ROW: the row of the link, for links
+ * from half-edge to half-edge, which are near each other along a face. HE_LINKS_BY_LAST: the link
+ * before it in the array; the row if there is none in the part. */
 typedef enum he_links { HE_NO_LINKS, HE_LINKS_BY_ROW, HE_LINKS_BY_LAST } he_links;
 
-/* One of the arrays in their order: as many bytes as rows are issued. */
+/* One of the arrays in their order; it has a row for each issued element. */
 typedef struct he_content_array {
     unsigned char *bytes;
     size_t size;
@@ -44,7 +45,7 @@ static inline he_content_array he_content_array_at(he_content *c, size_t i)
     return arrays[i];
 }
 
-/* All of them together. */
+/* Returns the bytes of all arrays together. */
 static inline uint64_t he_content_array_bytes(const he_content *c)
 {
     return (uint64_t)c->vertices.issued * (sizeof(he_vec3) + sizeof(uint32_t)) +

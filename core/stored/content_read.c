@@ -1,24 +1,25 @@
-/* Parts become a mesh: he_stored_reader of stored.h. Bytes go to where they belong as they come: to
- * the header, and once that is whole to the arrays that it asks for. */
+/* Reads a content part by part: he_stored_reader of stored.h. Bytes go directly to their place: to
+ * the header first, and when that is complete to the arrays it announces. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
 struct he_stored_reader {
-    uint64_t most, total; /* bytes of the content: at most; in truth, once the header is there */
-    uint64_t at;          /* bytes that have come */
+    uint64_t most, total; /* bytes of the content: the most allowed; the real number, once the
+                             header is read */
+    uint64_t at;          /* bytes read */
     unsigned char *header;
-    size_t header_size, header_room; /* as much as has come */
+    size_t header_size, header_room; /* bytes of the header so far, and the room for it */
     uint64_t header_wanted;
     he_content c;
-    size_t array;      /* the one that is being filled; after those of links, slots */
-    unsigned char *to; /* what is left of it */
+    size_t array;      /* the array being filled; after the arrays of links come the slots */
+    unsigned char *to; /* where its next bytes go */
     size_t left;
     he_links links;
-    uint32_t row;  /* of the next link */
-    uint32_t last; /* the link before it, */
-    bool has_last; /* if there is one in the part */
+    uint32_t row;  /* row of the next link */
+    uint32_t last; /* the link before that, if has_last */
+    bool has_last; /* the part has a link before that */
 };
 
 he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err)
@@ -48,7 +49,7 @@ static he_status refuse(const he_stored_reader *r, he_error *err, const char *wh
     return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, r->at, "%s", what);
 }
 
-/* The first bytes say how many the header has. */
+/* The first bytes say how long the header is. */
 static he_status read_start(he_stored_reader *r, he_error *err)
 {
     he_cursor c = he_cursor_over(r->header, r->header_size);
@@ -71,7 +72,7 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     return HE_OK;
 }
 
-/* One slot; memory for its rows is taken when all slots are known. */
+/* Reads one slot; memory for its rows is allocated when all slots are known. */
 static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size_t *rows,
                            he_error *err)
 {
@@ -119,7 +120,8 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     return HE_OK;
 }
 
-/* The slots; sets each column's rows, for which no memory is there yet, and adds up their bytes. */
+/* Reads the slots; sets the number of rows of each column, without memory for them, and adds up
+ * their bytes. */
 static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, uint64_t *bytes,
                             he_error *err)
 {
@@ -151,7 +153,7 @@ static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, u
     return status;
 }
 
-/* The table of materials. */
+/* Reads the table of materials. */
 static he_status read_materials(he_cursor *c, uint32_t slots, he_materials *out, he_error *err)
 {
     he_status status = slots > HE_MATERIALS
@@ -203,7 +205,7 @@ static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots, uint32
            he_take_u32(c, materials) && he_take_u32(c, &zero) && zero == 0;
 }
 
-/* Room for all arrays, now that they are known to come. */
+/* Allocates all arrays, when their sizes have been checked. */
 static he_status make_room(he_content *c, he_error *err)
 {
     he_rows rows[3] = {c->vertices, c->edges, c->faces};
@@ -230,7 +232,7 @@ static he_status make_room(he_content *c, he_error *err)
     return status;
 }
 
-/* The next array that has bytes; none at the end. */
+/* Goes on to the next array that has bytes; to none at the end. */
 static void next_array(he_stored_reader *r)
 {
     r->left = 0;
@@ -286,7 +288,7 @@ static he_status read_header(he_stored_reader *r, he_error *err)
     return status;
 }
 
-/* More of the header; *taken is how much of the bytes that was. */
+/* Reads more of the header; *taken is how many bytes belonged to it. */
 static he_status take_header(he_stored_reader *r, const unsigned char *bytes, size_t size,
                              size_t *taken, he_error *err)
 {
@@ -311,7 +313,7 @@ static he_status take_header(he_stored_reader *r, const unsigned char *bytes, si
     return r->header_size == HE_CONTENT_START ? read_start(r, err) : read_header(r, err);
 }
 
-/* More of the array at hand, of the bytes at the cursor: at most `room` of the content. */
+/* Reads more of the present array from the cursor: at most `room` bytes of the content. */
 static he_status take_array(he_stored_reader *r, bool as_links, size_t room, he_cursor *c,
                             he_error *err)
 {
@@ -398,7 +400,7 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
 {
     he_stored_reader *r;
     he_cursor c = he_cursor_over(bytes, size);
-    /* A link takes a byte at least. */
+    /* A link takes at least one byte, so this bounds the content. */
     he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
     if (status != HE_OK) {
         return status;

@@ -1,11 +1,11 @@
-/* A mesh becomes a content: he_stored_writer of stored.h. The bytes are made piece by piece (a
- * head, a label, an array), and parts are cut out of them without regard to pieces. */
+/* Writes a mesh as a content: he_stored_writer of stored.h. The bytes are made piece by piece (a
+ * head, a label, an array) and cut into parts regardless of pieces. */
 #include "mesh/layout.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
-/* What the piece at hand is. */
+/* The kind of the present piece. */
 enum stage {
     HEADER,
     SLOT,
@@ -16,7 +16,7 @@ enum stage {
     MATERIAL,
     MATERIAL_NAME,
     PADDING,
-    ARRAYS, /* one stage each */
+    ARRAYS, /* one stage for each array */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
     DONE
 };
@@ -26,7 +26,7 @@ static const he_column *slot_of(const he_stored_writer *w)
     return w->mesh->c.columns[w->slot];
 }
 
-/* Bytes after the kind and length of a slot. */
+/* Returns the bytes after the kind and length of a slot. */
 static uint64_t slot_bytes(const he_column *column)
 {
     return column == NULL ? 0
@@ -212,7 +212,7 @@ static void make_column(he_stored_writer *w)
     w->slot++;
 }
 
-/* Goes on to the next piece that is not empty; false after the last. */
+/* Goes on to the next piece that is not empty. Returns false after the last. */
 static bool has_piece(he_stored_writer *w)
 {
     while (w->left == 0 && w->stage != DONE) {
@@ -256,7 +256,7 @@ static bool has_piece(he_stored_writer *w)
     return w->left > 0;
 }
 
-/* So many bytes of links from the piece at hand, each as a varint. */
+/* Writes so many bytes of links from the present piece, each as a varint. */
 static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char *to)
 {
     for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {
@@ -273,7 +273,8 @@ static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char
     return to;
 }
 
-/* A part in one of the codings; SIZE_MAX when it would be longer than it is plain. */
+/* Writes a part in one of the codings. Returns SIZE_MAX if it would be longer than in
+ * HE_CODING_PLAIN. */
 static size_t make_part(he_stored_writer *w, unsigned coding, unsigned char *to, bool *has_links)
 {
     enum { STRIDE = 4096 };
@@ -318,7 +319,8 @@ size_t he_stored_writer_next(he_stored_writer *w, unsigned char *to, unsigned *c
 size_t he_stored_content_bound(const he_mesh *mesh)
 {
     uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
-    last += last / sizeof(uint32_t) * (HE_LINK_BYTES - sizeof(uint32_t)); /* all of it links */
+    last += last / sizeof(uint32_t) *
+            (HE_LINK_BYTES - sizeof(uint32_t)); /* as if all of it were links */
     last = last > HE_STORED_PART ? HE_STORED_PART : last;
     return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);
 }

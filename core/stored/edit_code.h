@@ -1,5 +1,5 @@
-/* edit_code.h - the numbers in a coded edit (stored.h), for core/stored only. None of them is ever
- * given another meaning. */
+/* edit_code.h - the constants of a coded edit (stored.h), for core/stored only. A number never
+ * changes its meaning. */
 #ifndef HE_STORED_EDIT_CODE_H
 #define HE_STORED_EDIT_CODE_H
 
@@ -27,11 +27,11 @@ typedef enum he_object {
     HE_OBJECT_MATERIAL = 4
 } he_object;
 
-/* The kind of element that each number in a coded lineage stands for. */
+/* The kind of element for each number in a coded lineage record. */
 static const he_kind he_code_kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
 enum { HE_CODE_KINDS = sizeof he_code_kinds / sizeof *he_code_kinds };
 
-/* Bytes of the parts of an edit at most, and of a change at least. */
+/* Maximum bytes of the parts of an edit, and minimum bytes of a change. */
 enum {
     HE_EDIT_HEAD = 1 + 10,
     HE_CHANGE_ROOM = 20,

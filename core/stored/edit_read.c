@@ -1,4 +1,4 @@
-/* The bytes of a coded edit become a delta, over which a mesh goes forward. */
+/* Reads a coded edit into a delta and applies that to a mesh. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -25,9 +25,9 @@ typedef struct edit_reader {
     uint64_t changes; /* not read yet */
     he_code code;
     uint64_t run;  /* changes left in the run */
-    uint32_t slot; /* of a run of attributes */
+    uint32_t slot; /* slot of a run of attributes */
     uint32_t last[HE_CODE_COUNT];
-    he_object kind;   /* of an object */
+    he_object kind;   /* kind of an object */
     he_cursor object; /* its bytes */
 } edit_reader;
 
@@ -128,7 +128,7 @@ static bool take_links(edit_reader *r, he_record *out)
     return true;
 }
 
-/* The next change; of one with an object, only that it is one. */
+/* Reads the next change; for a change with an object it only finds the object's bytes. */
 static he_status next(edit_reader *r, he_record *out, he_error *err)
 {
     if (r->run == 0) {
@@ -166,7 +166,7 @@ static he_status take_slot(he_cursor *c, uint32_t *slot, he_error *err)
     return HE_OK;
 }
 
-/* Values of all rows, up to the end of the bytes. */
+/* Reads the values of all rows, up to the end of the bytes. */
 static he_status take_rows(he_cursor *c, he_column *column, he_error *err)
 {
     uint64_t rows;
@@ -210,8 +210,8 @@ static bool same_head(const he_column *a, const he_column *b)
            memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
 }
 
-/* A column that the mesh has is the one that was dropped, unless the edit itself put it there:
- * `named` has a bit for each slot of the mesh that it has named so far. */
+/* Reads an attribute that was dropped. The mesh has that column, unless the edit itself added it:
+ * `named` has a bit for each slot of the mesh that the edit has named so far. */
 static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t *named,
                               uint32_t *slot, he_error *err)
 {
@@ -256,7 +256,8 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     return HE_OK;
 }
 
-/* What there was is told by its mark, for which the record has room where words have theirs. */
+/* The material that was there before is identified by its mark, which the record keeps in the field
+ * that records of words use for their second value. */
 static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot, he_material **row,
                                    he_error *err)
 {
@@ -276,7 +277,7 @@ static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot,
     return status;
 }
 
-/* The object at hand, into the delta as the next of its objects. */
+/* Reads the present object and appends it to the objects of the delta. */
 static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *named, he_delta *delta,
                              he_record *out, he_error *err)
 {
@@ -347,7 +348,7 @@ static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *del
     return status;
 }
 
-/* An attribute that comes has no more rows than its domain will have. */
+/* Has an added attribute no more rows than its domain will have? */
 static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
 {
     switch (column->domain) {
@@ -364,7 +365,8 @@ static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
     return column->rows <= 1;
 }
 
-/* High-water marks only rise, by rows that the edit writes; a content has its own. */
+/* High-water marks only rise, by the rows that the edit writes; a replaced content brings its
+ * own. */
 static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                              const uint32_t issued[HE_KIND_COUNT], he_error *err)
 {
@@ -390,7 +392,7 @@ static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
     return HE_OK;
 }
 
-/* Where the bytes of a change begin, in an edit that was read without a fault. */
+/* Finds the byte at which a change begins, in an edit that was read without an error. */
 static uint64_t place_of(const unsigned char *bytes, size_t size, size_t change)
 {
     edit_reader r;

@@ -1,4 +1,4 @@
-/* A delta becomes the bytes of stored.h. */
+/* Writes a delta as the bytes of stored.h. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -38,7 +38,7 @@ static he_code code_of(const he_record *r)
     return HE_CODE_ATTRIBUTE;
 }
 
-/* Does a record of the delta replace the content? And do ids change their meaning? */
+/* Does a record of the delta replace the content? Sets *renumbers if ids change their meaning. */
 static bool replaces(const he_delta *delta, bool *renumbers)
 {
     bool found = false;
@@ -52,7 +52,8 @@ static bool replaces(const he_delta *delta, bool *renumbers)
     return found;
 }
 
-/* The record after i that adds or drops the same slot's column, or the end. */
+/* Finds the next record after i that adds or drops a column in that slot; the end if there is
+ * none. */
 static size_t next_of_slot(const he_delta *delta, size_t i)
 {
     uint32_t slot = delta->records[i].row;
@@ -65,7 +66,7 @@ static size_t next_of_slot(const he_delta *delta, size_t i)
     return k;
 }
 
-/* The column that record i added: in the mesh, or in the record that dropped it again. */
+/* Finds the column that record i added: in the mesh, or in the record that dropped it again. */
 static const he_column *added_column(const he_delta *delta, size_t i, size_t next,
                                      const he_mesh *after)
 {
@@ -73,8 +74,8 @@ static const he_column *added_column(const he_delta *delta, size_t i, size_t nex
                                 : delta->objects[delta->records[next].before];
 }
 
-/* The material that record i put in its slot: in the mesh, or in the record that put the next one
- * there. NULL where it took one out. */
+/* Finds the material that record i put in its slot: in the mesh, or in the record that replaced it.
+ * Returns NULL if record i removed one. */
 static const he_material *put_material(const he_delta *delta, size_t i, const he_mesh *after)
 {
     uint32_t slot = delta->records[i].row;
@@ -129,7 +130,7 @@ static unsigned char *begin_object(unsigned char *to, he_object kind)
     return he_put_u64(to, 0);
 }
 
-/* Its length is known now. */
+/* Writes the object's length, which is now known, before it. */
 static unsigned char *end_object(unsigned char *from, unsigned char *to)
 {
     (void)he_put_u64(from - 8, (uint64_t)(to - from));
@@ -156,8 +157,8 @@ static unsigned char *put_material_change(unsigned char *to, const he_delta *del
     return end_object(from, to);
 }
 
-/* Values are coded as they were when the column came: what was written to them later in the same
- * delta follows as changes, and is taken back here. */
+/* Writes an added column with the values it had when it was added: later writes in this delta
+ * follow as changes, so they are undone here. */
 static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t i,
                                 const he_mesh *after)
 {
