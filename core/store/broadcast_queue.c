@@ -7,9 +7,9 @@
 #include <string.h>
 
 struct st_message {
-    uint32_t uses; /* by the ring and by listeners, under the queue's lock */
+    uint32_t uses; /* references from the ring and from listeners, guarded by the queue's lock */
     st_place place;
-    uint64_t made; /* when, st_clock_micros */
+    uint64_t made; /* when it was added, by st_clock_micros */
     size_t length;
     char bytes[];
 };
@@ -25,7 +25,7 @@ void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts)
     pthread_mutex_init(&queue->lock, NULL);
 }
 
-/* --- under the lock --- */
+/* --- functions that need the lock --- */
 
 static st_message *message_at(const st_queue *queue, size_t i)
 {
@@ -131,7 +131,7 @@ static uint64_t newest_number(const st_queue *queue)
     return queue->floor_number + queue->count;
 }
 
-/* Places are in the order of stamps: the first message that may not be read. */
+/* Messages are in the order of stamps; returns the index of the first one that may not be read. */
 static size_t first_forbidden(const st_queue *queue)
 {
     size_t low = 0, high = queue->count;
@@ -146,7 +146,7 @@ static size_t first_forbidden(const st_queue *queue)
     return low;
 }
 
-/* --- the maker's side --- */
+/* --- functions that add and drop messages --- */
 
 void st_queue_clear(st_queue *queue)
 {
@@ -174,7 +174,7 @@ static st_message *message_new(const char *bytes, size_t length)
     return message;
 }
 
-/* Takes the message, at the newest place; NULL: it is lost. */
+/* Appends the message, which it takes, at the newest place; NULL makes listeners fall behind. */
 static void append(st_queue *queue, st_message *message)
 {
     if (message == NULL || !reserve_place(queue)) {
@@ -263,7 +263,7 @@ void st_queue_shed(st_queue *queue)
     pthread_mutex_unlock(&queue->lock);
 }
 
-/* --- the listener's side --- */
+/* --- functions of listeners --- */
 
 bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most)
 {
@@ -315,7 +315,7 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* The next message it may read becomes the one it is in the middle of. */
+/* Makes the next message that the listener may read its present one. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {

@@ -1,12 +1,12 @@
-/* The list of all meshes, in memory or not. */
+/* Lists all meshes, in memory or not. */
 #include "store/table.h"
 
 #include <string.h>
 
-/* How many handles are held at once. */
+/* Most handles held at once. */
 enum { BATCH = 64 };
 
-/* The card of a mesh in memory; false when it was removed. */
+/* Copies the card of a mesh in memory. Returns false if it was removed. */
 static bool card_of(st_mesh *mesh, st_card *out)
 {
     st_mesh_info info;
@@ -47,9 +47,9 @@ static size_t cards_in_memory(st_store *store, const char *after, st_card *out, 
     return count;
 }
 
-/* Two cards of one mesh: the one with more records is the present one, the disk's if the mesh is
- * damaged. Two cards of different meshes under one id: the one on the disk has been removed, which
- * the disk does not know yet. */
+/* Chooses one of two cards with one id. If both are of one mesh, the one with more records is
+ * newer, or the disk's if the mesh is damaged. If they are of different meshes, the one on the disk
+ * has been removed, which the disk does not know yet. */
 static const st_card *newer(const st_card *memory, const st_card *disk)
 {
     bool same = memory->incarnation == disk->incarnation;
@@ -70,7 +70,8 @@ static size_t merge(const st_card *memory, size_t in_memory, const st_card *disk
     return count;
 }
 
-/* First those in memory, then the disk: a mesh that leaves memory in between is in both. */
+/* Memory is listed first, then the disk: a mesh that is evicted in between is then in both
+ * lists. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
 {
     const st_journal *journal = &store->journal;

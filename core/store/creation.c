@@ -1,4 +1,4 @@
-/* Meshes come into the store: under a free id, or in the place of one that is damaged. */
+/* Adds meshes to the store: under a free id, or in place of a damaged one. */
 #include "store/table.h"
 #include "system/lock.h"
 #include "system/memory.h"
@@ -21,7 +21,7 @@ static st_status book(const st_store *store, const he_mesh *content, size_t reco
     return status;
 }
 
-/* Under the table's exclusive lock. */
+/* The caller holds the table's exclusive lock. */
 static bool is_full(const st_store *store)
 {
     const st_journal *journal = &store->journal;
@@ -29,7 +29,7 @@ static bool is_full(const st_store *store)
     return count >= store->max_meshes;
 }
 
-/* Under the table's exclusive lock. The mesh counts for its holder from now on. */
+/* Adds the mesh and counts it for its holder. The caller holds the table's exclusive lock. */
 static st_status insert(st_store *store, st_mesh *mesh)
 {
     const st_holding none = {NULL, 0};
@@ -46,7 +46,8 @@ static st_status insert(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* A thread that finds the mesh, or the id taken, finds its first record appended. */
+/* The first record is appended under the lock: a thread that finds the mesh, or its id taken, knows
+ * that the record is in the journal. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     st_lock_write(&store->lock);
@@ -65,7 +66,7 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, 
     return status;
 }
 
-/* A mesh of the content that nobody knows yet, with a place for its records. */
+/* Makes a mesh of the content, which no other thread knows yet, and room for its records. */
 static st_status prepare(st_store *store, const char *id, const char *name, const st_cause *cause,
                          he_mesh *content, size_t records, st_booking *booking, st_mesh **out)
 {
@@ -82,7 +83,7 @@ static st_status prepare(st_store *store, const char *id, const char *name, cons
     return ST_OK;
 }
 
-/* It is not to be known; the content is the caller's still. */
+/* Frees a mesh that was not added; the caller still owns the content. */
 static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
 {
     mesh->content = NULL;
@@ -97,9 +98,10 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
     st_mesh *mesh;
     st_status status = prepare(store, id, name, cause, content, 1, &booking, &mesh);
     if (status == ST_OK) {
-        /* Before it is in the table: one that was never used would be the oldest by far. */
+        /* Before the mesh is in the table: one that was never used would be evicted first. */
         st_mesh_use(mesh);
-        /* What is lost from here on takes the place that was booked with it. */
+        /* Room is already reserved, so if a later loss takes `from`, this record is lost with
+         * it. */
         const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
         status = lost ? ST_LOST : publish(store, mesh, cause, &booking);
         if (status == ST_OK) {
@@ -123,8 +125,8 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     return status;
 }
 
-/* With more than is asked for: where room is made only when others do not free a few bytes at that
- * moment, it seems full again once they take them back. */
+/* Asks for more than is needed: if only a few bytes were free for a moment, the memory would seem
+ * full again when other threads take them back. */
 static bool has_room(st_store *store)
 {
     st_make_room(store, st_memory_budget() / 64);
@@ -155,9 +157,10 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
     return st_create_from(store, id, name, content, cause, NULL, out);
 }
 
-/* --- over a damaged mesh --- */
+/* --- replacing a damaged mesh --- */
 
-/* Under the exclusive lock of the old one: one group of records, the removal first. */
+/* Publishes one group of records, the removal first. The caller holds the exclusive lock of the old
+ * mesh. */
 static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_cause *cause,
                          st_booking *booking)
 {
@@ -183,7 +186,8 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
-/* Under the exclusive lock of the old one, which counts no more, or still where this is refused. */
+/* Moves the holder's count from the old mesh to the new one, or leaves it if that is refused. The
+ * caller holds the exclusive lock of the old mesh. */
 static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
 {
     const st_holding come = {fresh->holding.holder, he_mesh_bytes(fresh->content)};
@@ -211,7 +215,7 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
         discard(store, fresh, &booking);
         return status;
     }
-    st_release(damaged); /* the table's use */
+    st_release(damaged); /* the use that the table had */
     *out = fresh;
     return ST_OK;
 }

@@ -12,7 +12,7 @@ struct st_waits {
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
-    st_loss rest; /* stands for losses that found no memory; from > to: there were none */
+    st_loss rest; /* all losses that found no memory, as one; from > to: none */
     bool stopped;
 };
 
@@ -40,7 +40,7 @@ static st_wait *meld(st_wait *a, st_wait *b)
     return a;
 }
 
-/* The children are melded in pairs, and the pairs from the last to the first. */
+/* Melds the children in pairs, then the pairs from the last to the first. */
 static st_wait *without_top(st_wait *top)
 {
     st_wait *pairs = NULL, *left = top->child, *all = NULL;
@@ -66,8 +66,8 @@ static bool concerns(const st_loss *loss, const st_shown *shown)
 {
     bool same = loss->incarnation == 0 || shown->incarnation == 0 ||
                 loss->incarnation == shown->incarnation;
-    /* Nothing is shown where all was durable that had been appended: a journal may have told of a
-     * record before its writer noted it. */
+    /* If all records were durable when the answer was begun, it shows nothing that could be lost:
+     * the journal may report a record as durable before its writer has noted it here. */
     return same && shown->since < shown->position && loss->from <= shown->position &&
            loss->to > shown->since;
 }
@@ -97,7 +97,7 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* Each room that comes back after a fault is a loss of its own: they make one interval. */
+/* After a fault each room that comes back is a loss of its own; adjacent losses are merged. */
 static bool extend_last(st_waits *waits, const st_loss *loss)
 {
     st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
@@ -109,12 +109,12 @@ static bool extend_last(st_waits *waits, const st_loss *loss)
     return true;
 }
 
-/* Without memory everything from the loss on counts as lost: too much rather than too little. */
+/* If memory is out, everything from this loss on counts as lost: refusing too much is safe. */
 void st_waits_lose(st_waits *waits, const st_loss *loss)
 {
     pthread_mutex_lock(&waits->lock);
     if (extend_last(waits, loss)) {
-        /* It is noted. */
+        /* it was merged into the last loss */
     } else if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
@@ -128,7 +128,7 @@ void st_waits_lose(st_waits *waits, const st_loss *loss)
 
 /* --- waiting --- */
 
-/* Under the lock: is the wait over, and how? */
+/* Is the wait over, and how? The caller holds the lock. */
 static bool is_over(const st_waits *waits, st_wait *wait)
 {
     const st_shown *shown = &wait->shown;
@@ -140,7 +140,8 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     return durable || waits->stopped;
 }
 
-/* Taken off the heap first, in the order of positions: resume may end the wait's life. */
+/* Takes the finished waits off the heap first, in the order of positions: resume may free the
+ * wait. */
 static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
@@ -211,14 +212,14 @@ bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
     return found;
 }
 
-/* A loss is told before the journal moves past it, so that it is looked for after. */
+/* The journal reports a loss before it moves past it, so losses are checked after the position. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
 {
     return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
 }
 
-/* Looked at once more under the lock: a notice that came since the caller looked has not found the
- * wait, and one that comes later will. */
+/* Checks again under the lock: a notice that came after the caller's check did not find the wait;
+ * one that comes later will. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);

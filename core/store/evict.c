@@ -1,5 +1,5 @@
-/* Meshes that nobody uses leave memory while it is short, and come back from the journal when they
- * are asked for. */
+/* Evicts unused meshes while memory is short; the journal loads them again when a request needs
+ * them. */
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"
@@ -7,18 +7,17 @@
 
 #include <time.h>
 
-/* Ages are told apart in so many classes, from the mesh that was used last to the one that was not
- * for longest. */
+/* Times of last use are sorted into this many classes, from the most to the least recent. */
 enum { AGES = 256 };
 
-/* Meshes are freed in batches, so that the table is not locked for longer. */
+/* Meshes are freed in batches, so that the table is not locked for long. */
 enum { BATCH = 64 };
 
-/* How long a mesh was not used for that leaves memory although no request wants its room yet; and
- * how long nothing is tried again after nothing was found. */
+/* A mesh that was not used for COLD_MICROS may be evicted before a request needs its memory; after
+ * an eviction found nothing, none is tried for BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
-/* How long is waited for the table. */
+/* How long a thread waits for the lock of the table. */
 enum { LOCK_NANOS = 100 * 1000 * 1000, SECOND_NANOS = 1000 * 1000 * 1000 };
 
 void st_mesh_use(st_mesh *mesh)
@@ -26,8 +25,8 @@ void st_mesh_use(st_mesh *mesh)
     atomic_store_explicit(&mesh->used, st_clock_micros(), memory_order_relaxed);
 }
 
-/* A thread that asks for memory may hold locks that others want who have the table's, and it may
- * have that itself. */
+/* A thread that asks for memory may hold locks that the owner of the table's lock waits for, or may
+ * own the table's lock itself, so it must not wait for ever. */
 static bool lock_table(st_store *store)
 {
     struct timespec until;
@@ -40,8 +39,8 @@ static bool lock_table(st_store *store)
     return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
-/* Does only the table hold it, and does the disk have all of it? Under the table's exclusive lock
- * nobody can begin to use it. A message for listeners that waits holds a use. */
+/* Does only the table use it, and does the disk have all of it? Under the table's exclusive lock no
+ * thread can begin to use it. A message that waits for listeners holds a use. */
 static bool is_cold(st_store *store, st_mesh *mesh)
 {
     if (atomic_load_explicit(&mesh->uses, memory_order_acquire) > 1) {
@@ -56,9 +55,9 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* The age from which on meshes go, so that about `bytes` come free. */
+/* Finds the age from which meshes are evicted so that about `bytes` become free. */
 typedef struct ages {
-    uint64_t first, span; /* of the time of use */
+    uint64_t first, span; /* range of the times of last use */
     uint64_t bytes[AGES];
 } ages;
 
@@ -67,7 +66,7 @@ static size_t age_of(const ages *a, uint64_t used)
     return (size_t)((used - a->first) / (a->span / AGES + 1));
 }
 
-/* Under the table's lock. */
+/* The caller holds the table's lock. */
 static uint64_t find_limit(st_store *store, uint64_t bytes)
 {
     ages a = {.first = UINT64_MAX};
@@ -92,7 +91,7 @@ static uint64_t find_limit(st_store *store, uint64_t bytes)
     return a.first + age * (a.span / AGES + 1);
 }
 
-/* Takes out meshes that were used before `limit`, at most a batch, from *place on. */
+/* Takes out meshes that were last used before `limit`, at most a batch, from index *place on. */
 static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *batch[BATCH])
 {
     size_t count = 0, to = *place, from = *place;
@@ -117,8 +116,8 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
     return count;
 }
 
-/* Meshes that were used before `newest` leave, as many as it takes for the bytes. How many did.
- * *locked: the table could be looked at. */
+/* Evicts meshes that were last used before `newest`, as many as it takes for the bytes. Returns how
+ * many. *locked says whether the table's lock could be taken. */
 static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
@@ -141,12 +140,12 @@ static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *lock
     return all;
 }
 
-/* Bytes that are to be freed before there are `bytes` more and `share` beside. */
+/* Returns how many bytes must be freed so that `bytes`, and `share` beside them, are free. */
 static uint64_t missing(uint64_t bytes, uint64_t share)
 {
     const uint64_t held = st_memory_used() + st_resident_beside();
     const uint64_t wanted = held + bytes + share, budget = st_memory_budget();
-    return wanted > budget ? wanted - budget : 0; /* others free memory meanwhile */
+    return wanted > budget ? wanted - budget : 0; /* other threads free memory meanwhile */
 }
 
 void st_make_room(st_store *store, uint64_t bytes)
@@ -156,24 +155,25 @@ void st_make_room(st_store *store, uint64_t bytes)
     if (budget == 0 || bytes > budget - share || missing(bytes, share) == 0) {
         return;
     }
-    /* Who waited here finds the room that was made meanwhile. */
+    /* A thread that waited for this lock may find that another one has made room. */
     pthread_mutex_lock(&store->room);
     if (missing(bytes, share) > 0) {
         st_resident_measure();
     }
-    /* Where that found room, some is left before it is measured again. */
+    /* After an eviction that found room, some more is required before the next measuring. */
     share += share / 4;
     if (missing(bytes, share) > 0) {
         st_store_shed(store);
     }
     if (store->journal.keeps && missing(bytes, share) > 0) {
-        /* More than is missing, so that it is not to be done again at once. */
+        /* Evicts more than is missing, so that the next eviction is not due at once. */
         (void)evict(store, missing(bytes, 2 * budget / 16), UINT64_MAX, &locked);
     }
     pthread_mutex_unlock(&store->room);
 }
 
-/* A giver: the thread may hold any lock but the table's, and those that st_store_shed takes. */
+/* The function of a memory giver: the thread may hold any lock but the table's and those that
+ * st_store_shed takes. */
 static bool give_room(void *context, uint64_t bytes)
 {
     st_store *store = context;

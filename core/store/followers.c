@@ -9,8 +9,9 @@
 static void is_known(st_wait *wait);
 static bool end_wait(st_mesh *mesh);
 
-/* Lets what is durable be read. One wait at a time is for the journal: a thread that finds it
- * waiting leaves its message to is_known, which looks for newer ones after the wait has ended. */
+/* Allows listeners to read what is durable. Only one wait is with the journal at a time: a thread
+ * that finds it waiting leaves its message to is_known, which looks for newer ones when the wait
+ * has ended. */
 static void allow(st_mesh *mesh)
 {
     st_waits *waits = mesh->followers->waits;
@@ -32,7 +33,7 @@ static void allow(st_mesh *mesh)
     }
 }
 
-/* True where there may be more to allow. */
+/* Returns true if there may be more to allow. */
 static bool end_wait(st_mesh *mesh)
 {
     const st_wait wait = mesh->wait;
@@ -65,7 +66,7 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
     }
 }
 
-/* Records of one request are durable together, so that their events have one place. */
+/* Records of one group become durable together, so their events have one place. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group)
 {
     bool followed = st_queue_is_followed(&mesh->queue);
@@ -101,7 +102,7 @@ void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
     allow(mesh);
 }
 
-/* Under the mesh's lock. */
+/* The caller holds the mesh's lock. */
 static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)
 {
     if (!since->given) {

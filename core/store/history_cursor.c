@@ -5,14 +5,15 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* Bytes of deltas that are replayed before writers get their turn: some milliseconds. */
+/* After replaying this many bytes of deltas, some milliseconds, the lock is released so that
+ * writers get their turn. */
 enum { TURN_BYTES = 8 << 20 };
 
 struct st_cursor {
     st_mesh *mesh;
     he_replay *replay;
     uint64_t at;
-    st_step *held; /* what the last step lends */
+    st_step *held; /* the step that the last call lent */
 };
 
 static st_status no_memory(void)
@@ -28,7 +29,8 @@ static st_status bounds(const st_revision_log *log, uint64_t revision)
     return revision < log->oldest ? ST_GONE : ST_OK;
 }
 
-/* Under the shared lock: towards the revision, from the head where there is no copy yet. */
+/* Moves the copy towards the revision; it starts from the head if there is no copy yet. The caller
+ * holds the shared lock. */
 static he_status one_turn(const st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision,
                           uint64_t most)
 {
@@ -57,8 +59,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
         if (walked == HE_NO_MEMORY) {
             status = no_memory();
         } else if (walked != HE_OK) {
-            /* The mesh has gone back and forth meanwhile: from its head all is at hand, if it
-             * stands still. */
+            /* The mesh was undone and redone meanwhile, so the copy cannot go on. A new copy of the
+             * head can, unless the mesh changes again. */
             he_replay_free(*replay);
             *replay = NULL;
             most = UINT64_MAX;
@@ -71,8 +73,8 @@ st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t
     return status;
 }
 
-/* What memory has dropped the records on the disk may still tell: a mesh of its own is loaded with
- * all of its history. */
+/* If memory has dropped the revision, the records on the disk may still have it: a second copy of
+ * the mesh is loaded with all of its history. */
 static st_status begin_on_disk(st_cursor *cursor, st_mesh *mesh, uint64_t revision)
 {
     st_status status = st_mesh_load_apart(mesh, 0, &cursor->mesh);
@@ -111,7 +113,7 @@ uint64_t st_cursor_revision(const st_cursor *cursor)
     return cursor->at;
 }
 
-/* Under the shared lock. */
+/* The caller holds the shared lock. */
 static st_status advance(st_cursor *cursor, st_action *action)
 {
     const st_revision_log *log = &cursor->mesh->log;

@@ -1,8 +1,8 @@
-/* history_cursor.h - following a mesh through its history, one revision after the other.
+/* history_cursor.h - iterates over a mesh's history, one revision after the other.
  *
  * A cursor owns a copy of the mesh at a revision that the history still reaches, in memory or on
- * the disk, and brings it forward on demand: after each step the copy is the mesh as that revision
- * left it, links, attributes and high-water marks included, whatever the mesh has become since.
+ * the disk, and brings it forward step by step: after each step the copy equals the mesh at that
+ * revision, links, attributes and high-water marks included, however the mesh has changed since.
  *
  *     st_cursor *cursor;
  *     st_cursor_begin(mesh, 41, &cursor);
@@ -11,8 +11,9 @@
  *     }
  *     st_cursor_end(cursor);
  *
- * The mesh's shared lock is taken inside, for no longer than a copy or a replay takes, and none is
- * held between calls. A cursor is for one thread at a time, and not for a worker: it may copy. */
+ * The functions take the mesh's shared lock for no longer than a copy or a replay takes, and hold
+ * none between calls. One thread at a time may use a cursor, and no worker: a call may copy the
+ * mesh. */
 #ifndef HE_STORE_HISTORY_CURSOR_H
 #define HE_STORE_HISTORY_CURSOR_H
 
@@ -24,27 +25,30 @@ typedef struct st_cursor st_cursor;
 typedef struct st_cursor_step {
     uint64_t revision;
     st_action action;
-    const he_delta *delta; /* its words, for he_changes_find; its objects are another's */
-    bool undone;           /* the delta was applied backwards */
+    const he_delta
+        *delta;  /* its words may be read by he_changes_find; its objects belong to another state */
+    bool undone; /* the delta was applied backwards */
     const he_mesh *content;
 } st_cursor_step;
 
-/* Keeps a use of the mesh; may load it once more from the disk. ST_AHEAD when there is no such
- * revision yet, ST_GONE when the history does not reach back to it, ST_NO_MEMORY, ST_BUDGET,
- * ST_FAILED. */
+/* Makes a cursor, which keeps the mesh in use and may load it once more from the disk.
+ * Returns ST_AHEAD if there is no such revision yet.
+ * Returns ST_GONE if the history does not reach back to it.
+ * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if the copy cannot be made. */
 st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out);
-/* Where it is, before the first step too. */
+/* Returns the copy, also before the first step. */
 const he_mesh *st_cursor_content(const st_cursor *cursor);
 uint64_t st_cursor_revision(const st_cursor *cursor);
-/* One revision further; what `out` lends is valid until the next call. ST_NOTHING at the
- * newest revision. ST_GONE when the history was cut off between (a replace, an edit beyond
- * the budget, or so many edits that the next one was dropped): begin anew. After any other failure
- * the cursor can only be ended. */
+/* Goes one revision further; `out` is valid until the next call. After any failure but ST_NOTHING
+ * and ST_GONE the caller can only end the cursor.
+ * Returns ST_NOTHING at the newest revision.
+ * Returns ST_GONE if the history was cut off between (a replace, an edit beyond the budget, or so
+ * many edits that the next one was dropped): the caller must begin a new cursor. */
 st_status st_cursor_next(st_cursor *cursor, st_cursor_step *out);
 void st_cursor_end(st_cursor *cursor); /* takes NULL */
 
-/* Bring a copy of `mesh` that is at *at to `revision`, or make one where *replay is NULL; what
- * st_cursor_begin and snapshots of earlier revisions are made with. On failure there is none. */
+/* Brings a copy of `mesh` that is at *at to `revision`, or makes one if *replay is NULL. Cursors
+ * and snapshots of earlier revisions are made with it. On failure *replay is NULL. */
 st_status st_replay_to(st_mesh *mesh, he_replay **replay, uint64_t *at, uint64_t revision);
 
 #endif

@@ -40,7 +40,7 @@ static st_keyed **find(const st_keys *keys, const char *key, const char *holder,
     return at;
 }
 
-/* Take it out of the table. */
+/* Takes an entry out of the table. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
     *find(keys, keyed->text, keyed->key.holder, keyed->hash) = keyed->next;
@@ -65,7 +65,7 @@ void st_keys_clear(st_keys *keys)
     pthread_mutex_destroy(&keys->lock);
 }
 
-/* Without memory for more the chains grow longer. */
+/* If memory is out the table does not grow, and its chains become longer. */
 static bool reserve_bucket(st_keys *keys)
 {
     if (keys->count < keys->bucket_count) {
@@ -161,7 +161,7 @@ void st_keyed_keep(st_keyed *keyed, const st_kept *answer)
     if (body != NULL) {
         memcpy(body, answer->body, answer->length);
     } else if (answer->length > 0 && !answer->changed) {
-        return; /* nothing to protect, so that it may be tried again */
+        return; /* the request changed nothing, so it may be tried again */
     }
     pthread_mutex_lock(&keys->lock);
     assert(keyed->listed && !keyed->is_kept);
@@ -192,7 +192,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
                       .metadata = kept->metadata};
     snprintf(answer.id, sizeof answer.id, "%s", kept->id);
     st_keyed *keyed;
-    /* The time of a damaged one may be any. */
+    /* The time of a damaged key cannot be trusted. */
     const double time = kept->is_damaged ? st_clock_utc() : was->time;
     switch (st_keys_begin(keys, &key, time, &keyed)) {
     case ST_KEYED_NEW:
@@ -200,7 +200,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
         st_keyed_keep(keyed, &answer);
         st_keyed_end(keyed);
         break;
-    case ST_KEYED_KEPT: /* it was used again: the newer answer is that in memory */
+    case ST_KEYED_KEPT: /* the key was used again: the answer in memory is newer */
         st_keyed_end(keyed);
         break;
     case ST_KEYED_BUSY:

@@ -1,18 +1,18 @@
 /* idempotency.h - the first answers to requests that carried an Idempotency-Key.
  *
  * After draft-ietf-httpapi-idempotency-key-header. A table belongs to a mesh, or to the store for
- * what makes a mesh, and dies with it. An entry is begun before its request is tried, which takes
- * all the memory that remembering needs:
+ * requests that make a mesh, and is freed with it. An entry is begun before its request is tried,
+ * which allocates all the memory that remembering the answer needs:
  *
- *     keyed ----> under way ----> kept, with the answer        after ST_KEPT_SECONDS, or when
- *                     |             |                          newer ones need the room, forgotten
- *                     +-> end       +-> the same keyed is told the answer
+ *     keyed ----> under way ----> kept, with the answer        forgotten after ST_KEPT_SECONDS, or
+ *                     |             |                          when newer ones need the room
+ *                     +-> end       +-> a repeated request gets the answer
  *
- * The body of an answer is a copy made when it is kept. Where it is larger than ST_KEPT_BODY or
- * memory is out, status and tag are kept without it: that the request took effect is never
- * forgotten for want of memory. Keys of changes come back with their mesh, and those of the store
- * at its start, from the journal: with 201 or 204 and the tag, without a body. The table has a lock
- * of its own, taken after all others. */
+ * The body of an answer is copied when it is kept. If it is larger than ST_KEPT_BODY or memory is
+ * out, status and tag are kept without it, so a lack of memory never forgets that the request took
+ * effect. Keys of changes come back from the journal with their mesh, and those of the store when
+ * it starts: with 201 or 204 and the tag, without a body. The table has a lock of its own, taken
+ * after all others. */
 #ifndef HE_STORE_IDEMPOTENCY_H
 #define HE_STORE_IDEMPOTENCY_H
 
@@ -21,43 +21,44 @@
 #include <pthread.h>
 
 enum {
-    ST_KEPT_BYTES = 16 << 20, /* of one table, entries and bodies */
-    ST_KEPT_BODY = 4 << 20    /* of one answer */
+    ST_KEPT_BYTES = 16 << 20, /* most bytes of one table, entries and bodies */
+    ST_KEPT_BODY = 4 << 20    /* most bytes of one answer's body */
 };
 
 typedef struct st_keys {
     pthread_mutex_t lock;
     struct st_keyed **buckets;        /* a power of two, NULL before the first */
-    size_t bucket_count, count;       /* of all entries */
-    struct st_keyed *oldest, *newest; /* of those kept */
+    size_t bucket_count, count;       /* buckets; entries in all */
+    struct st_keyed *oldest, *newest; /* of the entries with a kept answer */
     size_t kept;
-    uint64_t bytes; /* of those kept */
+    uint64_t bytes; /* bytes of the entries with a kept answer */
     uint64_t secret[2];
 } st_keys;
 
-/* An entry, counted by its table and by the request that began it. */
+/* An entry, with two references: from its table and from the request that began it. */
 struct st_keyed {
     st_keys *keys;
     unsigned uses;
     bool is_kept, listed; /* listed: the table holds it */
-    bool is_damaged;      /* which request it was of is not known any more */
+    bool is_damaged;      /* it is not known any more to which request it belongs */
     st_record_key key;    /* as a record carries it */
     uint64_t hash;
-    st_kept answer; /* `body` is owned */
+    st_kept answer; /* owns `body` */
     struct st_keyed *next, *older, *newer;
-    char text[]; /* of the key, and behind its end the holder */
+    char text[]; /* the key, and after its NUL the holder */
 };
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);
 void st_keys_clear(st_keys *keys); /* no request may be under way */
 /* `now` in seconds since 1970. */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
-/* Forgets a kept answer that was lent with ST_KEYED_KEPT, in place of st_keyed_end. */
+/* Removes a kept answer that was lent with ST_KEYED_KEPT. The caller calls it instead of
+ * st_keyed_end. */
 void st_keys_forget(st_keyed *keyed);
-/* Brings a key back that the journal kept (an st_take_key): its answer is 201 or 204, without a
- * body. `keys` is an st_keys. */
+/* Restores a key from the journal (an st_take_key): its answer is 201 or 204, without a body.
+ * `keys` is an st_keys. */
 bool st_keys_restore(void *keys, const st_kept_key *kept);
-/* Free the bodies nobody reads. */
+/* Frees the bodies that no request reads. */
 void st_keys_shed(st_keys *keys);
 
 #endif

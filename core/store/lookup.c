@@ -7,14 +7,14 @@
 
 #include <string.h>
 
-/* How long a thread waits for the lookup of another: microseconds. */
+/* How many microseconds a thread waits for another thread's lookup. */
 enum { LOOKUP_MICROS = 30 * 1000 * 1000 };
 
 struct st_lookup {
     char id[ST_MESH_ID + 1];
-    size_t uses; /* by the one who does it and those who wait */
+    size_t uses; /* the thread that does it and those that wait */
     bool ended;
-    st_status status; /* why the mesh is not there; ST_OK: the table says what is */
+    st_status status; /* why there is no mesh; ST_OK: the table has it */
     st_lookup *next;
 };
 
@@ -31,7 +31,7 @@ void st_lookups_clear(st_lookups *lookups)
     pthread_mutex_destroy(&lookups->lock);
 }
 
-/* --- under the lock --- */
+/* --- functions that need the lock --- */
 
 static st_lookup *find(const st_lookups *lookups, const char *id)
 {
@@ -63,7 +63,8 @@ static st_status add(st_lookups *lookups, const char *id, st_lookup **out)
     return ST_OK;
 }
 
-/* Waits until another thread's lookup has ended. ST_OK: look in the table again. */
+/* Waits until another thread's lookup has ended. With ST_OK the caller must search the table
+ * again. */
 static st_status await(st_lookups *lookups, st_lookup *lookup, uint64_t until)
 {
     const uint64_t since = st_clock_micros();
@@ -129,7 +130,8 @@ st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out)
     st_status status;
     do {
         status = st_lookup_begin(store, id, &mesh, out);
-    } while (status == ST_ABSENT); /* another looked for it and found none: now it is our turn */
+    } while (status ==
+             ST_ABSENT); /* another thread found no such mesh: now this one looks for a free id */
     if (status != ST_OK) {
         return status;
     }
@@ -155,7 +157,8 @@ void st_lookup_end(st_store *store, st_lookup *lookup)
 
 /* --- a mesh that is on the disk --- */
 
-/* Stands for a mesh that cannot be loaded: it has the facts of the card, but no content. */
+/* Makes a mesh in place of one that cannot be loaded: it has the facts of the card, but no
+ * content. */
 static st_status stand_in(const st_mesh_options *options, const st_card *card, st_status why,
                           st_mesh **out)
 {
@@ -225,7 +228,7 @@ static st_status put_in(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* `mesh` where it was found; one that cannot be read has no content. */
+/* `mesh` is NULL if it was not found; one that cannot be read has no content. */
 static void count_load(st_store *store, st_status status, const st_mesh *mesh, uint64_t micros)
 {
     st_store_counts *counts = &store->followers.counts;
@@ -267,7 +270,7 @@ st_status st_load(st_store *store, const char *id, st_mesh **out)
     return status;
 }
 
-/* --- without loading it --- */
+/* --- meshes that are not loaded --- */
 
 st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold *out)
 {
@@ -295,7 +298,7 @@ st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold
     return ST_OK;
 }
 
-/* The last record is that of a mesh without content which is never in the table. */
+/* Makes a mesh without content, never in the table, to append its last record. */
 static st_mesh *new_stand_in(const st_cold *cold)
 {
     const st_mesh_options options = st_store_mesh_options(cold->store);

@@ -1,5 +1,5 @@
-/* The kinds of commit: an edit, which may be of a claim's copy, steps, replace, rename, removal.
- * Each goes into the history first, then to the journal and the listeners. */
+/* The kinds of commit: an edit (perhaps of a claim's copy), steps, replace, rename, removal. Each
+ * is first put into the history, then sent to the journal and the listeners. */
 #include "store/mesh_commit.h"
 
 #include "system/clock.h"
@@ -21,7 +21,7 @@ static double revise(st_mesh *mesh)
     return mesh->info.modified;
 }
 
-/* Not known where the content was changed as a whole. */
+/* The tally is not known if the whole content was replaced. */
 static st_tally tally_of(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -34,7 +34,7 @@ static st_tally tally_of(const he_changes *changes)
     return tally;
 }
 
-/* Its delta stays until it was published, whatever the history keeps of it. */
+/* The delta is held until it was published, even if the history drops it. */
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
@@ -87,7 +87,7 @@ static void rename_mesh(st_mesh *mesh, const char *name)
     mesh->info.modified = st_clock_utc();
 }
 
-/* A replacement with a name is two records that belong together. */
+/* A replacement with a new name is two records of one group. */
 static void commit_facts(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -116,7 +116,7 @@ static void commit_facts(st_write *w)
                   .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
-/* Puts in what the write made; what it takes the place of is the caller's to free. */
+/* Puts the new content in and returns the old one, which the caller frees. */
 static he_mesh *exchange_content(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -128,13 +128,13 @@ static he_mesh *exchange_content(st_write *w)
     }
     he_mesh *before = mesh->content;
     if (before == w->content) {
-        return NULL; /* not even written: a mesh may be removed beside a claim, which reads it */
+        return NULL; /* not changed at all: a mesh may be removed beside a claim, which reads it */
     }
     mesh->content = w->content;
     return before;
 }
 
-/* Books the place of the record. A claim does so without the lock: no one else has its content. */
+/* Reserves room for the record. A claim does so without the lock: no other thread has its copy. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;
@@ -159,7 +159,7 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* With a place in the journal, which is lost with all that is lost from now on. */
+/* Called after the room is reserved, so that a later loss takes this record too. */
 static bool is_from_lost(const st_write *w)
 {
     st_waits *waits = w->mesh->followers->waits;
@@ -170,8 +170,8 @@ static bool is_from_lost(const st_write *w)
     return lost;
 }
 
-/* Refused where there is no place in the journal, a claimed mesh was removed or lost meanwhile, or
- * its holder may have no more. */
+/* Refuses the commit if the journal has no room, a claimed mesh was removed or lost meanwhile, or
+ * the holder may not have more. */
 static st_status get_ready(st_write *w)
 {
     const st_status unreadable = w->kind == ST_WRITE_REMOVE ? ST_OK : w->info.unreadable;
@@ -223,11 +223,11 @@ st_status st_write_commit(st_write *w, const char *ops)
     }
     st_mesh_facts(mesh, &w->info);
     if (removed) {
-        /* Only now may the id be another's. */
+        /* Only after its last record may the id be given to another mesh. */
         st_store_take_out(mesh->store, mesh);
     }
     st_write_end(w, discard);
-    /* No copy can travel across a replacement. */
+    /* No copy can cross a replacement. */
     if (cut_off) {
         st_mesh_shed(mesh);
     }

@@ -1,15 +1,15 @@
-/* mesh_commit.h - what mesh_write.c and mesh_commit.c share of a write. */
+/* mesh_commit.h - functions that mesh_write.c and mesh_commit.c share. */
 #ifndef HE_STORE_MESH_COMMIT_H
 #define HE_STORE_MESH_COMMIT_H
 
 #include "store/stored_mesh.h"
 #include "store/write.h"
 
-/* Under the lock: forgets the claim. */
+/* Ends the claim. The caller holds the lock. */
 void st_mesh_unclaim(st_mesh *mesh);
-/* Under the lock: what st_write_abort does. */
+/* Does the work of st_write_abort. The caller holds the lock. */
 void st_write_give_up(st_write *write);
-/* Gives the lock back and frees `discard` and what the write held. */
+/* Releases the lock, and frees `discard` and everything the write holds. */
 void st_write_end(st_write *write, he_mesh *discard);
 
 #endif

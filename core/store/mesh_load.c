@@ -14,17 +14,17 @@
 typedef struct load {
     const st_mesh_options *options;
     uint64_t until;    /* the revision that is wanted, 0: the last */
-    st_mesh *mesh;     /* its content and log are NULL and empty before the base */
-    uint64_t bytes;    /* that the card says its content takes */
-    uint64_t record;   /* the last that was applied, 0: none */
-    uint64_t metadata; /* after it */
-    uint64_t reach;    /* after it */
-    st_record pending; /* a base or record whose parts are coming; its texts are here */
-    bool is_base;      /* it is a base */
+    st_mesh *mesh;     /* before the base its content is NULL and its log empty */
+    uint64_t bytes;    /* bytes that the content takes, by the card */
+    uint64_t record;   /* number of the last record applied, 0: none */
+    uint64_t metadata; /* after that record */
+    uint64_t reach;    /* after that record */
+    st_record pending; /* a base or record whose parts are being read; its texts are here */
+    bool is_base;      /* `pending` is a base */
     char ops[ST_ENTRY_OPS];
-    he_stored_reader *content; /* that the parts make */
+    he_stored_reader *content; /* the reader of the parts of a content */
     unsigned char *edit;       /* or the coded edit */
-    uint64_t missing;          /* parts; 0: nothing is pending */
+    uint64_t missing;          /* parts not read yet; 0: nothing is pending */
     char *damage;
 } load;
 
@@ -43,7 +43,7 @@ static st_status no_memory(void)
     return st_memory_is_full() ? ST_BUDGET : ST_NO_MEMORY;
 }
 
-/* What core said while it read record `number`. */
+/* Turns an error of the kernel, while reading record `number`, into a status and a sentence. */
 static st_status status_of(load *l, he_status status, uint64_t number, const he_error *err)
 {
     if (status == HE_OK) {
@@ -75,7 +75,7 @@ static st_status wrong_marks(load *l, const st_record *record)
 
 /* --- contents --- */
 
-/* The history begins with this content, which is taken. */
+/* Begins the history with this content, which it takes. */
 static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -87,7 +87,7 @@ static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* PUT. */
+/* Applies a record of a replacement (PUT). */
 static st_status replace(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -102,7 +102,7 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* The reserved delta, with what led to the record, becomes its entry. */
+/* Adds the reserved delta, which led to the record, as its entry. */
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
@@ -116,7 +116,7 @@ static st_status add_edit(load *l, const st_record *record)
     return ST_OK;
 }
 
-/* An edit of which all is known is the content after it. */
+/* Applies an edit whose record has the whole content after it, and no delta. */
 static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -137,7 +137,7 @@ static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
     return add_edit(l, record);
 }
 
-/* The content of a base or a record is whole. */
+/* The content of a base or of a record has been read completely. */
 static st_status take_content(load *l, const st_record *record, bool is_base, he_mesh *takes)
 {
     if (!has_marks(takes, record->issued)) {
@@ -148,7 +148,7 @@ static st_status take_content(load *l, const st_record *record, bool is_base, he
         return begin_history(l, record, takes);
     }
     if (record->barrier) {
-        l->mesh->base = record->revision; /* what is before may go */
+        l->mesh->base = record->revision; /* revisions before it may be purged */
     }
     return record->kind == ST_RECORD_CONTENT ? replace(l, record, takes)
                                              : edit_whole(l, record, takes);
@@ -163,7 +163,7 @@ static void free_parts(load *l)
     l->missing = 0;
 }
 
-/* Memory for the edit that comes in parts; its size is known when all came. */
+/* Allocates memory for an edit in parts; its exact size is known when all parts are read. */
 static st_status begin_edit(load *l, const st_piece *piece)
 {
     if (piece->parts > ST_MOST_BODY / HE_STORED_PART + 1) {
@@ -287,7 +287,7 @@ static st_status take_step(load *l, const st_record *record)
     } else {
         he_delta_redo(delta, mesh->content);
     }
-    /* What a replace within an edit had issued is in the marks alone. */
+    /* Ids issued by a replacement within an edit are in the record's high-water marks only. */
     he_status status = he_mesh_issue(mesh->content, record->issued, &err);
     if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
         return wrong_marks(l, record);
@@ -298,7 +298,7 @@ static st_status take_step(load *l, const st_record *record)
     return status_of(l, status, record->number, &err);
 }
 
-/* Is it the record that has to come, of this mesh? */
+/* Is it the record that must come next, and of this mesh? */
 static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
@@ -353,8 +353,8 @@ static st_status take_base(load *l, const st_piece *piece)
     if (l->until != 0 && record->revision > l->until) {
         return ST_GONE;
     }
-    /* With what the content holds of columns that are not full; of an earlier revision also the
-     * copy that is made of it. */
+    /* The factor accounts for spare capacity of columns, and for the copy that is made of an
+     * earlier revision. */
     st_make_room(l->options->store, l->until == 0 ? l->bytes + l->bytes / 2 : 2 * l->bytes);
     l->record = record->number;
     l->metadata = record->metadata;
@@ -413,14 +413,14 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* The history is what it was, but for a budget that is much smaller by now. */
+/* The history is as it was, unless the budget is much smaller now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);
     st_log_limit(&l->mesh->log, l->options->undo_budget);
 }
 
-/* Is this piece the first one beyond the revision that is wanted? */
+/* Is this piece the first one after the revision that is wanted? */
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||

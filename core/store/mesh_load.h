@@ -1,33 +1,39 @@
-/* mesh_load.h - a mesh comes back from the journal.
+/* mesh_load.h - loads a mesh from the journal.
  *
  *     base:                [content]                            the history begins here
- *     records after it:    [edit] [edit] [undo] [rename] ...    each by the functions that made it
- *     end:                 what the card says must be so, he_check
+ *     records after it:    [edit] [edit] [undo] [rename] ...    each applied like the original
+ * change end:                 the mesh must agree with its card, he_check
  *
  * The content, the undo and redo stacks, the entries of the history and the facts are then what
- * they were when the last of the records was made. */
+ * they were after the last record. */
 #ifndef HE_STORE_MESH_LOAD_H
 #define HE_STORE_MESH_LOAD_H
 
 #include "store/stored_mesh.h"
 
-/* Makes room in memory and reads all pieces of a mesh. `until` is a revision: what comes after it
- * is not applied, and the history is the one of then; 0 for all. ST_GONE: the base is of a later
- * revision, or no record leads to just that one; only the first costs less than a load. ST_DAMAGED
- * where the pieces make no mesh or another than the card's, which condemns it; ST_NEWER where one
- * is of a version that is not known: `damage` says what is wrong. ST_FAILED, ST_NO_MEMORY,
- * ST_BUDGET. */
+/* Makes room in memory and loads a mesh. `until` is a revision at which the load stops, with the
+ * history of that time; 0 loads everything. With ST_DAMAGED and ST_NEWER, `damage` says what is
+ * wrong.
+ * Returns ST_GONE if the base is of a later revision, which is found at once, or if no record leads
+ * to exactly that revision, which is found at the end.
+ * Returns ST_DAMAGED if the pieces make no mesh, or not the one of the card; the card is then
+ * marked.
+ * Returns ST_NEWER if a newer release wrote a piece.
+ * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
                        uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
-/* As far as the pieces make a mesh: it is at the revision up to which they do, and `damage` says
- * what is wrong after it, "" where nothing is. ST_DAMAGED, with `damage`, where they make none;
- * ST_NEWER likewise; ST_FAILED, ST_NO_MEMORY, ST_BUDGET. */
+/* Loads as much of a mesh as is intact: up to the last revision that can be read. `damage` says
+ * what is wrong after that, "" if nothing is.
+ * Returns ST_DAMAGED with `damage` if no revision can be read.
+ * Returns ST_NEWER with `damage` if a newer release wrote the first piece.
+ * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, st_reader *reader,
                           st_mesh **out, char damage[ST_DAMAGE]);
-/* A second copy of a mesh, up to a revision (0: the newest), with all of the history that the disk
- * has of it and no budget; in no table, and freed by st_release. Waits, without a lock. ST_GONE
- * where the records do not reach back to the revision; *out is NULL then and after ST_FAILED,
- * ST_NO_MEMORY, ST_BUDGET. */
+/* Loads a second copy of a mesh, up to a revision (0: the newest), with all of the history on the
+ * disk and no undo budget. The copy is in no table; st_release frees it. Waits, without a lock. On
+ * failure *out is NULL.
+ * Returns ST_GONE if the records do not reach back to the revision.
+ * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
 st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out);
 
 #endif

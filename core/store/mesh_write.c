@@ -1,4 +1,4 @@
-/* Beginning a write, preparing what it commits, and taking it back. */
+/* Begins a write, prepares what it commits, and aborts it. */
 #include "store/mesh_commit.h"
 
 #include "store/table.h"
@@ -19,7 +19,7 @@ static void begin_recording(st_write *w)
     }
 }
 
-/* Under the lock. */
+/* The caller holds the lock. */
 static st_status begin(st_write *w)
 {
     const st_mesh *mesh = w->mesh;
@@ -45,7 +45,7 @@ static st_cause cause_of(const st_cause *cause)
 
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out)
 {
-    /* What is only kept for later makes room for what is done now. */
+    /* Free caches before refusing memory to a request. */
     st_make_room(mesh->store, 0);
     *out = (st_write){.mesh = mesh, .cause = cause_of(cause)};
     st_lock_write(&mesh->lock);
@@ -82,7 +82,7 @@ void st_claimed_by(st_mesh *mesh, const char *id)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
-/* Other writes change the mesh only when the claim has ended. */
+/* Needs no lock: other writes cannot change the mesh until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *w)
 {
     assert(w->claimed);
@@ -100,7 +100,7 @@ he_status st_write_copy(st_write *w, he_watch *watch, he_error *err)
     return status;
 }
 
-/* Objects in the delta are the copy's old side. */
+/* The objects of the delta are from the copy, so they go with it. */
 void st_write_discard_copy(st_write *w)
 {
     assert(w->claimed);
@@ -132,7 +132,7 @@ bool st_write_undoable(const st_write *w)
     return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 
-/* Back to where the writer began; what it recorded is forgotten, and nothing records any more. */
+/* Rolls back to where the write began, empties its delta and stops recording. */
 static void roll_back(st_write *w)
 {
     if (w->delta != NULL) {
@@ -198,8 +198,8 @@ static bool reserve_steps(st_write *w)
     return true;
 }
 
-/* The event shows values as they are after this step, so that it is written now. One step comes to
- * what is found for the answer. */
+/* The event shows values as they are after this step, so it is rendered now. For a single step, the
+ * net changes found for the answer are used. */
 static void write_event(st_write *w, uint32_t i)
 {
     const st_mesh *mesh = w->mesh;
@@ -215,7 +215,7 @@ static void write_event(st_write *w, uint32_t i)
     st_event_write(mesh, &info, &change, &w->events[i]);
 }
 
-/* What all steps come to. */
+/* Computes the net changes of all steps together. */
 static bool find_sum(st_write *w)
 {
     he_change_part *parts = he_mem_array(NULL, w->steps, sizeof *parts);
@@ -247,7 +247,7 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    /* A step makes a revision by itself: it may not be recorded into another. */
+    /* A step is a revision of its own: the reserved delta must not record it. */
     roll_back(w);
     w->which = which;
     w->steps = steps;
@@ -273,7 +273,7 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     return ST_OK;
 }
 
-/* --- the rest --- */
+/* --- replace, rename, remove, end --- */
 
 void st_write_replace(st_write *w, he_mesh *takes, st_stage *stage)
 {

@@ -1,38 +1,38 @@
-/* A younger base for a mesh whose records have become many, so that loading it and the
- * disk stay within bounds.
+/* Makes a newer base for a mesh with many records, so that its loading time and disk space stay
+ * bounded.
  *
  *     base ... records ... | ... records ...
- *                          +-- snapshot, staged while edits go on; it waits until nothing that
- *                              can be undone, done again or read lies before it, then it is the
- *                              base, and what is before it goes
+ *                          +-- snapshot, staged while edits go on; when nothing before it can be
+ *                              undone, redone or read any more, it becomes the base, and the
+ *                              records before it are purged
  *
  * A snapshot is due when the records since the last one take more than the content, and
- * ST_BASE_BYTES at least. An undo of what lies before it spoils it: it can be no base any more, for
- * the records after it need what is before it. So does a record that holds the whole content and
- * ends the history, such as a PUT: that is the base itself. One that waits is dropped when its mesh
- * leaves memory. */
+ * ST_BASE_BYTES at least. An undo of a change before the snapshot makes it useless, because the
+ * records after the undo need those before the snapshot. So does a record that holds the whole
+ * content and ends the history, such as a PUT: that record is a base itself. A snapshot that waits
+ * to become the base is dropped when its mesh is evicted. */
 #include "store/table.h"
 #include "system/lock.h"
 
 #include <string.h>
 
-/* The mesh is loaded from such a record on: nothing before it is needed. */
+/* Can the mesh be loaded from this record on, without any before it? */
 static bool is_base(const st_record *record)
 {
     return record->barrier && !record->staged_edit &&
            (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
-/* A record without its body, and a content on the disk beside one in memory. */
+/* Bytes of a record without its body; how much smaller a content is on the disk than in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
 
 /* A snapshot that may become the base. */
 struct st_next_base {
-    bool taking; /* it is being staged: only its taker has more to do with it */
+    bool taking; /* it is being staged: only the thread that stages it may change it */
     bool spoiled;
     st_stage *stage;
-    uint64_t before; /* bytes of records up to it */
-    st_record facts; /* of the mesh then */
+    uint64_t before; /* bytes of records before it */
+    st_record facts; /* facts of the mesh at that point */
     char name[ST_MESH_NAME + 1];
 };
 
@@ -52,8 +52,8 @@ void st_rebase_drop(st_mesh *mesh)
     mesh->next_base = NULL;
 }
 
-/* Under the exclusive lock, with the snapshot on the disk: may it be the base by now? Then entries
- * that a load could not bring back go here too. */
+/* Makes the snapshot the base if that is possible by now; entries that a load could not restore are
+ * then dropped here too. The caller holds the exclusive lock, and the snapshot is on the disk. */
 static void settle(st_mesh *mesh)
 {
     st_next_base *next = mesh->next_base;
@@ -70,7 +70,7 @@ static void settle(st_mesh *mesh)
     }
 }
 
-/* Under the shared lock: an immutable copy of what the mesh is, and the facts of it. */
+/* Takes an immutable copy of the mesh, and its facts. The caller holds the shared lock. */
 static st_status begin(st_mesh *mesh, st_snapshot **out)
 {
     st_next_base *next = mesh->next_base;
@@ -88,7 +88,7 @@ static st_status begin(st_mesh *mesh, st_snapshot **out)
     return st_snapshot_held(mesh, out);
 }
 
-/* On the pool. */
+/* Runs on a thread of the pool. */
 static void take(void *context)
 {
     st_mesh *mesh = context;
@@ -110,7 +110,7 @@ static void take(void *context)
         mesh->appended -= next->before;
         settle(mesh);
     } else {
-        mesh->appended = 0; /* without memory or disk it is put off */
+        mesh->appended = 0; /* if memory or disk space is out, the next try comes later */
         st_rebase_drop(mesh);
     }
     pthread_rwlock_unlock(&mesh->lock);

@@ -5,10 +5,10 @@
 #include <assert.h>
 #include <string.h>
 
-/* A reserved delta that grew beyond this is freed rather than kept for the next edit. */
+/* A reserved delta larger than this is freed rather than reused for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-/* The ring is at least a quarter full, but for these. */
+/* The ring is at least a quarter full, unless it has only this many places. */
 enum { FEWEST_PLACES = 8 };
 
 static void note_marks(st_point *point, const he_mesh *content)
@@ -129,7 +129,7 @@ static void forget_delta(st_revision_log *log, st_revision *entry)
     }
 }
 
-/* A step that can no longer be done again still serves those who travel along the log. */
+/* Empties the redo stack. Copies that cross the log still use the steps of its entries. */
 static void clear_redo(st_revision_log *log)
 {
     while (log->redo_top != NULL) {
@@ -147,7 +147,7 @@ static void clear_stacks(st_revision_log *log)
     }
 }
 
-/* Entries stay as history; what they changed is gone, and only the newest can be read. */
+/* Entries stay as history without their deltas; only the newest revision can be read. */
 static void forget_deltas(st_revision_log *log)
 {
     clear_stacks(log);
@@ -176,7 +176,7 @@ static void drop_undo_bottom(st_revision_log *log)
     release_step(log, step);
 }
 
-/* The steps of the undo stack were applied last in the order in which they lie there: so the step
+/* The steps of the undo stack were last applied in the order in which they lie there, so the step
  * that the oldest entry applied last, if it is on the undo stack, is at its bottom. */
 static void drop_oldest(st_revision_log *log)
 {
@@ -204,7 +204,7 @@ static void drop_oldest(st_revision_log *log)
     log->dropped++;
 }
 
-/* Few entries in the place of many: give the places back, if there is memory to move. */
+/* Shrinks a ring that has become mostly empty, if there is memory to move its entries. */
 static void shrink_ring(st_revision_log *log)
 {
     if (log->capacity > FEWEST_PLACES && log->count < log->capacity / 4) {
@@ -222,7 +222,7 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays, whatever the budget: it says what the present revision is. */
+    /* The newest entry stays whatever the budget: it has the facts of the present revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
     }
@@ -237,7 +237,7 @@ void st_log_limit(st_revision_log *log, uint64_t budget)
     }
     st_log_settle(log);
     if (log->bytes > budget) {
-        forget_deltas(log); /* steps to do again, of a larger budget */
+        forget_deltas(log); /* the redo steps come from a larger budget */
     }
 }
 
@@ -316,7 +316,7 @@ void st_log_unreserve(st_revision_log *log)
     }
 }
 
-/* Bytes of the step that the reserved delta would become. */
+/* Returns the bytes of the step that the reserved delta would become. */
 static size_t spare_bytes(const st_revision_log *log)
 {
     const he_delta *delta = log->spare_step->delta;
@@ -326,7 +326,7 @@ static size_t spare_bytes(const st_revision_log *log)
 
 static size_t entry_size(size_t ops)
 {
-    /* A ring that grows is half empty. */
+    /* A ring that has just grown is half empty, so an entry counts two slots. */
     return sizeof(st_revision) + ops + 1 + 2 * sizeof(st_revision *);
 }
 
@@ -335,7 +335,7 @@ bool st_log_fits(const st_revision_log *log)
     return spare_bytes(log) + entry_size(ST_ENTRY_OPS) <= log->budget;
 }
 
-/* Cut at a name's end, so that the reader sees whole names and then "...". */
+/* Cuts at the end of a name, so that a reader sees whole names and then "...". */
 static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
 {
     size_t length = strlen(ops);
@@ -351,7 +351,7 @@ static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
     memcpy(out + end, end == 0 ? "..." : ",...", end == 0 ? sizeof "..." : sizeof ",...");
 }
 
-/* The entry becomes the newest one. */
+/* Makes the entry the newest one. */
 static void add_entry(st_revision_log *log, st_revision *entry)
 {
     assert(log->count < log->capacity && entry->point.revision == st_log_head(log) + 1);
@@ -360,7 +360,7 @@ static void add_entry(st_revision_log *log, st_revision *entry)
     log->bytes += entry->size;
 }
 
-/* The reserved entry, of content that differs from all before. */
+/* Adds the reserved entry, for a content that differs from all before. */
 static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action action,
                               const char *ops, double time, const he_mesh *content)
 {
@@ -411,7 +411,7 @@ void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, d
         log->bytes += step->charged;
     }
     st_log_settle(log);
-    /* Without memory to trim it, the step can be larger than was foreseen. */
+    /* If there was no memory to trim it, the step can be larger than expected. */
     if (log->bytes > log->budget) {
         forget_deltas(log);
     }
@@ -439,7 +439,7 @@ void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, 
     }
 }
 
-/* What an undo created is what the edit deleted, and the other way round. */
+/* Swaps created and deleted: what an undo creates is what the edit deleted. */
 static void turn_tally(st_tally *tally)
 {
     st_tally before = *tally;
@@ -447,8 +447,8 @@ static void turn_tally(st_tally *tally)
     memcpy(tally->deleted, before.created, sizeof tally->deleted);
 }
 
-/* An entry that applies a step the other way than the entry that applied the step last, which a
- * step on a stack always has. */
+/* Makes an entry that applies a step in the other direction than the entry that applied it last; a
+ * step on a stack always has that one. */
 static st_revision *step_entry(const st_revision_log *log, const st_step *step)
 {
     const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);
@@ -490,7 +490,7 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
     log->steps = entry->next;
     st_step *step = which == ST_UNDO ? pop_undo(log) : pop_redo(log);
     assert(step->revision == entry->inverts);
-    /* Columns and contents have changed sides, and with them who holds their bytes. */
+    /* Columns and contents have changed sides, so the step holds other bytes now. */
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
     entry->action = which;
     entry->forward = which == ST_REDO;

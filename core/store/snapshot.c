@@ -6,7 +6,7 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* What one caller holds: a copy that many may share, and the facts as they were when it asked. */
+/* A reference to a copy that many callers may share, and the mesh's facts when the caller asked. */
 struct st_snapshot {
     st_copy *copy;
     st_mesh_info info;
@@ -21,7 +21,7 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Its bytes are those of its content now: the edits by which it is brought forward add little. */
+/* Counts the bytes of the content now: the edits that bring the copy forward add little. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
     copy->counts = &mesh->followers->counts;
@@ -29,14 +29,14 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
     st_count(&copy->counts->copies, copy->bytes);
 }
 
-/* Under the snapshot lock nobody else can begin to use the cached copy. */
+/* Under the snapshot lock no other thread can begin to use the cached copy. */
 static bool is_cached_alone(const st_copy *copy)
 {
     return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
 }
 
-/* Replaying costs about a random access a record, copying a stream: above half the mesh's bytes
- * the copy is cheaper. */
+/* Replaying costs about one random access a record, copying is sequential: above half the mesh's
+ * bytes the copy is cheaper. */
 static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
 {
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
@@ -64,7 +64,7 @@ static st_copy *copy_new(const st_mesh *mesh)
     return copy;
 }
 
-/* The cached copy at the present revision, or NULL. Under both locks. */
+/* Returns the cached copy at the present revision, or NULL. The caller holds both locks. */
 static st_copy *present_copy(st_mesh *mesh)
 {
     st_copy *copy = mesh->copy;
@@ -113,8 +113,8 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out)
     return status;
 }
 
-/* Takes the replay, which is at the revision, as the cached copy of an earlier one. Under the past
- * lock. */
+/* Makes the replay, which is at the revision, the cached copy of an earlier revision; takes it. The
+ * caller holds the past lock. */
 static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision, double time)
 {
     st_copy *copy = he_mem_zero(1, sizeof *copy);
@@ -150,7 +150,7 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
     return status;
 }
 
-/* From the history in memory. Under the past lock. */
+/* Makes the copy from the history in memory. The caller holds the past lock. */
 static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
 {
     he_replay *replay = NULL;
@@ -172,8 +172,8 @@ static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
     return status == ST_OK ? cache_past(mesh, replay, revision, time) : status;
 }
 
-/* A revision that the history has dropped, from the disk where the records still reach back to it:
- * a mesh of its own is loaded and becomes the cached copy. Under the past lock. */
+/* Makes the copy from the disk if the records still reach back to a revision that the history has
+ * dropped: loads a second mesh, which becomes the cached copy. The caller holds the past lock. */
 static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
 {
     st_mesh *loaded;
@@ -193,7 +193,7 @@ static st_status copy_from_disk(st_mesh *mesh, uint64_t revision)
     return status;
 }
 
-/* Under the past lock: the cached copy is at the revision. */
+/* Brings the cached copy to the revision. The caller holds the past lock. */
 static st_status seek_past(st_mesh *mesh, uint64_t revision)
 {
     if (mesh->past != NULL && mesh->past->revision == revision) {
@@ -212,7 +212,7 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        /* The facts of now, but for the revision and its time. */
+        /* The facts are the present ones, except for the revision and its time. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
         (void)st_read_begin(mesh, &snapshot->info);
@@ -259,7 +259,7 @@ void st_copy_shed(st_mesh *mesh)
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);
-    /* Held for as long as a copy is being made; that one is wanted. */
+    /* The lock is held while a copy is being made, and that copy is wanted. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);

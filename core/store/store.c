@@ -11,7 +11,7 @@
 
 enum { MESH_BATCH = 64 };
 
-/* --- what the journal tells, on its own thread --- */
+/* --- notices of the journal, on its own thread --- */
 
 static void moved(void *context, uint64_t position)
 {
@@ -19,7 +19,7 @@ static void moved(void *context, uint64_t position)
     st_waits_moved(store->followers.waits, position);
 }
 
-/* Noted first: what a handler has read of a mesh that is lost is not sent any more. */
+/* The loss is noted first, so that answers made from a lost mesh are not sent any more. */
 static void lost(void *context, const st_loss *loss)
 {
     st_store *store = context;
@@ -34,8 +34,8 @@ static void lost(void *context, const st_loss *loss)
             st_release(batch[i]);
         }
     }
-    /* What was lost counts no more. Nothing is admitted before the last loss was told, after which
-     * all there is is what the disk has. Where it cannot be read, counts stay as they were. */
+    /* Lost changes no longer count. No write is accepted until the last loss was reported, and then
+     * the disk has everything there is. If it cannot be read, the counts stay as they were. */
     (void)st_holders_count(&store->holders, &store->journal);
 }
 
@@ -212,7 +212,7 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     return given;
 }
 
-/* What was answered, but was lost, is not answered again: the request is tried anew. */
+/* An answer whose change was lost is not given again: the request is tried anew. */
 static bool is_lost(const st_store *store, const st_kept *kept)
 {
     const st_shown shown = {kept->position, kept->position - 1, kept->incarnation};
@@ -235,7 +235,7 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
 
 /* --- notes --- */
 
-/* A journal of a test may keep none. */
+/* The journal of a test may store no notes. */
 static st_status note(st_store *store, const st_note *what, uint64_t *position)
 {
     const st_journal *journal = &store->journal;
@@ -328,7 +328,7 @@ void st_store_health(const st_store *store, st_health *out)
     }
 }
 
-/* The sums may be of slightly different moments. */
+/* The sums may come from slightly different moments. */
 void st_store_measure(st_store *store, st_store_measures *out)
 {
     st_store_counts *counts = &store->followers.counts;
@@ -385,7 +385,7 @@ void st_store_shed(st_store *store)
     }
 }
 
-/* --- whose meshes are --- */
+/* --- holders of meshes --- */
 
 st_status st_limit_holders(st_store *store, const st_holder_limit *limits, size_t count)
 {

@@ -1,8 +1,8 @@
-/* store_counts.h - what a store counts of itself, for those who watch it (st_store_measure).
+/* store_counts.h - the counters of a store, for monitoring (st_store_measure).
  *
- * Counters are added to without a lock. What meshes take is a sum over those in memory that is
- * never found by looking at all of them: a mesh remembers what it added last, adds the difference
- * when it changes (st_mesh_weigh), and takes it back when it is freed. */
+ * Counters are updated without a lock. The memory of all meshes is a sum that is never computed by
+ * visiting them: a mesh remembers what it added last, adds the difference when it changes
+ * (st_mesh_weigh), and subtracts it when it is freed. */
 #ifndef HE_STORE_STORE_COUNTS_H
 #define HE_STORE_STORE_COUNTS_H
 
@@ -11,16 +11,16 @@
 
 #include <stdatomic.h>
 
-/* How looking for a mesh on the disk went. */
+/* The outcome of loading a mesh from the disk. */
 typedef enum st_loaded {
     ST_LOADED_WHOLE,
-    ST_LOADED_NOTHING, /* there is none of the id */
+    ST_LOADED_NOTHING, /* there is no mesh of the id */
     ST_LOADED_DAMAGED, /* it cannot be read */
     ST_LOADED_FAILED,  /* no memory, or the disk failed */
     ST_LOADED_COUNT
 } st_loaded;
 
-/* What a mesh has in memory. */
+/* The memory of a mesh, by use. */
 typedef enum st_weight {
     ST_WEIGHT_MESHES, /* 1 */
     ST_WEIGHT_VERTICES,
@@ -34,11 +34,11 @@ typedef enum st_weight {
 typedef struct st_store_counts {
     _Atomic uint64_t weights[ST_WEIGHT_COUNT];
     _Atomic uint64_t copies;    /* bytes of snapshots */
-    _Atomic uint64_t revisions; /* that were made */
+    _Atomic uint64_t revisions; /* revisions made */
     _Atomic uint64_t evicted;   /* meshes that left memory to make room */
     _Atomic uint64_t loads[ST_LOADED_COUNT];
-    st_histogram load_time; /* of those that found a mesh, microseconds */
-    st_queue_counts queues; /* of all meshes */
+    st_histogram load_time; /* microseconds of the loads that found a mesh */
+    st_queue_counts queues; /* queues of all meshes */
 } st_store_counts;
 
 static inline void st_count(_Atomic uint64_t *counter, uint64_t amount)

@@ -10,7 +10,7 @@ static void copy_name(char *out, size_t size, const char *name)
     size_t length = strlen(name);
     if (length >= size) {
         length = size - 1;
-        /* Not inside a UTF-8 sequence. */
+        /* Do not cut inside a UTF-8 sequence. */
         while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
             length--;
         }
@@ -19,7 +19,7 @@ static void copy_name(char *out, size_t size, const char *name)
     out[length] = '\0';
 }
 
-/* A steady stream of readers must not keep a writer out. */
+/* The lock prefers writers: a steady stream of readers must not starve one. */
 static int init_lock(pthread_rwlock_t *lock)
 {
     pthread_rwlockattr_t attributes;
@@ -95,7 +95,8 @@ static void put_weights(st_mesh *mesh, const uint64_t weights[ST_WEIGHT_COUNT])
     st_store_counts *counts = &mesh->followers->counts;
     for (size_t i = 0; i < ST_WEIGHT_COUNT; i++) {
         if (weights[i] != mesh->weights[i]) {
-            /* Modular arithmetic: the sum is right whichever is larger. */
+            /* Unsigned subtraction wraps around, so the sum is right even if the new weight is
+             * smaller. */
             st_count(&counts->weights[i], weights[i] - mesh->weights[i]);
             mesh->weights[i] = weights[i];
         }
@@ -237,7 +238,7 @@ st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
     return status;
 }
 
-/* What the newest record says of the mesh counts, as it does when the journal is asked. */
+/* Counts the bytes that the newest record states, as the journal does when it is asked. */
 static void count_held(st_mesh *mesh, const st_record *record)
 {
     const bool removed = record->kind == ST_RECORD_REMOVE;
@@ -294,7 +295,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
         st_lock_write(&mesh->lock);
-        /* Asked again: it may have been removed meanwhile, which is lost too. */
+        /* Checked again under the lock: the mesh may have been removed meanwhile, and the removal
+         * is lost too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
             st_queue_lose(&mesh->queue);
@@ -354,7 +356,7 @@ bool st_cache_get(st_mesh *mesh, void *value, size_t size)
     return found;
 }
 
-/* Without memory nothing is kept, and the value is computed again the next time. */
+/* If memory is out nothing is kept, and the value is computed again next time. */
 void st_cache_put(st_mesh *mesh, const void *value, size_t size)
 {
     pthread_mutex_lock(&mesh->cache_lock);

@@ -7,14 +7,15 @@
  *     st_write_claim --- st_write_copy, st_write_changes --------------+
  *     (no lock)
  *
- * What fails changes nothing. The commit books a place in the journal, which can be refused; then
- * it numbers what was done, puts it into the history, hands it to the journal as one group of
- * records, which become durable together or not at all, and tells the listeners. What changed is
- * found once, by st_write_changes or st_write_step, for the answer, the history and the listeners.
+ * A write that fails changes nothing. The commit reserves room in the journal, which can be
+ * refused; then it numbers the change, puts it into the history, gives it to the journal as one
+ * group of records, which become durable together or not at all, and informs the listeners. The net
+ * changes are found once, by st_write_changes or st_write_step, for the answer, the history and the
+ * listeners.
  *
  * A claim is for a long edit, which works without a lock on a copy of its own. Until the claim ends
- * no other write can change the mesh, so that its content stands still and may be copied; reads go
- * on, and the mesh may be removed. */
+ * no other write can change the mesh, so its content can be read and copied without a lock; reads
+ * go on, and the mesh may be removed. */
 #ifndef HE_STORE_WRITE_H
 #define HE_STORE_WRITE_H
 
@@ -30,78 +31,90 @@ typedef enum st_write_kind {
     ST_WRITE_REMOVE
 } st_write_kind;
 
-/* In the caller's storage, from a begin that succeeded to the commit or abort. */
+/* In the caller's storage, from a successful begin to the commit or abort. */
 typedef struct st_write {
-    st_mesh *mesh;      /* NULL: none is under way */
-    he_mesh *content;   /* to be changed, recording; of a claim the copy, NULL until it is made */
-    he_delta *delta;    /* what was recorded; NULL where info.busy, and after a step or replace */
-    he_changes changes; /* what it comes to, until the end */
-    st_mesh_info info;  /* of the mesh as it was found; after the commit, as it is */
+    st_mesh *mesh;      /* NULL: no write is under way */
+    he_mesh *content;   /* to be changed, recording; for a claim the copy, NULL until it is made */
+    he_delta *delta;    /* the recorded delta; NULL if info.busy, and after a step or replace */
+    he_changes changes; /* the net changes, until the write ends */
+    st_mesh_info info;  /* facts of the mesh at the begin; after the commit, the new ones */
 
-    /* --- the store's own --- */
+    /* --- private to the store --- */
     st_write_kind kind;
-    bool claimed, found; /* found: `changes` was filled in */
+    bool claimed, found; /* found: `changes` is filled in */
     st_cause cause;
     he_savepoint mark; /* where the delta began */
-    const char *name;  /* of a rename */
-    st_action which;   /* of a step, with what it takes to commit it */
+    const char *name;  /* for a rename */
+    st_action which;   /* for a step, with what it needs to be committed */
     uint32_t steps;
     he_delta **deltas;
     struct st_event *events;
     st_record *records;
-    st_booking booking;   /* in the journal */
+    st_booking booking;   /* room in the journal */
     const st_shown *from; /* what was read of other meshes */
     size_t from_count;
 } st_write;
 
-/* Takes the exclusive lock. `cause` is what the write is done for, or NULL: its records carry it.
- * Where info.busy a long edit has claimed the mesh: then it may only be removed. Without the lock:
- * ST_ABSENT, ST_LOST, ST_NO_MEMORY; `info` is filled in then too. */
+/* Takes the exclusive lock. `cause` is the reason for the write, or NULL; its records store it. If
+ * info.busy, a long edit has claimed the mesh, which can then only be removed. On failure the lock
+ * is not held, and `info` is filled in too.
+ * Returns ST_ABSENT if the mesh was removed.
+ * Returns ST_LOST if the mesh has a change that was lost.
+ * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
-/* Claims the mesh for a long edit. ST_ABSENT, ST_LOST, ST_DAMAGED, ST_NEWER, ST_BUSY, ST_NO_MEMORY;
- * `info` is filled in then too. */
+/* Claims the mesh for a long edit. `info` is filled in on failure too.
+ * Returns ST_ABSENT or ST_LOST if the store no longer has the mesh.
+ * Returns ST_DAMAGED or ST_NEWER if it has no content.
+ * Returns ST_BUSY if a long edit has claimed it.
+ * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
-/* The content of a claimed mesh, to be looked at until the claim ends. */
+/* Returns the content of a claimed mesh, which may be read until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *write);
-/* Makes the copy that a claim works on, in place of one that was made before. */
+/* Makes the copy that a claim works on; a copy made before is replaced. */
 HE_NODISCARD he_status st_write_copy(st_write *write, he_watch *watch, he_error *err);
-/* Frees the copy with what was done to it; the claim goes on. */
+/* Frees the copy with its changes; the claim goes on. */
 void st_write_discard_copy(st_write *write);
 
-/* The change is made from what these show, which outlive the write: it is lost together with each
- * of them, and is not committed where one is lost already. */
+/* Says that the change is made from what `shown` shows, which must outlive the write. If one of
+ * these is lost, the change is lost too, or is refused if it is not committed yet. */
 void st_write_from(st_write *write, const st_shown *shown, size_t count);
-/* Finds what the recorded edit comes to. */
+/* Computes the net changes of the recorded edit. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
-/* After st_write_changes: could the edit be undone if it were committed? False when it is larger
- * than the undo budget or gives ids another meaning: committing it ends the history. */
+/* After st_write_changes: could the edit be undone if it were committed? False if it is larger than
+ * the undo budget or changes the meaning of ids; committing it then ends the history. */
 bool st_write_undoable(const st_write *write);
-/* Takes that many steps, at least one, back or forward, and finds what they come to: each will be
- * a revision that applies the inverse of an edit. ST_NOTHING where the stack has fewer;
- * ST_NO_MEMORY. */
+/* Undoes or redoes that many steps, at least one, and computes the net changes: each step will be a
+ * revision of its own.
+ * Returns ST_NOTHING if the stack has fewer steps.
+ * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* PUT. Takes `stage` too, that of st_store_stage, or NULL. */
+/* Replaces the content (PUT). Takes `stage` too, which st_store_stage made, or NULL. */
 void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
-/* `name`, which outlives the write, is cut to ST_MESH_NAME bytes. */
+/* Renames the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME bytes. */
 void st_write_rename(st_write *write, const char *name);
 void st_write_remove(st_write *write);
 
-/* Makes it so and ends the write: the new facts are in `info`. `ops` names the operations of an
- * edit for the history, NULL for anything else. Where it is refused the write has ended with
- * nothing done: ST_DAMAGED, ST_NEWER (of such a mesh only the removal can be committed), ST_BEHIND,
- * ST_FULL, ST_FAILED, ST_NO_MEMORY, ST_TOO_LARGE; ST_QUOTA: the mesh would take more than its
- * holder may have (holder/holders.h); a claim whose mesh was removed or lost meanwhile:
- * ST_ABSENT, ST_LOST, which is also said where what it was made from is lost (st_write_from). A
- * claim may wait for the disk, and is not to be committed on a worker. */
+/* Commits the write and ends it: `info` has the new facts. `ops` names the operations of an edit
+ * for the history, NULL for anything else. On failure the write has ended and the mesh is as it
+ * was. The commit of a claim may wait for the disk, so a worker must not call it.
+ * Returns ST_DAMAGED or ST_NEWER if the mesh has no content and this is not its removal.
+ * Returns ST_BEHIND, ST_FULL, ST_FAILED, ST_NO_MEMORY or ST_TOO_LARGE if the journal refuses.
+ * Returns ST_QUOTA if the mesh would take more than its holder may have (holder/holders.h).
+ * Returns ST_ABSENT if a claimed mesh was removed meanwhile.
+ * Returns ST_LOST if it was lost meanwhile, or what the change was made from is lost
+ * (st_write_from). */
 st_status st_write_commit(st_write *write, const char *ops);
-/* Ends the write with nothing done. */
+/* Ends the write; the mesh is as it was. */
 void st_write_abort(st_write *write);
 
-/* Names the job that has claimed the mesh, for those who find it busy. Without a lock. */
+/* Sets the id of the job that has claimed the mesh, which other requests find in `info`. Without a
+ * lock. */
 void st_claimed_by(st_mesh *mesh, const char *id);
-/* How many steps undo (redo) takes to the content of a revision, 0 when it is there, and the bytes
- * of all their deltas. `revision` 0: for that many `steps`, which is read. Under either lock.
- * ST_NOTHING when the stack has fewer steps; ST_AHEAD, ST_GONE, ST_ELSEWHERE. */
+/* Finds how many steps undo (redo) takes to the content of a revision, 0 if the mesh has it now,
+ * and the bytes of all their deltas. If `revision` is 0, `steps` is read and only the bytes are
+ * found. The caller holds either lock.
+ * Returns ST_NOTHING if the stack has fewer steps.
+ * Returns ST_AHEAD, ST_GONE or ST_ELSEWHERE as st_log_steps_to does. */
 st_status st_steps_to(st_mesh *mesh, st_action which, uint64_t revision, uint32_t *steps,
                       uint64_t *bytes);
 

@@ -1,17 +1,16 @@
-/* holders.h - how many meshes each holder has and how many bytes they take, and how many it may
- * have.
+/* holders.h - limits how many meshes and bytes each holder may have.
  *
- * The holder of a mesh is whom it was made for (st_cause): the name of a token. A mesh keeps its
- * holder whoever changes it, and counts for it in memory or not, with the bytes that its content
- * took in memory when it was changed last: those of its card. One that was made for nobody counts
- * for nobody.
+ * The holder of a mesh is the name of the token that created it (st_cause). A mesh keeps its
+ * holder, whichever client changes it, and counts for it in memory or not, with the bytes that its
+ * content took in memory when it was changed last: those on its card. A mesh created without a
+ * token counts for no holder.
  *
- * Whatever changes a mesh first takes what it will count for: where that is more than before and
- * more than the holder may have it is refused, and nothing is changed. Two that take at one time
- * never take more than there is. What the holder has beyond a limit that was lowered stays.
+ * Every change first reserves what the mesh will count for. If that is more than before and more
+ * than the holder may have, the change is refused and nothing is changed. Two changes at the same
+ * time never take more than is left. If a limit is lowered, what the holder has beyond it stays.
  *
- * At the start, and when changes were lost, the journal says what there is. The lock is taken after
- * those of a mesh and of the table; nothing but the journal's cards is asked for under it. */
+ * At the start, and after changes were lost, the counts are read from the journal. The lock is
+ * taken after those of a mesh and of the table; under it only the journal's cards are read. */
 #ifndef HE_STORE_HOLDERS_H
 #define HE_STORE_HOLDERS_H
 
@@ -21,7 +20,7 @@
 
 enum { ST_HOLDER_HEADS = 256 };
 
-/* Made when it is first heard of, and there as long as the store. */
+/* Made when its name first occurs, and never freed before the store. */
 typedef struct st_holder {
     struct st_holder *next;
     uint64_t meshes, bytes;
@@ -39,18 +38,20 @@ typedef struct st_holders {
 void st_holders_init(st_holders *holders, const uint64_t secret[2]);
 void st_holders_clear(st_holders *holders);
 
-/* The holder of this name; *out is NULL for that of nobody, "". ST_NO_MEMORY. */
+/* Finds or makes the holder of this name; *out is NULL for "", no holder.
+ * Returns ST_NO_MEMORY if memory is out. */
 st_status st_holders_find(st_holders *holders, const char *name, st_holder **out);
 
-/* What one mesh counts for: `holder` NULL for nothing. */
+/* What one mesh counts for; `holder` is NULL if it counts for none. */
 typedef struct st_holding {
     st_holder *holder;
     uint64_t bytes;
 } st_holding;
 
-/* A mesh counted for *gone and counts for *come from now on. ST_QUOTA, and nothing is changed. */
+/* Changes what a mesh counts for from *gone to *come.
+ * Returns ST_QUOTA if the holder may not have so much; nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
-/* Counts what is a fact already, whatever the limits. */
+/* st_holders_move that ignores the limits, for changes that are made already. */
 void st_holders_note(st_holders *holders, const st_holding *gone, const st_holding *come);
 
 typedef struct st_holder_limit {
@@ -67,7 +68,8 @@ typedef struct st_usage {
 st_status st_holders_limit(st_holders *holders, const st_holder_limit *limits, size_t count);
 void st_holders_usage(st_holders *holders, const char *name, st_usage *out);
 
-/* Counts all anew from what the journal keeps. ST_NO_MEMORY, ST_FAILED. */
+/* Counts everything again from the journal.
+ * Returns ST_NO_MEMORY or ST_FAILED if the journal cannot be read. */
 st_status st_holders_count(st_holders *holders, const st_journal *journal);
 
 #endif
