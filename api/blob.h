@@ -1,4 +1,4 @@
-/* blob.h - bytes of an answer that lie elsewhere than in memory, such as in a file. */
+/* blob.h - the bytes of an answer that do not lie in memory but, for example, in a file. */
 #ifndef HE_API_BLOB_H
 #define HE_API_BLOB_H
 
@@ -6,11 +6,12 @@
 #include <stdint.h>
 
 typedef struct api_blob {
-    void *self; /* NULL: there is none */
+    void *self; /* NULL: there is no blob */
     uint64_t length;
-    /* Up to `size` bytes from `at` on: how many, -1 on failure. From several threads at a time. */
+    /* Reads up to `size` bytes from position `at`. Returns how many were read, or -1 on failure.
+     * Several threads may call it at the same time. */
     int64_t (*read)(void *self, uint64_t at, char *buffer, size_t size);
-    void (*free)(void *self); /* NULL: it is lent */
+    void (*free)(void *self); /* NULL: the blob is borrowed */
 } api_blob;
 
 #endif

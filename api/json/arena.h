@@ -1,7 +1,7 @@
 /* arena.h - memory that lives as long as one request.
  *
- * Blocks are taken from mem.h and given back together. What the arena hands out is aligned for any
- * type and is never freed alone. {0} is an empty arena. */
+ * Blocks come from mem.h and are freed together. Each allocation is aligned for any type and is
+ * never freed alone. {0} is an empty arena. */
 #ifndef HE_API_JSON_ARENA_H
 #define HE_API_JSON_ARENA_H
 
@@ -13,14 +13,14 @@ typedef struct api_arena {
     api_block *blocks; /* newest first */
 } api_arena;
 
-/* NULL when memory is out; the arena is then as it was. Not zeroed. */
+/* Returns memory that is not zeroed, or NULL when memory is out; the arena is then unchanged. */
 void *api_arena_alloc(api_arena *arena, size_t size);
-/* count * size bytes, NULL as well where the product does not fit. */
+/* Allocates count * size bytes. Returns NULL also when the product overflows. */
 void *api_arena_array(api_arena *arena, size_t count, size_t size);
-/* A copy that ends in NUL, NULL when memory is out. */
+/* Returns a copy that ends in NUL, or NULL when memory is out. */
 char *api_arena_copy(api_arena *arena, const char *bytes, size_t length);
-/* Forget all that was handed out but keep the newest block for what comes next. */
+/* Invalidates all allocations but keeps the newest block for the next ones. */
 void api_arena_empty(api_arena *arena);
-void api_arena_clear(api_arena *arena); /* frees */
+void api_arena_clear(api_arena *arena); /* frees all blocks */
 
 #endif

@@ -2,8 +2,8 @@
  *
  * A code is either a refusal of core (an he_status, same number and slug) or one of API_CODE_MAP.
  * Its row says the HTTP status, the title, and the paragraph served at /problems/{slug}, which is
- * the problem's `type`. Whoever detects an error, the server included, fills an api_problem and
- * has it written here. */
+ * the problem's `type`. Code that detects an error, in the server too, fills an api_problem and
+ * calls api_problem_write. */
 #ifndef HE_API_JSON_PROBLEM_H
 #define HE_API_JSON_PROBLEM_H
 
@@ -233,7 +233,7 @@
     X(TOO_MANY_MESHES, "too_many_meshes", 507, "There are too many meshes",                        \
       "The configured number of meshes is reached. Delete one and try again.")
 
-/* The numbers of he_status, then API_CODE_MAP. HE_OK is "no problem". */
+/* The numbers of he_status come first, then those of API_CODE_MAP. HE_OK means "no problem". */
 typedef enum api_code {
     API_CODE_BASE = HE_STATUS_COUNT - 1,
 #define API_CODE_ENUM(constant, slug, status, title, text) API_##constant,
@@ -244,62 +244,63 @@ typedef enum api_code {
 
 enum { API_PROBLEM_DETAIL = 320, API_PROBLEM_POINTER = 256 };
 
-/* Cleared by {0}. */
+/* {0} is "no problem". */
 typedef struct api_problem {
     int code;                        /* api_code or he_status; HE_OK: none */
-    int status;                      /* HTTP; 0 takes the code's */
+    int status;                      /* HTTP status; 0: the one of the code */
     char detail[API_PROBLEM_DETAIL]; /* one sentence, UTF-8 */
     bool has_pointer;                /* "" points at the whole body */
     char pointer[API_PROBLEM_POINTER];
     bool has_element;
     he_kind kind;
     uint32_t id;
-    bool has_revision; /* the present one, with 412 */
+    bool has_revision; /* `revision` is set: the present revision, with 412 */
     uint64_t revision;
-    const he_report *report;      /* `elements` and `total`, borrowed; NULL: none */
-    unsigned repairs;             /* the set that lets the body pass (repair.h); 0: none */
-    bool report_pointers;         /* add "/faces/3/1" to each: the body is a mesh document */
-    const char *const *supported; /* with 406 and 415, ends in NULL, borrowed */
-    uint64_t retry;               /* seconds to wait, where that is known; 0: not */
-    const char *role;             /* that the token lacks, with 403, a literal; NULL: none */
+    const he_report *report; /* source of `elements` and `total`, borrowed; NULL: none */
+    unsigned repairs; /* the set of repairs with which the body would pass (repair.h); 0: none */
+    bool report_pointers; /* the body is a mesh document: add "/faces/3/1" to each element */
+    const char *const *supported; /* supported types, with 406 and 415; ends in NULL, borrowed */
+    uint64_t retry;               /* seconds until a retry makes sense; 0: unknown */
+    const char *role; /* the role that the token lacks, with 403; a literal. NULL: none */
 } api_problem;
 
-/* Of a code; never NULL. */
+/* Returns the slug of a code; never NULL. */
 const char *api_code_slug(int code);
 const char *api_code_title(int code);
 const char *api_code_explanation(int code);
 int api_code_http(int code);
-/* The code of a slug, -1 when there is none. */
+/* Returns the code with this slug, or -1. */
 int api_code_find(const char *slug);
 
-/* Fill `problem` from scratch; NULL is allowed nowhere. Return false, so that a refusal is one
- * statement. The first problem wins: one that is filled already stays. */
+/* Both fill `problem` from scratch; no argument may be NULL. They return false, so that a refusal
+ * is one statement. The first problem wins: a problem that is filled already is not changed. */
 bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* From a refusal of core about a body: elements that do not live are 422. */
+/* Fills the problem from a refusal of core about a body: missing elements give 422. */
 bool api_problem_set_core(api_problem *problem, const he_error *err);
-/* The same about the path: elements that do not live are 404 and 410. */
+/* Fills the problem from a refusal of core about the path: missing elements give 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Refuses an answer that may not be sent since what it shows did not become durable, as the wait
- * for that tells. `changed`: the change is the request's own. */
+/* Refuses an answer whose content did not become durable; `wait` has the reason. `changed`: the
+ * request itself made the change that was lost. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Name the repairs that would let the body pass, in `detail` too. */
+/* Names the repairs with which the body would pass, as a member and in `detail`. */
 void api_problem_set_repairs(api_problem *problem, unsigned repairs);
 
-/* Where in a mesh document a defect is: "/faces/3/1". */
+/* Writes the place of a defect in a mesh document: "/faces/3/1". */
 enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
-/* The value of Retry-After, in `out` or a literal; NULL where waiting does not help. */
+/* Returns the value of Retry-After, in `out` or as a literal, or NULL where waiting does not
+ * help. */
 enum { API_RETRY = 24 };
 const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
-/* The JSON object onto `text`; `request_id` may be NULL. */
+/* Appends the JSON object to `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
-/* The page at /problems/{code}. */
+/* Writes the page at /problems/{code}. */
 void api_problem_page(int code, api_text *text);
 
 #endif

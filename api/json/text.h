@@ -1,7 +1,8 @@
-/* text.h - bytes that grow at the end.
+/* text.h - a string of bytes that grows at its end.
  *
- * Failure is sticky: once memory was out or `maximum` would have been passed, `failed` is set, all
- * that follows is ignored, and only the end has to look. {0} is an empty text without a maximum. */
+ * Failure is sticky: when memory is out or `maximum` would be exceeded, `failed` is set and all
+ * later writes are ignored, so that the caller checks only once, at the end. {0} is an empty text
+ * without a maximum. */
 #ifndef HE_API_JSON_TEXT_H
 #define HE_API_JSON_TEXT_H
 
@@ -9,17 +10,17 @@
 #include <stddef.h>
 
 typedef struct api_text {
-    char *bytes; /* not ended by NUL */
+    char *bytes; /* not terminated by NUL */
     size_t length, capacity;
-    size_t maximum; /* 0: none */
+    size_t maximum; /* 0: no maximum */
     bool failed;
 } api_text;
 
-void api_text_clear(api_text *text); /* frees; {0} again */
-void api_text_empty(api_text *text); /* keeps memory and maximum, forgets content and failure */
+void api_text_clear(api_text *text); /* frees the bytes; the text is {0} again */
+void api_text_empty(api_text *text); /* keeps memory and maximum, drops content and failure */
 
-/* Room for `size` more bytes at text->bytes + text->length, or NULL (and failed). The caller
- * writes there and adds what it wrote to text->length. */
+/* Returns space for `size` more bytes at text->bytes + text->length, or NULL, with `failed` set.
+ * The caller writes there and adds the number of bytes written to text->length. */
 char *api_text_room(api_text *text, size_t size);
 void api_text_add(api_text *text, const char *bytes, size_t length);
 void api_text_add_string(api_text *text, const char *string);
@@ -33,7 +34,7 @@ static inline void api_text_add_char(api_text *text, char c)
         api_text_add(text, &c, 1);
     }
 }
-/* As text of an HTML page: & < > " ' are escaped. */
+/* Appends text for an HTML page, with & < > " ' escaped. */
 void api_text_add_html(api_text *text, const char *string);
 
 #endif

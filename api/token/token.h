@@ -1,14 +1,14 @@
-/* token.h - a bearer token as the server knows it: whose it is and what it may do.
+/* token.h - a bearer token as the server knows it: its name and what it may do.
  *
- * A client sends the token itself in `Authorization: Bearer TOKEN`; the server keeps its SHA-256
- * alone. A token is TOKEN_RANDOM characters that getrandom chose, 256 bits, so that nobody finds
- * one from its hash however fast that is to compute: a slow hash is for passwords, which people
- * choose. Nettle hashes and compares; libmicrohttpd brings it along with GnuTLS, so that nothing
- * more is installed for it.
+ * A client sends the token itself in `Authorization: Bearer TOKEN`; the server keeps only its
+ * SHA-256. A token consists of TOKEN_RANDOM characters chosen by getrandom, 256 bits, so no
+ * attacker finds one from its hash, however fast the hash is. (Slow hashes are for passwords, which
+ * people choose.) Nettle hashes and compares; it is installed with libmicrohttpd, which depends on
+ * it through GnuTLS.
  *
- * Facts of a token never change, but for its limits. A file that is read again (token_set.h) keeps
- * the tokens whose lines say the same and makes new ones for all others; those that are gone are
- * `revoked`, but requests that hold them may still read their facts. */
+ * Fields of a token never change, except its limits. When the file is read again (token_set.h),
+ * tokens whose lines are unchanged stay, and new tokens are made for the other lines. Removed
+ * tokens are `revoked`; requests that hold them may still read their fields. */
 #ifndef HE_API_TOKEN_TOKEN_H
 #define HE_API_TOKEN_TOKEN_H
 
@@ -19,72 +19,73 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a token may do, and the least that a route asks for. The first one is what a row of the
- * table of routes has that says nothing: forgetting it shuts the route. */
+/* What a token may do, and the least role that a route requires. ADMIN is 0, so that a row of the
+ * table of routes without a role is closed to all but admins. */
 typedef enum api_role {
     API_ROLE_ADMIN,   /* everything */
-    API_ROLE_WRITE,   /* what READ may, and change meshes */
-    API_ROLE_READ,    /* look at meshes and question them */
-    API_ROLE_METRICS, /* read the metrics, and nothing else */
-    API_ROLE_OPEN     /* of a route: no token is needed. No token has it */
+    API_ROLE_WRITE,   /* read, and change meshes */
+    API_ROLE_READ,    /* read meshes and query them */
+    API_ROLE_METRICS, /* read the metrics, nothing else */
+    API_ROLE_OPEN     /* of routes only: no token is needed */
 } api_role;
 
 enum {
     API_TOKEN_NAME = 64,
     API_TOKEN_PREFIXES = 16,
-    API_TOKEN_PREFIX = 48, /* so that the rest of a mesh id, which the server makes, has room */
+    API_TOKEN_PREFIX = 48, /* leaves space for the part of a mesh id that the server makes */
     API_TOKEN_HASH = 32,
-    API_TOKEN_RANDOM = 43,                 /* characters of 62 kinds: 256 bits */
-    API_TOKEN_TEXT = 6 + API_TOKEN_RANDOM, /* "hedge_" before them */
-    API_TOKEN_LONGEST = 256                /* of what is looked at as a token */
+    API_TOKEN_RANDOM = 43,                 /* random characters out of 62: 256 bits */
+    API_TOKEN_TEXT = 6 + API_TOKEN_RANDOM, /* "hedge_" and the random characters */
+    API_TOKEN_LONGEST = 256                /* longer texts are no tokens and are not hashed */
 };
 
 typedef struct api_token {
     char name[API_TOKEN_NAME + 1];
     api_role role;
-    /* Of the ids of meshes that exist for it, in the order of its line; none: all meshes do. */
+    /* Prefixes of the mesh ids that the token can see, in the order of its line. No prefix: it sees
+     * all. */
     char prefixes[API_TOKEN_PREFIXES][API_TOKEN_PREFIX + 1];
     size_t prefix_count;
     double expires; /* seconds since 1970; HUGE_VAL: never */
     unsigned char hash[API_TOKEN_HASH];
-    size_t line; /* of its file */
-    /* What its line and the server's options let it have, 0 for all (limit.h). A file that is read
-     * again changes them for requests that hold the token. */
+    size_t line; /* its line number in the file */
+    /* Limits set by its line or by the server's options, 0 for none (limit.h). They change when the
+     * file is read again, also for requests that hold the token. */
     _Atomic uint64_t limits[API_LIMIT_COUNT];
-    unsigned own_limits;   /* of its line, a bit each: the options' are not its */
-    api_rate_key rate_key; /* of its name, whose bucket it uses */
+    unsigned own_limits;   /* bit set: limits that its line sets; the others come from options */
+    api_rate_key rate_key; /* key of the rate bucket, made from the token's name */
     _Atomic uint32_t uses;
     _Atomic bool revoked;
 } api_token;
 
-api_token *api_token_hold(api_token *token); /* takes NULL, the token of nobody */
-void api_token_release(api_token *token);    /* likewise */
+api_token *api_token_hold(api_token *token); /* takes NULL: no token */
+void api_token_release(api_token *token);    /* takes NULL */
 
-/* "read", "write", "admin", "metrics"; "open" for that of a route. */
+/* Returns "read", "write", "admin", "metrics", or "open" for routes. */
 const char *api_role_name(api_role role);
-/* Does `has` include `needs`? */
+/* Does the role `has` include the rights of `needs`? */
 bool api_role_allows(api_role has, api_role needs);
 
-/* What it may have of this. NULL is the token of nobody, which may have all. */
+/* Returns the token's limit, 0 for none. A NULL token has no limits. */
 uint64_t api_token_limit(const api_token *token, api_limit limit);
 
-/* Is it neither revoked nor expired? `now` is in seconds since 1970. */
+/* Is the token neither revoked nor expired? `now` is in seconds since 1970. */
 bool api_token_is_current(const api_token *token, double now);
-/* Are the bytes the same? Takes the same time whichever of them differ. */
+/* Compares bytes in constant time. */
 bool api_token_is_equal(const unsigned char *a, const unsigned char *b, size_t length);
-/* Is the hash its own? Takes the same time whichever bytes differ. */
+/* Is this the token's hash? Compares in constant time. */
 bool api_token_matches(const api_token *token, const unsigned char hash[API_TOKEN_HASH]);
-/* Does a mesh of this id exist for it? NULL is the token of nobody, where no tokens are asked for:
- * all do. */
+/* Can the token see the mesh with this id? A NULL token (the server asks for none) sees all. */
 bool api_token_sees(const api_token *token, const char *mesh);
-/* May it look at a job that the token of this name began, about a mesh of this id ("": none)? An
- * admin may look at all. NULL may too. */
+/* May the token see a job that the token named `holder` started on the mesh with this id ("": no
+ * mesh)? Admins and a NULL token may see all. */
 bool api_token_owns(const api_token *token, const char *holder, const char *mesh);
-/* The prefixes in the order of ids, without those that another one covers. Their number. */
+/* Writes the prefixes in the order of ids, without those that another prefix covers. Returns their
+ * number. */
 size_t api_token_ranges(const api_token *token, const char *out[API_TOKEN_PREFIXES]);
 
 void api_token_hash(const char *text, size_t length, unsigned char out[API_TOKEN_HASH]);
-/* A new token, ended by a null. */
+/* Makes a new random token, terminated by NUL. */
 void api_token_make(char out[API_TOKEN_TEXT + 1]);
 
 #endif

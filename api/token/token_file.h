@@ -6,45 +6,46 @@
  *            prefix=lab-3.,shared- expires=2027-01-01T00:00:00Z \
  *            requests=20 bytes=1M meshes=50                               (on one line)
  *
- * Fields are parted by blanks or tabs. A line that is empty or begins with '#' says nothing. NAME
- * is 1 to 64 of A-Z a-z 0-9 . _ - and stays with what the token makes: its jobs and
- * Idempotency-Keys are those of the name, so that a token can be replaced by another one of its
- * name. ROLE is read, write, admin or metrics. TIME is a day, which it ends with the beginning of,
- * or a day and a time of UTC. Names and hashes occur once. LIMIT is requests, bytes, jobs, meshes
- * or mesh-bytes (limit.h) and takes the place of the option's for this token; 0 is no limit. Those
- * of bytes take K, M, G or T after the number.
+ * Fields are separated by blanks or tabs. Empty lines and lines that begin with '#' are skipped.
+ * NAME is 1 to 64 of A-Z a-z 0-9 . _ - and identifies what the token makes: jobs and
+ * Idempotency-Keys belong to the name, so that a token can be replaced by another one with this
+ * name. ROLE is read, write, admin or metrics. TIME is a day (the token expires when that day
+ * begins) or a day with a time, in UTC. Names and hashes are unique. LIMIT is requests, bytes,
+ * jobs, meshes or mesh-bytes (limit.h) and replaces the option's limit for this token; 0 is no
+ * limit. Limits in bytes may end in K, M, G or T.
  *
- * What a refusal says never repeats a field: it may be a token that was put in the wrong place. */
+ * A message about a faulty line never quotes a field: it may be a token in the wrong place. */
 #ifndef HE_API_TOKEN_TOKEN_FILE_H
 #define HE_API_TOKEN_TOKEN_FILE_H
 
 #include "api/token/token.h"
 
 enum {
-    API_TOKENS = 4096,         /* lines with a token */
-    API_TOKENS_FILE = 1 << 20, /* bytes */
-    API_TOKEN_LINE = 1024,     /* bytes of a line */
+    API_TOKENS = 4096,         /* lines with tokens */
+    API_TOKENS_FILE = 1 << 20, /* bytes of the file */
+    API_TOKEN_LINE = 1024,     /* bytes per line */
     API_TOKENS_MESSAGE = 160
 };
 
 typedef struct api_token_list {
-    api_token **items; /* in the order of lines, each with one use */
+    api_token **items; /* in the order of lines; the list holds one reference to each */
     size_t count;
 } api_token_list;
 
-/* False with nothing in `out` and a sentence in `message`, which begins with "line N: " where a
- * line is wrong. A file without any token is refused: it would lock everybody out. */
+/* Reads the file into `out`.
+ * Returns false with `out` empty and a sentence in `message`, which begins with "line N: " if a
+ * line is wrong. A file without tokens is refused: it would lock out every client. */
 bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,
                          char message[API_TOKENS_MESSAGE]);
 void api_token_list_clear(api_token_list *list);
 
-/* The line of a token without prefixes or end, ended by a null. */
+/* Writes the line of a token without prefixes or expiry, terminated by NUL. */
 enum { API_TOKEN_SHORT_LINE = 160 };
 void api_token_file_line(const char *name, api_role role, const char *token,
                          char out[API_TOKEN_SHORT_LINE]);
-/* 1 to 64 of A-Z a-z 0-9 . _ - that are not the beginning of a token. */
+/* Is the text a valid name: 1 to 64 of A-Z a-z 0-9 . _ -, not beginning like a token? */
 bool api_token_is_name(const char *text, size_t length);
-/* False where there is no such role. */
+/* Returns false if there is no such role. */
 bool api_role_find(const char *text, size_t length, api_role *out);
 
 #endif
