@@ -1,8 +1,8 @@
-/* event_follow.h - the events of a mesh as an answer that goes on.
+/* event_follow.h - the events of a mesh as an answer without end (api/live.h).
  *
- * A stream gives in turn what was prepared when it began, what its listener missed (from the queue
- * of the mesh, from the history (event_backfill.h) or, when neither reaches that far, one
- * `resync`), and what happens. */
+ * A stream first gives its opening messages. Then it gives the events that its listener missed,
+ * from the queue of the mesh or from the history (event_backfill.h), or one `resync` if neither
+ * reaches back that far. Then it gives events as they happen. */
 #ifndef HE_API_EVENT_EVENT_FOLLOW_H
 #define HE_API_EVENT_EVENT_FOLLOW_H
 
@@ -10,12 +10,15 @@
 #include "api/live.h"
 #include "store/followers.h"
 
-/* The st_render of the store: a change as an event. */
+/* The st_render of the store: renders a change as an event. */
 bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length);
 
-/* The changes of a mesh as messages of events.h, from after `since`, or from the present revision,
- * whose facts go to `info`. The caller frees the source. ST_ABSENT, ST_LISTENERS, ST_NO_MEMORY. */
+/* Opens a stream of the changes after `since`, or after the present revision, whose fields are
+ * copied to `info`. The caller frees the source.
+ * Returns ST_ABSENT if the mesh was deleted.
+ * Returns ST_LISTENERS if it has too many listeners.
+ * Returns ST_NO_MEMORY if memory is out. */
 st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *backfills,
                            st_mesh_info *info, api_source *out);
 

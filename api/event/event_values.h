@@ -1,20 +1,21 @@
-/* event_values.h - the values a change wrote, so that a copy can follow link for link.
+/* event_values.h - the values that a change wrote, with which a client keeps an exact mirror.
  *
  *     "values":{"vertices":[[id,x,y,z,halfedge]],"halfedges":[[id,next,prev,origin,face]],
  *               "faces":[[id,halfedge]],"attributes":{"faces":{"group":[[id,v,...]]}}}
  *
- * Rows are those the records of a delta touch, ascending, with their values after it; absent links
- * are null. They are more than the sets of `modified` name: a half-edge along a hole is in none of
- * those. Of attributes that are not finite null is said. */
+ * There is one row for each element that the delta touches, in ascending order, with its values
+ * after the change; absent links are null. There are more rows than ids in `modified`, which omits
+ * half-edges along a hole. Attribute values that are not finite are null. */
 #ifndef HE_API_EVENT_EVENT_VALUES_H
 #define HE_API_EVENT_EVENT_VALUES_H
 
 #include "api/json/json_out.h"
 #include "mesh/delta.h"
 
-/* The members values, and attributes_added and attributes_dropped where columns came or went, of
- * an object that is open. `mesh` is in the state after `delta`, or before it when it was undone.
- * HE_NO_MEMORY: what was written so far is good for nothing. */
+/* Writes the member values, and attributes_added and attributes_dropped if columns were added or
+ * removed, into an object that is open. `mesh` is in the state after `delta`, or before it if the
+ * delta was undone.
+ * Returns HE_NO_MEMORY if memory is out; the text written so far is then unusable. */
 HE_NODISCARD he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *delta,
                                         bool undone, he_error *err);
 

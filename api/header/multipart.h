@@ -9,16 +9,16 @@
  *     the bytes
  *     --BOUNDARY--
  *
- * Names are taken as they are given, UTF-8 without control characters: in a quoted name \" and \\
- * stand for " and \, and %22 for ", as browsers write it; any other backslash or escape is itself.
- * A part without a filename is named by its name. What comes before the first delimiter and behind
- * the last is passed over, as are headers that are not looked at.
+ * Names are UTF-8 without control characters. In a quoted name \" and \\ stand for " and \, and %22
+ * stands for ", as browsers write it; any other backslash or escape is taken literally. A part
+ * without a filename is called by its field name. Bytes before the first and after the last
+ * delimiter are skipped, and so are unknown headers.
  *
- * Refused as bad_multipart (400), with the byte of the body: lines that are no headers, a part
- * without a name or of another disposition, a parameter given twice, filename* (which RFC 7578 does
- * not allow), a part that is itself multipart or has a transfer coding, more than API_MAX_PARTS,
- * more than API_MAX_PART_HEADERS bytes of headers, a name of more than API_MAX_PART_NAME, a body
- * that ends before its last delimiter. */
+ * These are refused as bad_multipart (400), with the offset in the body: lines that are no headers,
+ * a part without a name or with another disposition, a parameter given twice, filename* (which RFC
+ * 7578 does not allow), a part that is itself multipart or has a transfer coding, more than
+ * API_MAX_PARTS, more than API_MAX_PART_HEADERS bytes of headers, a name longer than
+ * API_MAX_PART_NAME, a body that ends before its last delimiter. */
 #ifndef HE_API_HEADER_MULTIPART_H
 #define HE_API_HEADER_MULTIPART_H
 
@@ -27,19 +27,19 @@
 
 typedef struct api_multipart api_multipart;
 
-/* What is next in the bytes at hand. */
+/* What api_multipart_next found in the bytes. */
 typedef enum api_multipart_step {
-    API_MULTIPART_MORE,  /* nothing: they are used up */
-    API_MULTIPART_BEGIN, /* a part begins, `part` says which */
-    API_MULTIPART_BYTES, /* `bytes` of it, which live until the next call */
-    API_MULTIPART_END,   /* it is whole */
-    API_MULTIPART_BAD    /* refused: the problem is filled, and this is the last call */
+    API_MULTIPART_MORE,  /* all bytes are used: more are needed */
+    API_MULTIPART_BEGIN, /* a part begins: `part` describes it */
+    API_MULTIPART_BYTES, /* `bytes` hold content of the part, until the next call */
+    API_MULTIPART_END,   /* the part ends */
+    API_MULTIPART_BAD    /* refused: the problem is filled; no call may follow */
 } api_multipart_step;
 
-/* Texts live until the next part begins. */
+/* The texts live until the next part begins. */
 typedef struct api_part {
-    const char *name; /* of the file, else of the field */
-    const char *type; /* Content-Type, NULL where there is none */
+    const char *name; /* file name, or else the field name */
+    const char *type; /* Content-Type, or NULL */
 } api_part;
 
 typedef struct api_multipart_piece {
@@ -48,14 +48,15 @@ typedef struct api_multipart_piece {
     size_t length;
 } api_multipart_piece;
 
-/* The parameter `boundary` of `content_type` is 1 to 70 of the characters that RFC 2046 allows.
- * NULL with the problem filled: bad_header, no_memory. */
+/* The parameter `boundary` of `content_type` must be 1 to 70 of the characters that RFC 2046
+ * allows.
+ * Returns NULL with bad_header or no_memory. */
 api_multipart *api_multipart_new(const char *content_type, api_problem *problem);
 void api_multipart_free(api_multipart *m);
-/* Moves `*at`, which goes up to `end`, behind what was used. */
+/* Reads from *at, which lies before `end`, and moves it past the bytes it used. */
 api_multipart_step api_multipart_next(api_multipart *m, const char **at, const char *end,
                                       api_multipart_piece *out, api_problem *problem);
-/* The body ends here: was the last delimiter there? */
+/* Ends the body. Returns false with the problem filled if the last delimiter is missing. */
 bool api_multipart_end(const api_multipart *m, api_problem *problem);
 
 #endif

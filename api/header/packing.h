@@ -1,8 +1,8 @@
-/* packing.h - zlib and zstd with memory from base/mem.h: what pack.c and unpack.c share.
+/* packing.h - zlib and zstd with memory from base/mem.h: shared by pack.c and unpack.c.
  *
- * That of zstd is lent by functions its header keeps for ZSTD_STATIC_LINKING_ONLY. They are
- * exported by the shared library too; without them what a client makes the server hold would be
- * counted by nobody and bounded by no budget. */
+ * zstd takes an allocator only through functions that its header hides behind
+ * ZSTD_STATIC_LINKING_ONLY; the shared library exports them too. Without them no budget would count
+ * the memory that a client makes the decoders allocate. */
 #ifndef HE_API_HEADER_PACKING_H
 #define HE_API_HEADER_PACKING_H
 
@@ -14,16 +14,19 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* What a stream takes from memory, and from a ceiling that it has in common with others. */
+/* Where a stream's memory comes from: the heap, under a ceiling that streams share. */
 typedef struct api_packing_memory {
-    _Atomic size_t *lent; /* by all of them, counted with what each block costs; NULL: no ceiling */
+    /* bytes of all streams, with the overhead of each block; NULL: no ceiling */
+    _Atomic size_t *lent;
     size_t most;
-    bool (*make_room)(void *context); /* at the ceiling: has another stream given way? */
+    /* called at the ceiling: true if another stream freed its memory */
+    bool (*make_room)(void *context);
     void *context;
-    bool refused; /* the ceiling, not memory, was in the way */
+    bool refused; /* an allocation failed by the ceiling, not by lack of memory */
 } api_packing_memory;
 
-/* Both fill what the libraries ask for. `memory` lives as long as the stream; NULL: no ceiling. */
+/* Both fill the allocator hooks of the library. `memory` lives as long as the stream and may be
+ * NULL: no ceiling. */
 void api_packing_zlib(z_stream *stream, api_packing_memory *memory);
 ZSTD_customMem api_packing_zstd(api_packing_memory *memory);
 

@@ -1,16 +1,16 @@
-/* prefer.h - the Prefer header (RFC 7240): what a client would rather have. */
+/* prefer.h - the Prefer header (RFC 7240): optional wishes of a client. */
 #ifndef HE_API_HEADER_PREFER_H
 #define HE_API_HEADER_PREFER_H
 
 #include <stdbool.h>
 
 typedef struct api_prefer {
-    bool minimal;       /* return=minimal */
-    bool respond_async; /* 202 and a job, rather than to wait */
-    double wait;        /* wait=N, seconds the client has; negative: not said */
+    bool minimal;       /* return=minimal: the client wants no body */
+    bool respond_async; /* respond-async: the client wants 202 and a job rather than to wait */
+    double wait;        /* wait=N: seconds that the client will wait; negative: not given */
 } api_prefer;
 
-/* `header` may be NULL. What is not understood is passed over, as the RFC wants. */
+/* `header` may be NULL. Unknown preferences are ignored, as the RFC demands. */
 api_prefer api_prefer_read(const char *header);
 
 #endif
