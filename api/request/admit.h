@@ -1,28 +1,29 @@
-/* admit.h - what is looked at before a request reaches its handler: the route and what its path and
- * query say, the mesh, the headers of the body, Accept. service.c drives the rest. */
+/* admit.h - the checks before a request reaches its handler: route, parameters in path and query,
+ * the mesh, the headers of the body, Accept. service.c does the rest. */
 #ifndef HE_API_REQUEST_ADMIT_H
 #define HE_API_REQUEST_ADMIT_H
 
 #include "api/request/exchange.h"
 
-/* Fill the request's part of `x`. False: it is refused, or answered (OPTIONS). */
+/* Fills the request's part of `x`. Returns false if the request was refused, or answered
+ * (OPTIONS). */
 bool api_admit(api_exchange *x);
 
-/* Where x->is_cold: looks on the disk for the mesh, as api_admit would have in memory. Waits.
- * False: it is refused. */
+/* If x->is_cold, looks for the mesh on disk, as api_admit does in memory. Blocks. Returns false if
+ * the request is refused. */
 bool api_load_mesh(api_exchange *x);
-/* Where x->is_cold: is the request answered or refused by the card of the mesh, which is not loaded
- * for it? Waits. */
+/* If x->is_cold, answers or refuses the request from the stored card of the mesh, without loading
+ * the mesh, and returns true if it could. Blocks. */
 bool api_answer_from_card(api_exchange *x);
 
-/* Bytes the route's body may have. */
+/* Returns the most bytes that the route's body may have. */
 uint64_t api_body_cap(const api_exchange *x);
-/* The body is longer, or there should be none. Always false. */
+/* Refuses a body that is too long, or one where none is allowed. Always returns false. */
 bool api_refuse_size(api_exchange *x);
-/* The body that the route needs is missing or empty. Always false. */
+/* Refuses a missing or empty body where the route needs one. Always returns false. */
 bool api_refuse_empty(api_exchange *x);
-/* An upload whose format nothing tells: `detail` says why, the formats there are follow. Always
- * false. */
+/* Refuses an upload whose format is not known; the message is `detail` and the list of formats.
+ * Always returns false. */
 bool api_refuse_format(api_exchange *x, const char *detail);
 
 #endif

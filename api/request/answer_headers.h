@@ -1,14 +1,14 @@
-/* answer_headers.h - THE list of the headers that answers have.
+/* answer_headers.h - THE list of response headers.
  *
- * A page of another origin reads only the headers that Access-Control-Expose-Headers names, and
- * those few that browsers always show. That header is made from this list, and no header can be
- * sent that is not on it: the server asserts it. */
+ * A page of another origin can read only the headers named in Access-Control-Expose-Headers, and
+ * those few that browsers always show. That header is made from this list. The server asserts that
+ * it sends no header that is not listed. */
 #ifndef HE_API_REQUEST_ANSWER_HEADERS_H
 #define HE_API_REQUEST_ANSWER_HEADERS_H
 
 #include <stdbool.h>
 
-/* X(name, separator): every header that must be named for a page to read it, in order. */
+/* X(name, separator): the headers that must be named for a page to read them, in order. */
 #define API_EXPOSED_HEADERS(X)           \
     X("Accept-Encoding", ", ")           \
     X("Allow", ", ")                     \
@@ -36,8 +36,8 @@
 /* "Accept-Encoding, Allow, ..." */
 extern const char api_exposed_headers[];
 
-/* Is it one of these, one that browsers always show (Cache-Control, Content-Type), or one of those
- * that let a page read at all (Access-Control-...)? */
+/* Is it a header of the list, one that browsers always show (Cache-Control, Content-Type), or one
+ * of CORS (Access-Control-...)? */
 bool api_header_is_listed(const char *name);
 
 #endif

@@ -1,7 +1,7 @@
-/* api.h - requests in, answers out, no sockets.
+/* api.h - from requests to answers, without sockets.
  *
- * The server hands over a request in pieces and sends what comes back. An exchange is one request
- * with its answer, used by one thread at a time:
+ * The server passes a request in pieces and sends the answer. An exchange is one request with its
+ * answer; one thread at a time uses it:
  *
  *       api_begin --- reads line and headers; may answer at once (404, 413, 415, 412 ...)
  *           |
@@ -12,15 +12,15 @@
  *           |         API_JOB:   too long to wait for; call api_detach
  *       api_work, which gives API_READY or API_JOB
  *           |
- *       api_detach: the exchange is a job's from now on (jobs.h), the client is answered by another
+ *       api_detach: the exchange now belongs to a job (job_table.h); another one answers the client
  *           |
  *       api_answer -- status, headers, and a body as bytes, as a reader to pull from, or as a
- *           |         source that may have to be waited for (live.h)
+ *           |         source that may have nothing to give at the moment (live.h)
  *           |
  *       api_free
  *
- * The server must not send the answer before what api_answer's `shown` says is durable.
- * api_handle does all of it at once on bytes in memory: tests live on that. */
+ * The server must not send the answer before the changes named in api_answer's `shown` are durable.
+ * api_handle does all steps in one call on bytes in memory, for tests. */
 #ifndef HE_API_REQUEST_API_H
 #define HE_API_REQUEST_API_H
 
@@ -39,28 +39,28 @@
 typedef struct api_exchange api_exchange;
 typedef struct api_service api_service;
 
-/* A request as it came: nothing is decoded. */
+/* A request as it was received: nothing is decoded. */
 typedef struct api_request {
     const char *method;
     const char *path;       /* raw, percent-encoded, begins with '/' */
     const char *query;      /* raw, without '?', "" when absent */
-    const char *request_id; /* echoed; the server made one where the client sent none */
+    const char *request_id; /* echoed; if the client sent none, the server made one */
     const char *headers[API_REQUEST_HEADERS]; /* values, NULL where absent */
     bool has_length;                          /* Content-Length was given */
     uint64_t length;
-    bool has_body;       /* a body will follow, of known length or chunked */
-    api_rate_key client; /* of the address it comes from: of clients that share one, the same */
-    bool is_beyond;      /* its connection is one more than its address may have */
-    bool has_consent;    /* its Origin is one that was configured: such pages may do anything */
+    bool has_body;       /* a body follows, of known length or chunked */
+    api_rate_key client; /* key of the client's address; clients that share an address share it */
+    bool is_beyond;      /* the address has more connections than it may: refuse */
+    bool has_consent;    /* the Origin is one that was configured: its pages may do anything */
 } api_request;
 
 typedef enum api_step { API_MORE, API_READY, API_WORK, API_JOB } api_step;
 
-/* What api_work or a job is about to do, so that its host can choose when. */
+/* What the work of api_work or of a job costs, so that the server can schedule it. */
 typedef struct api_load {
     bool reads;       /* it changes nothing */
-    double seconds;   /* about how long it takes; far too little for some */
-    const char *mesh; /* id of the mesh it is about, "" where there is none */
+    double seconds;   /* estimated duration; far too low for some work */
+    const char *mesh; /* id of its mesh, "" without one */
 } api_load;
 
 enum { API_ANSWER_HEADERS = 16 };
@@ -73,56 +73,58 @@ typedef struct api_answer {
     int status;
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    /* Either bytes, or read: fill up to `size` bytes, 0 at the end, -1 on failure (the
-     * connection is then cut, so that the client notices). Never blocks on a lock for long. */
+    /* The body is either `bytes` or comes from `read`, which returns up to `size` bytes, 0 at the
+     * end, or -1 on failure (the server then cuts the connection, so that the client notices). It
+     * never blocks on a lock for long. */
     const char *bytes;
-    int64_t length; /* -1: unknown, only with read */
-    bool slow;      /* with read: it computes for milliseconds, not on a thread others wait for */
+    int64_t length; /* -1: unknown, with `read` only */
+    bool slow;      /* `read` computes for milliseconds: do not call it on a worker */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
-    /* Instead of both: an answer that goes on, and what to send now and then when it has nothing.
-     * NULL: it is none. */
+    /* Instead of both: an answer without a known end, and what to send now and then to keep an idle
+     * connection open. NULL: not used. */
     const api_source *live;
     const char *idle;
-    bool close;        /* the connection must not be used again */
-    st_shown shown;    /* the answer waits until that is durable (durability_wait.h) */
-    bool changed;      /* the request changed something */
-    const char *route; /* template for logs and metrics, "-" when none matched */
+    bool close;        /* close the connection after this answer */
+    st_shown shown;    /* hold the answer back until this is durable (durability_wait.h) */
+    bool changed;      /* the request changed a mesh */
+    const char *route; /* path template for logs and metrics; "-" when no route matched */
 } api_answer;
 
-/* Limits a server sets; 0 takes the default of limits.h. */
+/* Settings of the server; 0 selects the default in limits.h. */
 typedef struct api_options {
     uint64_t max_upload; /* bytes of a mesh document or file */
-    const char *version; /* "0.1.0" */
+    const char *version; /* such as "0.1.0" */
     const char *public_url;
-    /* The page: content of a path ("/", "/assets/...") or false. Bytes live as long as the
-     * service. `type` and `etag` are set; `immutable` for names that carry a hash. */
+    /* Serves the web page: finds the content of a path ("/", "/assets/...") or returns false. The
+     * bytes live as long as the service. Sets `type`, `etag`, and `immutable` for names that
+     * contain a hash. */
     bool (*asset)(void *context, const char *path, const char **bytes, size_t *length,
                   const char **type, const char **etag, bool *immutable);
     void *asset_context;
-    bool (*ready)(void *context); /* for /readyz; NULL: always */
+    bool (*ready)(void *context); /* for /readyz; NULL: always ready */
     void *ready_context;
-    /* Bytes the process holds by its own count, and how many it may hold, 0 for as many as there
-     * are; NULL: not told. */
+    /* Returns how many bytes the process holds by its own count, and the most it may hold (0: no
+     * limit). NULL: not reported. */
     void (*memory)(uint64_t *used, uint64_t *budget);
-    api_limits address_limits; /* of clients without a token, by their address */
-    uint64_t limit_burst;      /* seconds that buckets of requests and bytes hold; 0: one */
-    api_tokens *tokens;        /* NULL: nobody needs one, and everybody may do everything */
-    /* Reads again what the server was told of by files, tokens among them. False with a sentence in
-     * `message`, and what was in force stays. NULL: there is nothing to be read. */
+    api_limits address_limits; /* limits per address of clients without a token */
+    uint64_t limit_burst;      /* burst: seconds' worth of rate that a bucket holds; 0: one */
+    api_tokens *tokens;        /* NULL: no token is needed, every client may do everything */
+    /* Reads the server's files again, the file of tokens among them. On failure returns false with
+     * a sentence in `message`, and the old contents stay in force. NULL: there are no files. */
     bool (*reload)(void *context, char *message, size_t size);
     void *reload_context;
-    /* Writes all that is stored to a file of its own, which takes as long as the store is large.
-     * ST_BUSY while the one before is kept, ST_FAILED with a sentence in `message`. NULL: nothing
-     * is kept beyond memory. */
+    /* Writes the whole store to a file; the time grows with the size of the store. NULL: the store
+     * is in memory only.
+     * Returns ST_BUSY while the last backup exists, or ST_FAILED with a sentence in `message`. */
     st_status (*backup)(void *context, api_blob *out, char *message, size_t size);
     void *backup_context;
-    api_job_table *jobs; /* NULL: nothing becomes a job, and no route shows any */
-    bool plain_answers;  /* never coded, whatever a client accepts */
-    const he_exec *exec; /* threads for parts of large work; NULL: none */
-    st_pool *pool;       /* brings listeners forward from the history; NULL: they fetch anew */
-    st_pool *makers;     /* makes pieces of answers, for the metrics; NULL: there is none */
-    const char *commit;  /* that the server was built from, "" or NULL where that is not known */
+    api_job_table *jobs; /* NULL: nothing becomes a job, and the routes of jobs do not exist */
+    bool plain_answers;  /* never compress answers */
+    const he_exec *exec; /* threads for parallel parts of large work; NULL: none */
+    st_pool *pool;       /* runs backfills from the history; NULL: listeners fetch the mesh again */
+    st_pool *makers;     /* threads that compute pieces of answers, named in metrics; NULL: none */
+    const char *commit;  /* git commit of the build; "" or NULL if unknown */
 } api_options;
 
 /* The table of routes: api/describe/routes.h. */
@@ -131,54 +133,59 @@ typedef struct api_route_table {
     size_t count;
 } api_route_table;
 
-/* Borrowed: store, rows and options' pointers outlive the service. NULL when memory is out. */
+/* Borrows its arguments: store, rows and pointers in the options outlive the service. Returns NULL
+ * when memory is out. */
 api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options);
 void api_service_free(api_service *service);
-/* Where the server counts requests and connections; lives as long as the service. */
+/* Returns the counters in which the server counts requests and connections; they live as long as
+ * the service. */
 api_metrics *api_metrics_of(const api_service *service);
 
-/* NULL when memory is out. `request` is copied, but for the values of its headers: the caller keeps
- * them until api_free, or until api_detach, which copies them for the job. */
+/* Begins an exchange. Returns NULL when memory is out. `request` is copied, but not the values of
+ * its headers: they must live until api_free, or until api_detach, which copies them for the
+ * job. */
 api_exchange *api_begin(api_service *service, const api_request *request, api_step *step);
-/* `used` may be less than `length`, with API_MORE: enough was done for once. The rest is to be
- * given again, when others that wait for the thread have had their turn. */
+/* Passes a piece of the body. With API_MORE, `used` may be less than `length`: the call has worked
+ * long enough. The caller serves other connections, then passes the rest. */
 api_step api_body(api_exchange *exchange, const char *bytes, size_t length, size_t *used);
 api_step api_end(api_exchange *exchange);
 api_step api_work(api_exchange *exchange);
-/* The exchange to answer the client with, 202 or 503; `exchange` is not the caller's any more.
- * NULL when memory is out: then it still is. */
+/* Turns the exchange into a job. Returns a new exchange to answer the client with, 202 or 503, and
+ * takes `exchange`. Returns NULL, and takes nothing, when memory is out. */
 api_exchange *api_detach(api_exchange *exchange);
-/* Before api_work: `tell` is called as watch.h says, by its thread. */
+/* Sets a callback for progress, before api_work; the working thread calls `tell` as watch.h
+ * says. */
 void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
                void *context);
-/* Before api_end: `tell` is called as watch.h says while api_end works on a read. What it gives up
- * begins anew: api_end returns API_WORK. */
+/* Sets a callback for progress, before api_end: `tell` is called as watch.h says while api_end
+ * works on a read. A read that it stops is started again: api_end returns API_WORK. */
 void api_watch_worker(api_exchange *exchange,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* Called by `tell` before it returns false: what the client is answered with in place of
- * HE_CANCELLED.
+/* Sets the problem that the client gets instead of HE_CANCELLED. `tell` calls it before it returns
+ * false.
  */
 void api_give_up(api_exchange *exchange, int code, const char *text);
-/* May the request become a job, if its client prefers that? */
+/* May the request become a job if its client prefers that? */
 bool api_can_be_job(const api_exchange *exchange);
-/* After API_WORK and API_JOB, before the work has begun. */
+/* Returns the cost of the work, after API_WORK or API_JOB and before the work begins. */
 api_load api_load_of(const api_exchange *exchange);
 const api_answer *api_answer_of(const api_exchange *exchange);
-/* So many bytes of its body that api_body was not given, or of its answer, went over the wire: they
- * count for its client's limit. */
+/* Counts bytes that were transferred, of a body that was not passed to api_body or of the answer,
+ * against the limit of the client. */
 void api_charge(api_exchange *exchange, uint64_t bytes);
-/* The file of tokens was read: tells the store what each of them may hold. False without memory,
- * and what held before holds. */
+/* Sets the quotas of all tokens in the store, after the file of tokens was read. Returns false when
+ * memory is out; the old quotas then stay. */
 bool api_service_apply_quotas(api_service *service);
-/* What limits of clients have refused (api/limit/limit.h). The server adds to it what it refuses
- * before there is an exchange. */
+/* Returns the counters of refusals by client limits (api/limit/limit.h), to which the server adds
+ * refusals that happen before there is an exchange. */
 api_limited *api_service_limited(api_service *service);
 void api_free(api_exchange *exchange);
-/* Fills in the row and the problem of a request that ended; those of `exchange` NULL are no row and
- * the problem that is in `served`. */
+/* Fills in the route and the problem of a request that ended. If `exchange` is NULL, there is no
+ * route, and the problem is the one already in `served`. */
 void api_served_as(const api_service *service, const api_exchange *exchange, api_served *served);
 
-/* All of it at once, the whole body given; NULL when memory is out. The caller frees. */
+/* Does the whole exchange at once, with the whole body. Returns NULL when memory is out. The caller
+ * frees. */
 api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
                          size_t length);
 

@@ -1,11 +1,11 @@
 /* exchange.h - one request as handlers see it. Internal to api/.
  *
  * By the time a row's `run` is called, service.c has found the route, decoded path and query,
- * checked Content-Type, Accept and the size of the body, parsed a control document, and
- * obtained the mesh as the row's `reads` says (or answered 404; mesh_access.h). A handler reads
- * those, and either answers or fills x->problem and returns: service.c then answers the problem.
- * Answering nothing is a bug and becomes 500. A problem that is filled wins over an answer, whose
- * headers are then dropped.
+ * checked Content-Type, Accept and the size of the body, parsed a control document, and obtained
+ * the mesh as the row's `reads` says (or answered 404; mesh_access.h). A handler reads those and
+ * either answers, or fills x->problem, which service.c then sends. A handler that does neither is a
+ * bug and becomes 500. If it does both, the problem is sent and the answer with its headers is
+ * dropped.
  *
  *     void api_vertex_get(api_exchange *x)
  *     {
@@ -18,7 +18,8 @@
  *         }
  *     }
  *
- * Everything in the arena, texts and state die with the exchange, after the answer was sent. */
+ * Everything in the arena, the texts and the state are freed with the exchange, after the answer
+ * was sent. */
 #ifndef HE_API_REQUEST_EXCHANGE_H
 #define HE_API_REQUEST_EXCHANGE_H
 
@@ -41,17 +42,18 @@
 struct api_service {
     st_store *store;
     api_route_table table;
-    api_route_tree *routes; /* of it */
+    api_route_tree *routes; /* of `table` */
     api_options options;
     api_backfills backfills;
     api_tickets *tickets;
-    api_rates *token_rates, *address_rates; /* NULL: none of them has a limit */
+    api_rates *token_rates, *address_rates; /* buckets; NULL: no client has a limit */
     api_limited limited;
     api_metrics *metrics;
-    api_unpack_room unpacking; /* of the decoders of bodies that are arriving */
+    api_unpack_room unpacking; /* memory of the decoders of request bodies */
 };
 
-/* Where an exchange is, forwards only: on a worker, on a thread that may block, a job, answered. */
+/* How far an exchange is. It only moves forward: on a worker, on a thread that may block, in a job,
+ * answered. */
 typedef enum api_phase { API_PHASE_BODY, API_PHASE_WORK, API_PHASE_JOB, API_PHASE_DONE } api_phase;
 
 enum { API_LOCATION = 512 }; /* a path of this API, escaped */
@@ -64,69 +66,70 @@ struct api_exchange {
 
     /* --- the request --- */
     api_request request;
-    const api_route *route;    /* NULL where none matched */
-    bool head;                 /* HEAD: the server sends the headers only */
-    const char *mesh_id;       /* of the path, well formed; NULL: none */
-    he_kind kind;              /* of {domain}, or the row's */
-    uint32_t id;               /* of {id} */
-    const char *code;          /* of {code} */
-    const char *attribute;     /* of {name} */
-    const char *job_id;        /* of {job}, any text */
-    api_token *token;          /* held; NULL: the route is open, or the server asks for none */
-    bool rehearses_only;       /* it may do a dry run of the write, and no more: gate.h */
-    bool has_bad_token;        /* the request brought a token that is not known */
-    api_rates *rates;          /* where the bucket of its client is; NULL: it has no limit */
-    api_rate_key rate_key;     /* that of the client */
-    api_rate rate;             /* that it has */
-    api_rate_state rate_state; /* as it was when the request was let in, or not */
-    bool at_gate;              /* it got no further, and nothing that is stored was looked at */
+    const api_route *route; /* NULL: no route matched */
+    bool head;              /* HEAD: the server sends the headers only */
+    const char *mesh_id;    /* in the path, well formed; NULL: none */
+    he_kind kind;           /* {domain} of the path, or the row's */
+    uint32_t id;            /* {id} of the path */
+    const char *code;       /* {code} of the path */
+    const char *attribute;  /* {name} of the path */
+    const char *job_id;     /* {job} of the path, any text */
+    api_token *token;       /* a reference; NULL: the route is open, or the server asks for none */
+    bool rehearses_only;    /* the token may only do a dry run of this write: gate.h */
+    bool has_bad_token;     /* the request has an unknown token */
+    api_rates *rates;       /* where the client's bucket is; NULL: it has no limit */
+    api_rate_key rate_key;  /* key of the client's bucket */
+    api_rate rate;          /* the client's rate */
+    api_rate_state rate_state; /* the bucket after the request was let in or refused */
+    bool at_gate;              /* refused at the gate, before anything stored was read */
     api_query query;
-    const char *media_in;  /* which of route->consumes the body is, NULL without a body */
-    const char *media_out; /* which of route->produces is wanted */
+    const char *media_in;  /* the type of the body, out of route->consumes; NULL without a body */
+    const char *media_out; /* the type of the answer, out of route->produces */
     api_prefer prefer;
-    char allow[API_ALLOW]; /* methods of a path that does not take this one */
-    const char *key;       /* Idempotency-Key, NULL without one or where the row takes none */
-    he_siphash hash;       /* of a keyed request */
-    st_keyed *keyed;       /* the request with its key; NULL: none, or it was settled */
-    uint64_t noted;        /* position of the note that the answer waits for; 0: none */
-    const char *own_job;   /* the job that this is the work of; NULL: none */
-    api_coding coding_in;  /* of the body */
-    api_codings codings;   /* the answer may have */
+    char allow[API_ALLOW]; /* after 405: the methods of the path */
+    const char *key;       /* Idempotency-Key; NULL: none, or the row takes none */
+    he_siphash hash;       /* hash of a request with a key */
+    st_keyed *keyed;       /* the entry of the key; NULL: none, or it was settled */
+    uint64_t noted;        /* position of the record that the answer waits for; 0: none */
+    const char *own_job;   /* id of the job that does this work; NULL: none */
+    api_coding coding_in;  /* content coding of the body */
+    api_codings codings;   /* content codings that the answer may have */
 
-    /* --- its body --- */
+    /* --- the request's body --- */
     api_text body;
-    uint64_t arrived;   /* bytes, as they were sent */
-    uint64_t received;  /* unfolded */
-    api_unpack *unpack; /* NULL: of a body that is plain, or has ended */
+    uint64_t arrived;   /* bytes received, compressed */
+    uint64_t received;  /* bytes after decompression */
+    api_unpack *unpack; /* decoder; NULL: the body is uncompressed, or has ended */
     api_document document;
     bool has_root;
-    api_in root;   /* of a control document */
-    api_items ops; /* of an edit list, in `body` */
+    api_in root;   /* root of a control document */
+    api_items ops; /* operations of an edit list, which lies in `body` */
 
     /* --- the mesh --- */
-    st_mesh *mesh;     /* a reference, NULL where the template has none or it is absent */
-    bool is_cold;      /* it is not in memory, and is found when the body is whole */
+    st_mesh *mesh;     /* a reference; NULL: the route has none, or the mesh is absent */
+    bool is_cold;      /* the mesh is not in memory; it is looked for after the body arrived */
     st_mesh_info info; /* filled by read_begin, write_begin and write_commit */
     bool has_info;
-    bool shows_all; /* the answer may show more of the store than `info`: see api_answer's shown */
-    uint64_t since; /* all records up to here were durable when the exchange began */
-    st_write write; /* of the mesh; a claim outlives the handler that began it */
-    api_reading reading;    /* what the row says, of a handler's way to it */
-    const he_mesh *content; /* at hand while a handler runs that reads; NULL: none is */
-    st_snapshot *snapshot;  /* which `content` is of; NULL: it is under the shared lock */
-    bool keeps;             /* `snapshot` until the exchange is freed */
+    /* the answer may show more of the store than `info`: see `shown` of api_answer */
+    bool shows_all;
+    uint64_t since;      /* all records up to this position were durable when the exchange began */
+    st_write write;      /* of the mesh; a claim outlives the handler that began it */
+    api_reading reading; /* what the row says the handler reads */
+    const he_mesh *content; /* the mesh while a handler that reads runs; NULL: none */
+    st_snapshot *snapshot;  /* owner of `content`; NULL: it is under the shared lock */
+    bool keeps;             /* keep `snapshot` until the exchange is freed */
 
-    /* --- the handler's own, freed by `free_state` with the exchange --- */
+    /* --- state of the handler, freed by `free_state` with the exchange --- */
     void *state;
     void (*free_state)(void *state);
     void (*deferred)(api_exchange *x);
-    bool is_job;          /* `deferred` is to be one */
-    double seconds;       /* that it may take; 0: not estimated */
-    he_watch watch;       /* of the work: threads for it, and who is told */
-    api_problem given_up; /* why the watch ended it; code HE_OK: no reason was given */
+    bool is_job;          /* `deferred` shall run as a job */
+    double seconds;       /* estimated duration; 0: not estimated */
+    he_watch watch;       /* threads and callback for the work */
+    api_problem given_up; /* why the watch stopped the work; code HE_OK: no reason given */
 
     /* --- the answer --- */
-    int published; /* see api_publish; 0: nothing was */
+    int published; /* see api_publish; 0: nothing was published */
     char location[API_LOCATION];
     char retry[API_RETRY], rate_policy[API_RATE_FIELD], rate_field[API_RATE_FIELD];
     api_problem problem;
@@ -137,107 +140,109 @@ struct api_exchange {
     void *stream;
     void (*free_stream)(void *stream);
     api_source live;
-    api_pack *pack; /* codes the answer, or holds all of it; NULL: neither */
-    char *coded;    /* all of it */
-    api_blob blob;  /* which is sent, freed with the exchange unless it is lent */
+    api_pack *pack; /* compresses the answer, or owns all of it; NULL: neither */
+    char *coded;    /* the whole compressed answer */
+    api_blob blob;  /* the answer; freed with the exchange unless it is borrowed */
     uint64_t blob_at;
 };
 
-/* --- query parameters: checked against the row already, so these cannot fail --- */
+/* --- query parameters: already checked against the row, so these functions cannot fail --- */
 const char *api_param_text(const api_exchange *x, const char *name); /* NULL when absent */
 bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
 uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
 double api_param_number(const api_exchange *x, const char *name, double fallback);
-int api_param_choice(const api_exchange *x, const char *name); /* index, -1 when absent */
-/* A bit for each choice that is named. */
+/* index of the choice, -1 when absent */
+int api_param_choice(const api_exchange *x, const char *name);
+/* Returns a bit set of the choices that are named. */
 unsigned api_param_choices(const api_exchange *x, const char *name);
 bool api_param_has_choice(const api_exchange *x, const char *name, const char *choice);
 
-/* What the request's changes are made for. */
+/* Returns the cause to store with the request's changes. */
 st_cause api_cause(const api_exchange *x);
 
 /* --- writes --- */
-/* Begins x->write, with x->info filled and preconditions checked (If-Match, If-None-Match).
- * `expected` is a cursor at the body's expected_revision or NULL. On false the problem is filled
- * and no lock is held. Ended by api_write_commit or st_write_abort. */
+/* Begins x->write, fills x->info and checks preconditions (If-Match, If-None-Match). `expected` is
+ * a cursor at the body's expected_revision, or NULL. api_write_commit or st_write_abort ends the
+ * write. Returns false, without a lock, with the problem filled. */
 bool api_write_begin(api_exchange *x, const api_in *expected);
-/* Begins a claim as x->write, for a long edit that works without the lock (store/write.h). It is
- * ended with the exchange if not before. */
+/* Begins x->write as a claim, for a long edit that works without the lock (store/write.h). The
+ * exchange ends it if the handler did not. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
-/* Commits x->write and publishes (api_publish) 204. False, with the problem filled and nothing
- * done, where the journal has no place for it or a claimed mesh was removed meanwhile. */
+/* Commits x->write and publishes 204 (api_publish). Returns false with the problem filled and
+ * nothing changed if the journal has no space, or if a claimed mesh was deleted meanwhile. */
 bool api_write_commit(api_exchange *x, const char *ops);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* If-None-Match: * or If-Match while the mesh of a PUT is absent. */
+/* Do the preconditions hold for a PUT to a mesh that is absent (If-None-Match: * does, If-Match
+ * does not)? */
 bool api_precondition_absent(api_exchange *x);
 
 /* --- work --- */
-/* Run `handler` instead of the present one, on a thread that may block. Call and return, before
- * taking a lock. In api_work it is called at once. */
+/* Runs `handler` instead of the present one, on a thread that may block. Call it before taking a
+ * lock, then return. In api_work it runs at once. */
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
-/* The same for work that may take so long that it becomes a job: where the client prefers that, or
- * `seconds` are more than it will wait. Otherwise deferred if `costly`, or called at once. The
- * route has API_LONG. Reads leave that to mesh_access.h. */
+/* Defers work that may be long. It becomes a job if the client prefers that, or if `seconds` exceed
+ * its patience; otherwise it is deferred if `costly`, or called at once. The route must have
+ * API_LONG. Handlers that read leave this to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
-/* Seconds of work that the client waits for; what takes longer is a job. Negative where all is to
- * be one, HUGE_VAL where nothing can be. */
+/* Returns the seconds that the client will wait; longer work becomes a job. Negative: all work
+ * becomes a job. HUGE_VAL: no work can. */
 double api_patience(const api_exchange *x);
-/* Is work that may take these seconds to be a job? */
+/* Must work that takes this many seconds become a job? */
 bool api_wants_job(const api_exchange *x, double seconds);
-/* Should work on this many elements (or bytes) leave the worker? False in api_work. */
+/* Should work on this many elements (or bytes) leave the worker? Returns false in api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
-/* Vertices, half-edges and faces that were issued: what work on the whole mesh goes by. */
+/* Returns the number of ids of vertices, half-edges and faces, dead ones included: the cost of work
+ * on the whole mesh. */
 uint64_t api_elements_of(const he_mesh *mesh);
-/* The same of work that costs the mesh. */
+/* Should work on the whole mesh leave the worker? Returns false in api_work. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
-/* --- answers: one of these, once --- */
-/* The write took effect, so that a refusal would be a lie: a problem that comes up from here on (no
- * memory for the answer, a mesh that somebody else has deleted) leaves `status`, 201 or 204,
- * without a body. With 201, x->info is the new mesh's and gives Location. */
+/* --- answers: call one of these, once --- */
+/* Declares that the write took effect, so that a refusal would be wrong. If a problem comes up
+ * later (no memory for the answer, the mesh deleted meanwhile), the client gets `status`, 201 or
+ * 204, without a body. With 201, x->info is the new mesh's, and Location is made from it. */
 void api_publish(api_exchange *x, int status);
-/* What x->out wrote, as application/json, or another type. */
+/* Answers with the text that x->out wrote, as application/json or as another type. */
 void api_answer_json(api_exchange *x, int status);
 void api_answer_text(api_exchange *x, int status, const char *type);
-/* Bytes that live as long as the service or the exchange. */
+/* Answers with bytes that live as long as the service or the exchange. */
 void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
                       size_t length);
-void api_answer_empty(api_exchange *x, int status); /* 204 and the like */
-/* The answer to a write that the client does not want spelt out: 204 where it prefers
- * return=minimal, else false and nothing. */
+void api_answer_empty(api_exchange *x, int status); /* without a body: 204 and others */
+/* If the client prefers return=minimal, answers 204 and returns true. */
 bool api_answer_minimal(api_exchange *x);
-/* Takes `stream`, freed with the exchange. `length` -1: not known. */
+/* Answers with a stream, which it takes and frees with the exchange. `length` is -1 if unknown. */
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
-/* What lies elsewhere: takes `blob`, where that can be freed. A job keeps it as it is. */
+/* Answers with a blob, which it takes if the blob has `free`. A job keeps it as it is. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
-/* An answer that goes on, for as long as the token is good: takes `source`, freed with the
- * exchange. `idle` is a literal. */
+/* Answers without a known end, while the token is valid. Takes `source`, freed with the exchange.
+ * `idle` is a literal. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
                      const char *idle);
-/* A header of the answer, in place of one of this name; `value` is copied. Before or after the
- * answer. */
+/* Sets a header of the answer, replacing one with this name; `value` is copied. Call it before or
+ * after the answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);
 void api_answer_header_format(api_exchange *x, const char *name, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* The ETag of x->info in this representation. */
+/* Sets the ETag of x->info for this representation. */
 void api_answer_etag(api_exchange *x, const char *representation);
-/* Puts the ETag; true when If-None-Match names it, and then 304 was answered. Never in a job: its
- * result is what was asked for. */
+/* Sets the ETag. If If-None-Match names it, answers 304 and returns true. A job never does that:
+ * its client asked for the result. */
 bool api_not_modified(api_exchange *x, const char *representation);
-/* The same with a tag that is no mesh's. */
+/* Does what api_not_modified does for a tag that is not a mesh's. */
 bool api_not_modified_since(api_exchange *x, const char *etag);
 
-/* --- refusals: fill x->problem; always false --- */
+/* --- refusals: they fill x->problem and always return false --- */
 bool api_fail(api_exchange *x, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-bool api_fail_core(api_exchange *x, const he_error *err); /* about the body */
-bool api_fail_path(api_exchange *x, const he_error *err); /* about the path */
+bool api_fail_core(api_exchange *x, const he_error *err); /* an error about the body */
+bool api_fail_path(api_exchange *x, const he_error *err); /* an error about the path */
 bool api_fail_store(api_exchange *x, st_status status);
 bool api_fail_memory(api_exchange *x);
-/* Accept allows none of what the route answers with. */
+/* Refuses because Accept allows none of the route's types. */
 bool api_fail_accept(api_exchange *x);
 
 #endif

@@ -1,38 +1,39 @@
-/* gate.h - what the token of a request lets it do: every check of it, one function each.
+/* gate.h - what a request's token may do: all checks, one function for each.
  *
- *     api_gate_enter       the route: its row's role, before anything of the request is looked at
- *                          but its method and path. 401, 403 `forbidden`; and the client's rate
+ *     api_gate_enter       the route: its row's role, before anything of the request is read but
+ *                          its method and path. 401, 403 `forbidden`; and the client's rate
  *                          (rating.h), 429
- *     api_gate_sees        a mesh: one outside the token's prefixes does not exist for it, and is
- *                          answered with the bytes of one that does not. 404
- *     api_gate_may_create  an id for a mesh. 403 `prefix`
- *     api_gate_may_change  a write by a token that may only rehearse it. 403 `forbidden`
+ *     api_gate_sees        a mesh: a mesh outside the token's prefixes is answered with the same
+ *                          bytes as one that does not exist. 404
+ *     api_gate_may_create  an id for a new mesh. 403 `prefix`
+ *     api_gate_may_change  a write by a token that may only do a dry run. 403 `forbidden`
  *
- * A server without tokens (api_options' `tokens` is NULL) asks for none, and each check passes. One
- * with tokens has a token in x->token beyond the gate of every route that is not open. */
+ * If the server has no tokens (`tokens` of api_options is NULL), all checks pass. If it has tokens,
+ * x->token is set after the gate on every route that is not open. */
 #ifndef HE_API_REQUEST_GATE_H
 #define HE_API_REQUEST_GATE_H
 
 #include "api/request/exchange.h"
 
-/* Finds the token and sets x->token, and x->rehearses_only where a write is let in for what it may
- * be: a dry run. False with the problem filled; x->at_gate then says that nothing stored was looked
- * at. */
+/* Finds the token and sets x->token; sets x->rehearses_only if the token may do nothing but a dry
+ * run of this write. Returns false with the problem filled; x->at_gate then says that nothing
+ * stored was read. */
 bool api_gate_enter(api_exchange *x);
-/* False where the mesh does not exist for the token, whether or not there is one. */
+/* Returns false if the token may not see a mesh with this id, whether or not it exists. */
 bool api_gate_sees(const api_exchange *x, const char *mesh);
-/* False with the problem filled. */
+/* Returns false with the problem filled. */
 bool api_gate_may_create(api_exchange *x, const char *mesh);
-/* False with the problem filled. Called where a handler knows that its request is no dry run, and
- * once more where it commits. */
+/* Returns false with the problem filled. A handler calls it when it knows that its request is no
+ * dry run; the commit calls it once more. */
 bool api_gate_may_change(api_exchange *x);
 
-/* A ticket (api/token/tickets.h) in place of the header is the last parameter of the query. */
+/* A ticket (api/token/tickets.h) is the last parameter of the query and replaces the Authorization
+ * header. */
 #define API_TICKET "ticket="
-/* Where the ticket begins in a query, NULL where it has none. */
+/* Returns where the ticket begins in a query, or NULL. */
 const char *api_gate_ticket(const char *query);
 
-/* The value of WWW-Authenticate for the problem of the exchange, NULL where it has none. */
+/* Returns the value of WWW-Authenticate for the problem of the exchange, or NULL. */
 const char *api_gate_challenge(const api_exchange *x);
 
 #endif

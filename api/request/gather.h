@@ -1,14 +1,14 @@
-/* gather.h - the whole of an answer that is pulled.
+/* gather.h - reading a streamed answer into memory.
  *
- * What a job would have answered is kept until it is fetched, when the stream that makes it is
- * gone: it is read to its end while the job runs. */
+ * A job keeps its answer until a client fetches it, when the stream that makes it would be gone. So
+ * the stream is read to its end while the job runs. */
 #ifndef HE_API_REQUEST_GATHER_H
 #define HE_API_REQUEST_GATHER_H
 
 #include "api/request/exchange.h"
 
-/* The answer that is pulled becomes one of bytes, in x->text; a blob and others stay as they are.
- * The problem is filled without memory, when the stream fails, and when the watch gives up. */
+/* Reads a streamed answer into x->text; blobs and other answers stay as they are. Fills the problem
+ * when memory is out, when the stream fails, and when the watch stops the work. */
 void api_gather(api_exchange *x);
 
 #endif

@@ -1,16 +1,17 @@
-/* handlers.h - what the rows of routes.c call. Each runs under the contract of exchange.h; those
- * whose row says what they cost have a second function that finds that (api_reading in route.h). */
+/* handlers.h - the functions that rows of routes.c call. Each runs under the contract of
+ * exchange.h. A handler whose row declares a cost has a second function that estimates it
+ * (api_reading in route.h). */
 #ifndef HE_API_REQUEST_HANDLERS_H
 #define HE_API_REQUEST_HANDLERS_H
 
 #include "api/request/exchange.h"
 
-/* pages.c: what is not a mesh. */
+/* pages.c: everything that is not about a mesh. */
 void api_live_get(api_exchange *x);
 void api_ready_get(api_exchange *x);
 void api_version_get(api_exchange *x);
 void api_metrics_get(api_exchange *x);
-void api_page_get(api_exchange *x); /* "/" and "/assets/..." */
+void api_page_get(api_exchange *x); /* serves "/" and "/assets/..." */
 void api_problem_get(api_exchange *x);
 void api_operations_get(api_exchange *x);
 void api_openapi_get(api_exchange *x);
@@ -23,14 +24,14 @@ void api_admin_reload(api_exchange *x);
 /* backup.c */
 void api_admin_backup(api_exchange *x);
 
-/* Jobs: x->job_id. */
+/* Jobs; they use x->job_id. */
 void api_jobs_list(api_exchange *x);
 void api_job_get(api_exchange *x);
 void api_job_delete(api_exchange *x);
 void api_job_result(api_exchange *x);
 void api_job_events(api_exchange *x);
 
-/* The collection. */
+/* The collection of meshes. */
 void api_meshes_list(api_exchange *x);
 void api_meshes_create_begin(api_exchange *x);
 void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length);
@@ -52,13 +53,13 @@ bool api_progressive_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_mesh_copy(api_exchange *x);
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
-/* Its elements: x->kind, x->id, x->relation. */
+/* Elements of a mesh; they use x->kind, x->id, x->relation. */
 void api_elements_list(api_exchange *x);
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_element_get(api_exchange *x);
 void api_relation_get(api_exchange *x);
 
-/* Its attributes: x->kind, x->attribute. */
+/* Attributes of a mesh; they use x->kind, x->attribute. */
 void api_attributes_list(api_exchange *x);
 void api_materials_list(api_exchange *x);
 void api_attribute_get(api_exchange *x);
@@ -69,7 +70,7 @@ void api_attribute_put(api_exchange *x);
 void api_attribute_patch(api_exchange *x);
 void api_attribute_delete(api_exchange *x);
 
-/* Questions. */
+/* Queries. */
 void api_query_post(api_exchange *x);
 bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 void api_traverse_post(api_exchange *x);

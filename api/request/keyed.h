@@ -1,31 +1,32 @@
-/* keyed.h - requests with an Idempotency-Key: done once, and answered alike each time they come.
+/* keyed.h - requests with an Idempotency-Key: executed once, and answered the same way each time.
  *
  * Rows with API_KEYED or API_KEYED_NEW read the header (draft-ietf-httpapi-idempotency-key-header):
- * 1 to API_KEY_LENGTH visible characters, quoted or not, taken as they stand. With API_KEYED the
- * key is one of the mesh and dies with it, with API_KEYED_NEW one of the store. A request is the
- * same when method, path, query, Content-Type and each byte of the body are, its content coding
- * undone: how it was packed for the way says nothing about what is asked. So of multipart/form-data
- * the names, types and bytes of the files are, which its reader adds, and not the boundary, which a
- * client makes up anew. Of these a keyed hash of
- * 128 bits is kept, since bodies are too large to keep. Preconditions are not part of it: a write
- * that is asked for again meets the revision it made.
+ * 1 to API_KEY_LENGTH visible characters, quoted or not, taken literally. With API_KEYED the key
+ * belongs to the mesh and is deleted with it; with API_KEYED_NEW it belongs to the store.
  *
- * Answers of 2xx are kept. Refusals are not, so that the client may try again once their reason is
- * gone; neither are failures. */
+ * Two requests are equal if method, path, query, Content-Type and every byte of the decompressed
+ * body are. For multipart/form-data the names, types and bytes of the files are compared, and not
+ * the boundary, which clients choose anew each time. The store keeps a keyed hash of 128 bits of
+ * all this, because bodies are too large to keep. Preconditions are not compared: a write that is
+ * sent again meets the revision that it made.
+ *
+ * 2xx answers are kept. Refusals and failures are not, so that the client may try again when their
+ * reason is gone. */
 #ifndef HE_API_REQUEST_KEYED_H
 #define HE_API_REQUEST_KEYED_H
 
 #include "api/request/exchange.h"
 
-/* After the row was found: check the header and begin the hash. */
+/* Checks the header and begins the hash, after the route was found. */
 bool api_keyed_begin(api_exchange *x);
 void api_keyed_body(api_exchange *x, const char *bytes, size_t length);
-/* The reader of multipart/form-data adds what makes requests equal or different: the files, not
- * their delimiters. */
+/* Adds bytes to the hash. The reader of multipart/form-data calls it with the files, not their
+ * delimiters. */
 void api_keyed_add(api_exchange *x, const char *bytes, size_t length);
-/* Before the handler. False when it must not run: the first answer was given again, or refused. */
+/* Looks up the key, before the handler. Returns false if the handler must not run: the kept answer
+ * was sent, or the request refused. */
 bool api_keyed_find(api_exchange *x);
-/* The answer is complete: keep it, or let the key be used again. */
+/* Keeps the complete answer, or releases the key. */
 void api_keyed_settle(api_exchange *x);
 
 #endif

@@ -1,11 +1,11 @@
-/* new_mesh.h - a mesh that a request makes, under an id that its token may use. */
+/* new_mesh.h - making a mesh for a request, under an id that its token may use. */
 #ifndef HE_API_REQUEST_NEW_MESH_H
 #define HE_API_REQUEST_NEW_MESH_H
 
 #include "api/request/exchange.h"
 
-/* st_create_from for the request, with its key. `id` NULL lets the server choose: then it begins
- * with the first prefix of the token, if that has any. Takes `content` on success. */
+/* Calls st_create_from for the request, with its key. If `id` is NULL the server chooses one, which
+ * begins with the first prefix of the token, if it has prefixes. Takes `content` on success. */
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
                        const st_shown *from, st_mesh **out);
 

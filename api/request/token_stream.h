@@ -1,9 +1,9 @@
-/* token_stream.h - an answer that goes on (live.h), for as long as its token is good.
+/* token_stream.h - an answer without a known end (live.h), sent as long as its token is valid.
  *
- * A stream of events outlives the check of its request. It looks at the token before each piece,
- * and is woken when a reload drops the token: then it ends after the event that is being sent, with
- * `bye` and the reason "token". One that expires meanwhile ends so at the next event or
- * heartbeat. */
+ * A stream of events outlives the check at the start of its request. It checks the token before
+ * each piece, and is woken when a reload revokes the token. It then ends after the current event,
+ * with `bye` and the reason "token". If a token expires, its streams end in this way at the next
+ * event or heartbeat. */
 #ifndef HE_API_REQUEST_TOKEN_STREAM_H
 #define HE_API_REQUEST_TOKEN_STREAM_H
 
@@ -12,7 +12,7 @@
 
 #include <stdbool.h>
 
-/* Puts a source around `source`, which it then owns. False without memory: then it does not. */
+/* Wraps `source` and takes it. Returns false, and takes nothing, when memory is out. */
 bool api_token_stream_new(api_tokens *tokens, api_token *token, const api_source *source,
                           api_source *out);
 
