@@ -1,13 +1,14 @@
-/* spatial.h - what questions about space share with GET .../check. */
+/* spatial.h - the search for intersections, as POST .../query and GET .../check share it. */
 #ifndef HE_API_ASK_SPATIAL_H
 #define HE_API_ASK_SPATIAL_H
 
 #include "api/ask/tree.h"
 
-/* Look for faces that meet where they should not, for at most what the asker has left, and leave
- * the pairs in a->first: see query/bvh.h for their order. `complete` is false when API_MAX_PAIRS
- * were met, so that there may be more. `in` is the question, NULL for none in a body. False with
- * the problem filled, limit_exceeded where it takes more than is left, or with a->spent. */
+/* Finds faces that intersect where they should not, spending at most the asker's steps, and leaves
+ * the pairs in a->first (query/bvh.h defines their order). Sets `complete` to false if
+ * API_MAX_PAIRS were found, so that there may be more. `in` is the question, or NULL without a
+ * body. Returns false with the problem filled (limit_exceeded if there are too few steps), or with
+ * a->spent. */
 bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete);
 
 #endif

@@ -1,8 +1,8 @@
 /* element_rows.h - rows of the table of routes that differ in the kind of element.
  *
- * vertices_list, vertex_get, vertex_faces: `one` and `many` are the kind's names, `what` is the
- * name of a relation of core/query/adjacency.h. The table in routes.c has ELEMENT_ROWS among its
- * rows, and the header `next_page` that they name. */
+ * They make rows such as vertices_list, vertex_get and vertex_faces: `one` and `many` are the names
+ * of the kind, `what` is the name of a relation in core/query/adjacency.h. The table in routes.c
+ * includes ELEMENT_ROWS and defines the header `next_page` that they use. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 

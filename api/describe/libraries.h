@@ -1,15 +1,15 @@
-/* libraries.h - which libraries run here: those that api/ calls. */
+/* libraries.h - the versions of the libraries that api/ calls. */
 #ifndef HE_API_DESCRIBE_LIBRARIES_H
 #define HE_API_DESCRIBE_LIBRARIES_H
 
 typedef struct api_library {
-    const char *name, *version; /* static */
+    const char *name, *version; /* static strings */
 } api_library;
 
 enum { API_LIBRARIES = 3 };
 
-/* The versions of the libraries that the process was given, which may be newer than those that it
- * was built with. */
+/* Lists the versions of the libraries loaded at run time, which may be newer than those at build
+ * time. */
 void api_libraries_list(api_library out[API_LIBRARIES]);
 
 #endif

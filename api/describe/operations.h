@@ -4,10 +4,11 @@
 
 #include "api/json/json_out.h"
 
-/* The body of GET /v1/operations. */
+/* Writes the body of GET /v1/operations. */
 void api_operations_write(api_out *out);
-/* Into an open components.schemas: op_NAME for each row, `operation` for any of them in a list,
- * `edit_one` for one that is an edit by itself, `done` for what any of them gives back. */
+/* Writes schemas into an open components.schemas: op_NAME for each row, `operation` for any
+ * operation in a list, `edit_one` for an operation that is the whole edit, `done` for the results
+ * of any operation. */
 void api_operation_schemas_write(api_out *out);
 
 #endif

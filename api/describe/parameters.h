@@ -1,7 +1,7 @@
-/* parameters.h - the query parameters that rows of the table of routes take.
+/* parameters.h - the query parameters of the table of routes.
  *
- * The rows of api/describe/routes.c point to them; a parameter that means the same on several
- * routes is one of these for all of them. */
+ * Rows of api/describe/routes.c point to them. A parameter with one meaning on several routes is
+ * defined here once. */
 #ifndef HE_API_DESCRIBE_PARAMETERS_H
 #define HE_API_DESCRIBE_PARAMETERS_H
 

@@ -4,9 +4,10 @@
 
 #include "api/request/route.h"
 
-/* What api_service_new() is given. */
+/* Returns the table for api_service_new(). */
 api_route_table api_routes(void);
-/* Statuses any route may answer, those included that the server finds reasons for; ends in 0. */
+/* Returns the statuses that every route may answer, including those that the server causes; ends in
+ * 0. */
 const int *api_route_common(void);
 
 #endif

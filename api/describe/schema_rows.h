@@ -4,19 +4,19 @@
 
 #include <stdbool.h>
 
-/* One member of one schema; rows of a schema stand together. A schema without a row for a member
- * may have it all the same in answers ("others may be added beside them"), but not in requests.
+/* One member of one schema; the rows of a schema are consecutive. Answers may have members without
+ * a row ("others may be added beside them"), requests may not.
  *
- * Types: id, count, number, flag, text, point, time, nothing (an empty array), #other for a schema
- * by name; a star before makes it an array (**id: arrays of ids), a plus one that is not empty, a
- * question mark behind lets the whole be null. */
+ * Types: id, count, number, flag, text, point, time, nothing (an empty array), #other for another
+ * schema by name. A star before the type makes it an array (**id: an array of arrays of ids), a
+ * plus an array that is not empty; a question mark after it allows null for the whole. */
 typedef struct api_member {
     const char *schema, *name, *type;
     bool required;
     const char *doc;
 } api_member;
 
-/* Each ends at a row without a schema. */
+/* Both arrays end at a row without a schema. */
 extern const api_member api_answer_members[];
 extern const api_member api_request_members[];
 

@@ -1,10 +1,10 @@
-/* shapes.h - the schema of {"shape": ...}, from the table of shapes. */
+/* shapes.h - the schema of {"shape": ...}, made from the table of shapes. */
 #ifndef HE_API_DOCUMENT_SHAPES_H
 #define HE_API_DOCUMENT_SHAPES_H
 
 #include "api/json/json_out.h"
 
-/* The member "shape" of components/schemas: one alternative for each shape. */
+/* Writes the member "shape" of components/schemas: one alternative for each shape. */
 void api_shape_schema_write(api_out *out);
 
 #endif

@@ -1,15 +1,16 @@
 /* upload.h - a body that becomes a mesh: a JSON document, the name of a shape, or a mesh file,
  * alone or among the files that it refers to (parts.h).
  *
- * The bytes go to a reader as they arrive; nothing keeps the mesh's file. The reader is chosen by
+ * The bytes go to a reader as they arrive; the mesh file is not kept. The reader is chosen by
  * ?format=, else by Content-Type, else (application/octet-stream) by the first bytes.
  *
  *     api_upload_begin    before the body
  *     api_upload_feed     per piece
  *     api_upload_end      the body is whole and, unless its format is read at the end, well formed
- *     api_upload_build    the mesh; costs the mesh, so it may have to move to the job pool first
+ *     api_upload_build    makes the mesh; long for a large mesh, so it may have to move to the job
+ * pool
  *
- * State is the exchange's. On false the problem is filled. */
+ * The exchange holds the state. All functions return false with the problem filled. */
 #ifndef HE_API_DOCUMENT_UPLOAD_H
 #define HE_API_DOCUMENT_UPLOAD_H
 
@@ -18,15 +19,15 @@
 bool api_upload_begin(api_exchange *x);
 bool api_upload_feed(api_exchange *x, const char *bytes, size_t length);
 bool api_upload_end(api_exchange *x);
-/* After a good end: what the building will cost, for api_run_long. */
+/* Returns what building will cost, for api_run_long; call it after api_upload_end returned true. */
 uint64_t api_upload_elements(const api_exchange *x);
-/* A file that is read as a whole, which api_upload_build does, may make much of few bytes: its
- * elements are guessed. */
+/* Is the number of elements a guess? A file that api_upload_build reads as a whole may expand a few
+ * bytes to many elements. */
 bool api_upload_is_guessed(const api_exchange *x);
 bool api_upload_build(api_exchange *x, he_mesh **out);
-/* The name the document or ?name= gives, NULL when there is none. */
+/* Returns the name in the document or in ?name=, or NULL. */
 const char *api_upload_name(const api_exchange *x);
-/* The member "import" of an object that is open. After a good build. */
+/* Writes the member "import" into an object that is open, after api_upload_build returned true. */
 void api_upload_write_report(api_exchange *x);
 
 #endif

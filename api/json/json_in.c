@@ -17,7 +17,7 @@ void api_in_setup(void)
     cJSON_InitHooks(&hooks);
 }
 
-/* FNV-1a: compares names at the price of integers. */
+/* FNV-1a; compares names as integers. */
 static uint32_t hash(const char *text)
 {
     uint32_t h = 2166136261u;
@@ -51,7 +51,7 @@ static bool check_members(const api_in *object)
     return true;
 }
 
-/* Recursion is bounded: the scan let at most API_MAX_DEPTH levels through. */
+/* Recursion is bounded: the scan has refused more than API_MAX_DEPTH levels. */
 static bool check_objects(const api_in *in)
 {
     if (cJSON_IsObject(in->value) && !check_members(in)) {
@@ -66,7 +66,7 @@ static bool check_objects(const api_in *in)
     return true;
 }
 
-/* One value, of a text that was scanned; `*end` is where it ends. */
+/* Parses one value of a text that was scanned; `*end` is where it ends. */
 static bool parse(const char *bytes, size_t length, const api_in *at, api_document *out,
                   api_in *root, const char **end)
 {
@@ -176,7 +176,7 @@ void api_in_pointer(const api_in *in, char *out, size_t size)
         }
         char *next = add_step(at, end, name);
         if (next == at) {
-            break; /* a pointer to what holds the value is still true */
+            break; /* the pointer of an enclosing value is still correct */
         }
         at = next;
     }
@@ -349,7 +349,7 @@ bool api_in_number(const api_in *in, double *out)
     return true;
 }
 
-/* A number inside a sentence. */
+/* A number formatted for a message. */
 typedef struct number_text {
     char text[HE_NUMBER_TEXT + 1];
 } number_text;

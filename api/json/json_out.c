@@ -17,7 +17,7 @@ static inline bool in_object(const api_out *out)
     return (out->objects >> out->depth & 1) != 0;
 }
 
-/* What must stand before the next value or key at this level. */
+/* Writes what must come before the next value or key at this level. */
 static void separate(api_out *out)
 {
     uint64_t bit = (uint64_t)1 << out->depth;
@@ -108,7 +108,7 @@ static void add_escape(api_text *text, unsigned char c)
 static void add_string(api_text *text, const char *bytes, size_t length)
 {
     api_text_add_char(text, '"');
-    size_t plain = 0; /* start of what is copied as it is */
+    size_t plain = 0; /* start of the bytes that need no escaping */
     for (size_t i = 0; i < length;) {
         unsigned char c = (unsigned char)bytes[i];
         if (c >= 0x20 && c < 0x80 && c != '"' && c != '\\' && c != 0x7F) {
@@ -228,15 +228,15 @@ void api_out_id(api_out *out, uint32_t id)
     }
 }
 
-/* Room is asked for once per so many ids. */
+/* Space is reserved once per this many ids. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
-/* What is given up is not shown to anyone: that the text is incomplete shows as if memory had run
- * out. */
+/* The caller drops the text when writing was stopped, so the failure may look like missing
+ * memory. */
 static bool goes_on(api_out *out)
 {
     he_error err = {0};
-    /* A look costs as much as a list of a few ids, of which there may be one for each operation. */
+    /* Polling costs as much as writing a short list, and each operation may write one. */
     bool looks = ++out->parts % (HE_WATCH_STRIDE / IDS_AT_ONCE) == 0;
     if (looks && he_watch_step(out->watch, 0, 1, &err) != HE_OK) {
         out->text->failed = true;
@@ -294,8 +294,8 @@ void api_out_vec3(api_out *out, he_vec3 value)
     api_out_array_end(out);
 }
 
-/* The date of a day counted from 1970-01-01, in the Gregorian calendar: count from 1 March of year
- * 0, where the leap day is the last of its year, in eras of 400 years. */
+/* The Gregorian date of a day counted from 1970-01-01: counts from 1 March of year 0, so that a
+ * leap day is the last day of its year, in eras of 400 years. */
 static void date_of(int64_t day, int64_t *year, int *month, int *date)
 {
     day += 719468;
@@ -311,7 +311,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* Beyond the years of four digits there is no such string. */
+    /* ISO 8601 has no such string for other years than those of four digits. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

@@ -21,8 +21,8 @@ static const code_row rows[API_CODE_COUNT - HE_STATUS_COUNT] = {
 #undef CODE_ROW
 };
 
-/* What core's outcomes mean over HTTP. Those that are not here are refusals of topology: 422, and
- * their title says the rule. */
+/* The HTTP status of core's refusals. Refusals that are not listed are about topology: 422, with
+ * the rule as the title. */
 static const struct {
     int http;
     const char *explanation;
@@ -136,7 +136,7 @@ int api_code_find(const char *slug)
     return -1;
 }
 
-/* Cut at the end of a character where the text did not fit. */
+/* Truncates at the end of a character if the text did not fit. */
 static void end_whole(char *text, size_t size, int wanted)
 {
     if (wanted < 0) {

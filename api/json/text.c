@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The answer about one element fits, so that it is not copied again and again as it grows. */
+/* The answer about one element fits, so that the buffer rarely has to grow. */
 enum { FIRST_BYTES = 512 };
 
 void api_text_clear(api_text *text)

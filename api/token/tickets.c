@@ -5,16 +5,16 @@
 #include <pthread.h>
 #include <string.h>
 
-/* Two hashes beside each other, so that both are compared in one time. */
+/* The two hashes lie side by side, so that one comparison in constant time covers both. */
 typedef struct ticket {
-    unsigned char hashes[2 * API_TOKEN_HASH]; /* of the ticket and of its target */
+    unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;
-    api_token *token; /* held */
+    api_token *token; /* a reference */
 } ticket;
 
 struct api_tickets {
     pthread_mutex_t lock;
-    ticket items[API_TICKETS]; /* those that are good come first */
+    ticket items[API_TICKETS]; /* the valid ones come first */
     size_t count;
 };
 

@@ -125,7 +125,8 @@ static bool read_prefixes(const reader *r, word w, api_token *out)
     return true;
 }
 
-/* "2027-01-01" or "2027-01-01T12:00:00Z": '9' stands for a digit. */
+/* Does the word have this shape, where '9' stands for a digit? For example "2027-01-01" or
+ * "2027-01-01T12:00:00Z". */
 static bool has_shape(word w, const char *shape)
 {
     bool good = w.length == strlen(shape);
@@ -144,7 +145,8 @@ static int number_at(word w, size_t at, size_t digits)
     return value;
 }
 
-/* What the library makes of a day or time that there is not is another one. */
+/* The library normalizes a date that does not exist to another one, which shows that it does
+ * not. */
 static bool read_expiry(const reader *r, word w, api_token *out)
 {
     bool timed = has_shape(w, "9999-99-99T99:99:99Z");
@@ -167,14 +169,14 @@ static bool read_expiry(const reader *r, word w, api_token *out)
     return fail(r, "expires= takes a day or time such as 2027-01-01 or 2027-01-01T12:00:00Z");
 }
 
-/* What may follow the three fields of every line, each once. */
+/* Optional fields after the first three of a line, each allowed once. */
 static const struct {
     const char *name;
     bool (*read)(const reader *r, word w, api_token *out);
 } settings[] = {{"prefix=", read_prefixes}, {"expires=", read_expiry}};
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
-/* The limit of this name, API_LIMIT_COUNT where a token has none of it. */
+/* Returns the limit with this name, or API_LIMIT_COUNT if tokens have no such limit. */
 static api_limit find_limit(word name)
 {
     for (api_limit limit = 0; limit < API_LIMIT_COUNT; limit++) {
@@ -232,7 +234,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* False at the end of the line. */
+/* Returns false at the end of the line. */
 static bool next_word(const char **at, const char *end, word *out)
 {
     while (*at < end && is_blank(**at)) {
@@ -282,9 +284,10 @@ static bool read_line(const reader *r, const char *at, size_t length, api_token 
 
 /* --- the file --- */
 
-/* Names and hashes that were met, by a hash of them: buckets of indices, as many as tokens. */
+/* A hash table of the names and hashes seen so far: as many buckets as tokens, which hold
+ * indices. */
 typedef struct met {
-    uint32_t *heads, *nexts; /* an index and 1; 0: none */
+    uint32_t *heads, *nexts; /* index + 1; 0: none */
     uint64_t secret[2];
 } met;
 
@@ -305,7 +308,8 @@ static void met_free(met *m)
     he_mem_free(m->nexts);
 }
 
-/* An earlier one whose member of `size` bytes at `offset` is that of the last; adds the last. */
+/* Finds an earlier token whose member of `size` bytes at `offset` equals that of the last one, and
+ * adds the last one. */
 static const api_token *met_find(met *m, const api_token_list *list, size_t offset, size_t size)
 {
     uint32_t last = (uint32_t)list->count - 1;

@@ -7,15 +7,15 @@
 #include <pthread.h>
 #include <string.h>
 
-/* A power of two, so many that few tokens share a bucket. */
+/* A power of two, large enough that few tokens share a bucket. */
 enum { BUCKETS = 2 * API_TOKENS, NONE = UINT16_MAX };
 
 struct api_tokens {
     pthread_mutex_t lock;
     api_token_list list;
-    uint16_t heads[BUCKETS]; /* indices of `list`, NONE at the end */
+    uint16_t heads[BUCKETS]; /* indices into `list`; NONE: the end */
     uint16_t nexts[API_TOKENS];
-    uint64_t secret[2]; /* buckets cannot be foreseen by who makes up hashes */
+    uint64_t secret[2]; /* hash key: clients cannot predict the buckets */
     api_limits defaults;
     api_token_watch *watches;
 };
@@ -47,7 +47,8 @@ static uint16_t *bucket_of(api_tokens *tokens, const unsigned char hash[API_TOKE
     return &tokens->heads[word % BUCKETS];
 }
 
-/* Every token of the bucket is compared, whichever of them it is. NULL: none. */
+/* Compares all tokens of the bucket, so that the time does not show which one matched. Returns NULL
+ * if none does. */
 static api_token *find(api_tokens *tokens, const unsigned char hash[API_TOKEN_HASH])
 {
     api_token *found = NULL;
@@ -64,7 +65,7 @@ void api_tokens_limit(api_tokens *tokens, const api_limits *defaults)
     pthread_mutex_unlock(&tokens->lock);
 }
 
-/* But for limits. */
+/* Ignores limits. */
 static bool says_the_same(const api_token *a, const api_token *b)
 {
     return strcmp(a->name, b->name) == 0 && a->role == b->role && a->expires == b->expires &&
@@ -81,7 +82,7 @@ static void set_limits(api_token *to, const api_token *line, const api_limits *d
     }
 }
 
-/* In the place of each new token that was there before, the one that requests hold. */
+/* Replaces each new token that was there before by the old object, which requests hold. */
 static void keep_known(api_tokens *tokens, api_token_list *fresh)
 {
     for (size_t i = 0; i < fresh->count; i++) {
@@ -105,7 +106,7 @@ static void index_all(api_tokens *tokens)
     }
 }
 
-/* A token that nobody but the old list and requests hold is gone. */
+/* Revokes the tokens that are only in the old list. */
 static void revoke_gone(api_tokens *tokens, const api_token_list *old)
 {
     for (size_t i = 0; i < old->count; i++) {

@@ -1,4 +1,4 @@
-/* names.h - the "as" names of one edit list, and the results behind them.
+/* names.h - the "as" names of one edit list, and the results that they stand for.
  *
  *     api_names_init(&names, secret);
  *     for each operation:                          the check
@@ -6,41 +6,43 @@
  *         api_names_add(&names, at, &call)          400 repeated_name
  *     for each operation:                          the run
  *         api_decode_op(...);  he_op_run(..., &results);
- *         api_names_bind(&names, &call, &results);  from here on its references have values
+ *         api_names_bind(&names, &call, &results);  references to it now have values
  *
- * While an operation is unbound its references check (known name, known result, fitting kind) and
- * stand for one id, HE_NONE. When the list is run, decode operation i only after those before it
- * were bound. Lookup is by a hash whose key, api_store.secret, clients do not know. */
+ * References to an operation that is not bound yet are checked (known name, known result, right
+ * kind) and stand for one id, HE_NONE. When the list is run, operation i must be decoded only after
+ * those before it were bound. Names are found by a hash with a secret key, so that clients cannot
+ * construct collisions. */
 #ifndef HE_API_WRITE_NAMES_H
 #define HE_API_WRITE_NAMES_H
 
 #include "api/write/decode_op.h"
 
 typedef struct api_name {
-    const char *name; /* in `texts`: the document of an operation is gone when the next is read */
+    /* in `texts`, because the document of an operation is freed when the next one is read */
+    const char *name;
     const he_op *op;
     bool bound;
-    he_results results; /* owned once bound */
+    he_results results; /* owned, once bound */
 } api_name;
 
 typedef struct api_names {
     api_name *names;
     size_t count, capacity;
-    uint32_t *table;    /* index + 1 into names, 0 empty */
+    uint32_t *table;    /* hash table of index + 1 into names; 0: empty */
     size_t table_size;  /* a power of two */
     uint64_t secret[2]; /* key of the hash */
     api_arena texts;
-    api_references references; /* give this to api_decode_op */
+    api_references references; /* pass this to api_decode_op */
 } api_names;
 
-/* `names` must not move afterwards: references.context points at it. */
+/* Initializes `names`, which must not move afterwards: references.context points to it. */
 void api_names_init(api_names *names, const uint64_t secret[2]);
 void api_names_clear(api_names *names);
-/* Without "as" it does nothing. `at` is the operation's object. */
+/* Adds the name of an operation, if it has one. `at` is the operation's object. */
 bool api_names_add(api_names *names, const api_in *at, const api_call *call);
-/* Takes the results where the operation is named (and leaves {0}), else leaves them alone. */
+/* Takes the results if the operation has a name (leaving {0}), else does nothing. */
 void api_names_bind(api_names *names, const api_call *call, he_results *results);
-/* Forget all results, before the list is run once more. */
+/* Drops all results, before the list is run again. */
 void api_names_unbind(api_names *names);
 
 #endif
