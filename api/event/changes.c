@@ -1,6 +1,7 @@
 #include "api/event/changes.h"
 
-/* A map may name elements that are gone: those are null, unlike anywhere in a list of ids. */
+/* Writes a map of ids. It may name elements that are gone: those are null, unlike in other lists of
+ * ids. */
 static void write_map(api_out *out, const he_ids *map)
 {
     api_out_array_begin(out);

@@ -7,22 +7,22 @@
 
 #include <pthread.h>
 
-enum { BATCH = 32 * 1024 }; /* bytes, and an event more */
+enum { BATCH = 32 * 1024 }; /* bytes, exceeded by at most one event */
 
 struct api_backfill {
     api_backfills *all;
     st_mesh *mesh; /* a reference */
     st_mesh_info info;
     uint64_t to;
-    /* The job's while one is queued or runs, else the listener's. */
+    /* Owned by the job while one is queued or running, else by the listener. */
     st_cursor *cursor;
     api_text text;
     bool failed;
-    /* Under the lock. */
+    /* The lock protects the members below. */
     pthread_mutex_t lock;
-    unsigned uses; /* the listener and the job */
+    unsigned uses; /* one use by the listener, one by the job */
     bool working, waiting;
-    void (*wake)(void *context); /* NULL: the listener has gone */
+    void (*wake)(void *context); /* NULL: the listener is gone */
     void *context;
 };
 
@@ -46,7 +46,7 @@ api_backfill *api_backfill_new(api_backfills *all, st_mesh *mesh, const st_mesh_
     return c;
 }
 
-/* Give back one use, under the lock, which is given back too. */
+/* Ends one use and unlocks. The lock is held. */
 static void release(api_backfill *c)
 {
     bool last = --c->uses == 0;
@@ -78,7 +78,8 @@ void api_backfill_wake(api_backfill *c, void (*wake)(void *context), void *conte
 
 /* --- on the job pool --- */
 
-/* Columns and contents that came or went belong to the mesh and may be changing. */
+/* A change that added or removed columns or contents is announced as stale: they belong to the mesh
+ * and may be changing. */
 static void render(api_backfill *c, const st_cursor_step *step)
 {
     c->info.revision = step->revision;
@@ -93,7 +94,7 @@ static void render(api_backfill *c, const st_cursor_step *step)
     }
 }
 
-/* What memory has dropped since the last step is looked for anew: the disk may have it. */
+/* If memory dropped the next revision since the last step, searches again: the disk may have it. */
 static bool next_step(api_backfill *c, st_cursor_step *step)
 {
     st_status status = st_cursor_next(c->cursor, step);

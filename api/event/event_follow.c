@@ -37,12 +37,12 @@ typedef struct stream {
     st_listener listener;
     bool listens;
     uint64_t incarnation;
-    api_backfill *missed; /* NULL: nothing, or no more */
-    uint64_t caught_up;   /* the last revision of it */
-    api_text text;        /* to be sent before anything else */
+    api_backfill *missed; /* the backfill; NULL: none, or finished */
+    uint64_t caught_up;   /* its last revision */
+    api_text text;        /* send it before anything else */
     size_t sent;
-    bool finishing; /* the server stops */
-    bool ended;     /* nothing comes after `text` */
+    bool finishing; /* the server is stopping */
+    bool ended;     /* nothing follows `text` */
 } stream;
 
 static void start(void *self, void (*wake)(void *context), void *context)
@@ -67,9 +67,9 @@ static size_t copy_text(stream *s, char *buffer, size_t size)
     return length;
 }
 
-enum { IN_TEXT = -3 }; /* there is something to be sent in `text` */
+enum { IN_TEXT = -3 }; /* result: bytes to send are in `text` */
 
-/* What cannot be had is left out, and said. */
+/* Reads from the backfill. If it fails, sends `resync` instead of the missed events. */
 static int64_t read_missed(stream *s)
 {
     switch (api_backfill_take(s->missed, &s->text)) {
@@ -109,7 +109,7 @@ static int64_t read_queue(stream *s, char *buffer, size_t size)
     return IN_TEXT;
 }
 
-/* A stop waits for none of the three. */
+/* When the server stops, the stream ends without waiting. */
 static int64_t read_stream(void *self, char *buffer, size_t size)
 {
     stream *s = self;
@@ -146,7 +146,7 @@ static void free_stream(void *self)
     he_mem_free(s);
 }
 
-/* The history knows nothing of changes that are no revision: the name is told as it is. */
+/* The history has revisions only, and a new name is not a revision: so the present name is sent. */
 static void begin_with_history(stream *s, const st_mesh_info *info, uint64_t since,
                                api_backfills *backfills)
 {

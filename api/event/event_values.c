@@ -7,18 +7,19 @@
 
 #include <string.h>
 
-/* What a delta did to a slot for columns: one put in the place of another is both. */
+/* What a delta did to one attribute slot. If one column replaced another, `dropped` and `added` are
+ * both set. */
 typedef struct slot {
-    he_ids rows;              /* touched; of an added column all that do not hold the default */
-    const he_column *dropped; /* that was there before, else NULL */
-    bool added;               /* the column that is there now came with the delta */
+    he_ids rows; /* rows touched; of an added column, rows that do not hold the default */
+    const he_column *dropped; /* the column before the delta, else NULL */
+    bool added;               /* the delta added the present column */
 } slot;
 
 typedef struct touched {
     he_ids vertices, halfedges, faces;
     slot *slots;
     size_t slot_count;
-    bool materials; /* the table */
+    bool materials; /* the table of materials was touched */
 } touched;
 
 static void touched_clear(touched *t)
@@ -133,7 +134,7 @@ static he_status find_touched(touched *t, const he_mesh *mesh, const he_delta *d
     return status == HE_OK ? he_ids_sort(&t->faces, err) : status;
 }
 
-/* --- writing: ends early once the text is full --- */
+/* --- writing: stops early when the text is full --- */
 
 static void write_vertices(api_out *out, const he_mesh *mesh, const he_ids *rows)
 {
@@ -299,7 +300,7 @@ he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *de
     touched t = {0};
     he_status status = find_touched(&t, mesh, delta, undone, err);
     if (status == HE_OK) {
-        /* Dropped before added: one may have the name of the other. */
+        /* Dropped columns come first: an added one may have the same name. */
         write_columns_dropped(out, &t);
         write_columns_added(out, mesh, &t);
         if (t.materials) {

@@ -48,7 +48,7 @@ bool api_coding_of_body(const char *content_encoding, api_coding *out)
 
 bool api_coding_choose(const char *accept_encoding, api_codings *out)
 {
-    /* Thousandths; -1: not named. */
+    /* in thousandths; -1: not named */
     int q[API_CODING_COUNT] = {-1, -1, -1}, others = -1;
     api_weighed item;
     for (const char *at = accept_encoding; api_media_next(&at, &item);) {
@@ -68,7 +68,7 @@ bool api_coding_choose(const char *accept_encoding, api_codings *out)
     for (api_coding c = 0; c < API_CODING_COUNT; c++) {
         int weight = q[c] >= 0 ? q[c] : c == API_ZSTD ? -1 : others;
         if (weight < 0) {
-            weight = c == API_IDENTITY ? 1 : 0; /* allowed, and liked least */
+            weight = c == API_IDENTITY ? 1 : 0; /* allowed with the lowest preference */
         }
         out->allowed[c] = weight > 0;
         any = any || weight > 0;

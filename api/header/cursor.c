@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* "vertices.INCARNATION.REVISION.POSITION", the incarnation in hexadecimal digits. */
+/* The text is "vertices.INCARNATION.REVISION.POSITION" with the incarnation in hexadecimal
+ * digits. */
 void api_cursor_write(const char *collection, const st_mesh_info *info, uint64_t position,
                       char out[API_CURSOR])
 {
@@ -14,7 +15,8 @@ void api_cursor_write(const char *collection, const st_mesh_info *info, uint64_t
              info->incarnation, info->revision, position);
 }
 
-/* One number up to a '.' or the end; the text must be what we would have written. */
+/* Reads a number up to a '.' or the end. Refuses texts that api_cursor_write would not have
+ * written, such as leading zeros. */
 static bool read_number(const char **at, uint64_t *out)
 {
     const char *end = *at + strcspn(*at, ".");
@@ -28,7 +30,7 @@ static bool read_number(const char **at, uint64_t *out)
 }
 
 typedef struct parts {
-    size_t collection;       /* characters of its name */
+    size_t collection;       /* length of the collection's name */
     const char *incarnation; /* 16 digits */
     uint64_t revision, position;
 } parts;

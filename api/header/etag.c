@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without the C library's formats: nearly every answer has one. */
+/* Does not use printf because nearly every answer has a tag. */
 static size_t write_state(const st_mesh_info *info, char out[API_ETAG])
 {
     static const char digits[] = "0123456789abcdef";
@@ -33,7 +33,7 @@ void api_etag_write(const st_mesh_info *info, const char *representation, char o
     memcpy(out + used + length, "\"", 2);
 }
 
-/* Step through a list of entity tags. False at the end or where the list is not well formed. */
+/* Steps through a list of entity tags. Returns false at the end or where the list is malformed. */
 static bool next_tag(const char **at, bool *weak, const char **tag, size_t *length)
 {
     *at += strspn(*at, " \t,");

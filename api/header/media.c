@@ -22,7 +22,7 @@ bool api_equal_nocase(const char *a, const char *b)
     return equal(a, strlen(a), b);
 }
 
-/* A piece of a header without the blanks around it. */
+/* Part of a header without surrounding blanks. */
 typedef struct piece {
     const char *at;
     size_t length;
@@ -40,7 +40,8 @@ static piece trim(const char *at, size_t length)
     return (piece){at, length};
 }
 
-/* The next piece of *rest up to `separator`, quoted strings kept whole. False at the end. */
+/* Reads the next piece of *rest up to `separator`, which does not count inside quoted strings.
+ * Returns false at the end. */
 static bool next_piece(piece *rest, char separator, piece *out)
 {
     if (rest->at == NULL) {
@@ -68,7 +69,7 @@ static bool next_piece(piece *rest, char separator, piece *out)
     return true;
 }
 
-/* name=value of a parameter, the value without its quotes. */
+/* Splits name=value and removes the quotes of the value. */
 static bool split_parameter(piece parameter, piece *name, piece *value)
 {
     const char *equals = memchr(parameter.at, '=', parameter.length);
@@ -100,7 +101,8 @@ bool api_media_is(const char *content_type, const char *type)
     return true;
 }
 
-/* A qvalue in thousandths, -1 where it is none: "0", "1", "0.5", at most three decimals. */
+/* Reads a qvalue ("0", "1", "0.5", at most three decimals) in thousandths; returns -1 if
+ * malformed. */
 static int read_q(piece value)
 {
     if (value.length < 1 || value.length > 5 || (value.at[0] != '0' && value.at[0] != '1')) {
@@ -119,7 +121,8 @@ static int read_q(piece value)
     return q <= 1000 ? q : -1;
 }
 
-/* How closely a range names a type: 0 not at all, 1 by any/any, 2 by type/any, 3 by its name. */
+/* How specifically a range matches a type: 0 not at all, 1 by any/any, 2 by type/any, 3 by its
+ * name. */
 static int closeness(piece range, const char *type)
 {
     if (equal(range.at, range.length, "*/*")) {
@@ -134,7 +137,7 @@ static int closeness(piece range, const char *type)
     }
     for (size_t i = 0; i + 1 < range.length; i++) {
         if (lower(range.at[i]) != lower(type[i])) {
-            return 0; /* also where the type is the shorter one */
+            return 0; /* also if the type is shorter than the range */
         }
     }
     return 2;

@@ -10,22 +10,22 @@
 enum { BOUNDARY = 70, DELIMITER = BOUNDARY + 4 };
 
 typedef enum state {
-    SEEK,    /* the next delimiter: what comes before it is the part, or nothing */
-    CLOSE,   /* what ends the delimiter's line */
-    HEADERS, /* of a part */
+    SEEK,    /* reads a part (or the preamble) up to the next delimiter */
+    CLOSE,   /* reads what ends the delimiter's line */
+    HEADERS, /* reads the headers of a part */
     EPILOGUE
 } state;
 
 struct api_multipart {
     state state;
-    uint64_t seen;             /* bytes before those at hand */
+    uint64_t seen;             /* bytes before the present piece of the body */
     char delimiter[DELIMITER]; /* CR LF - - and the boundary */
-    size_t length, matched;    /* bytes of it that were just seen, */
-    size_t implied;            /* of which so many belong to the line before, not to the part */
-    bool inside;               /* a part */
-    char close;                /* '-' or CR where that was the last byte behind a delimiter */
-    size_t parts;              /* begun */
-    uint64_t head_at;          /* byte where its headers begin */
+    size_t length, matched;    /* `matched`: how many of its bytes were just seen */
+    size_t implied;   /* how many matched bytes belong to the line before, not to the part */
+    bool inside;      /* inside a part */
+    char close;       /* '-' or CR if that byte followed a delimiter */
+    size_t parts;     /* number of parts begun */
+    uint64_t head_at; /* offset of the part's headers */
     size_t head_length;
     char head[API_MAX_PART_HEADERS];
     char name[API_MAX_PART_NAME + 1], type[API_MAX_PART_NAME + 1];
@@ -36,7 +36,7 @@ struct api_multipart {
 typedef struct parameter {
     const char *name;
     size_t name_length;
-    char value[API_MAX_PART_NAME + 1]; /* ended by NUL */
+    char value[API_MAX_PART_NAME + 1]; /* terminated by NUL */
     size_t length;
 } parameter;
 
@@ -71,7 +71,8 @@ static bool put(parameter *out, char c)
     return true;
 }
 
-/* Behind the closing quote; NULL where there is none, or the value is too long. */
+/* Returns the position after the closing quote, or NULL if there is none or the value is too
+ * long. */
 static const char *read_quoted(const char *p, const char *end, parameter *out)
 {
     for (p++; p < end && *p != '"'; p++) {
@@ -127,7 +128,7 @@ static found next_parameter(const char **at, const char *end, parameter *out)
     return p == NULL ? WRONG : FOUND;
 }
 
-/* Letter case aside. */
+/* Compares without letter case. */
 static bool is_word(const char *p, const char *end, const char *word)
 {
     size_t length = strlen(word);
@@ -152,7 +153,7 @@ static bool is_boundary(const char *text, size_t length)
     return good;
 }
 
-/* The only value of the parameter; false where there is none. */
+/* Finds the boundary parameter; returns false if it is missing or repeated. */
 static bool find_boundary(const char *content_type, parameter *out)
 {
     const char *end = content_type + strlen(content_type);
@@ -186,7 +187,8 @@ api_multipart *api_multipart_new(const char *content_type, api_problem *problem)
     memcpy(m->delimiter, "\r\n--", 4);
     memcpy(m->delimiter + 4, boundary.value, boundary.length);
     m->length = 4 + boundary.length;
-    m->matched = m->implied = 2; /* the first one may stand at the very beginning */
+    /* the first delimiter may be at the very beginning, without CR LF */
+    m->matched = m->implied = 2;
     return m;
 }
 
@@ -214,12 +216,12 @@ static bool is_text(const char *text, size_t length)
     return he_is_utf8(text, length);
 }
 
-/* What the headers of a part have said so far. */
+/* What was read of a part's headers so far. */
 typedef struct head {
     bool disposition, type, coding;
 } head;
 
-/* NULL, or what is wrong with it. */
+/* Returns NULL, or what is wrong with the header. */
 static const char *read_disposition(api_multipart *m, const char *p, const char *end)
 {
     const char *word = p;
@@ -246,7 +248,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
         if (!is_text(next.value, next.length)) {
             return "a name that is not UTF-8, or has control characters";
         }
-        /* an input of a form where no file was chosen has an empty filename */
+        /* a file input of a form without a chosen file has an empty filename */
         if (next.length > 0 && (is_file || !filename || m->name[0] == '\0')) {
             memcpy(m->name, next.value, next.length + 1);
         }
@@ -316,15 +318,17 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
     }
     m->state = SEEK;
     m->inside = true;
-    m->matched = m->implied = 2; /* those of the empty line, where the part is empty */
+    /* in an empty part the CR LF of the empty line belongs to the delimiter */
+    m->matched = m->implied = 2;
     out->part = (api_part){m->name, seen.type ? m->type : NULL};
     return API_MULTIPART_BEGIN;
 }
 
-/* --- the walk over the bytes --- */
+/* --- stepping through the bytes --- */
 
-/* Reads up to the delimiter. Bytes that begin like it belong to the part as soon as one differs; as
- * CR is its first byte and occurs nowhere else in it, no byte need be looked at twice. */
+/* Reads up to the delimiter. Bytes that match its beginning turn out to belong to the part when a
+ * later byte differs. CR is its first byte and occurs nowhere else in it, so no byte has to be
+ * compared twice. */
 static api_multipart_step seek(api_multipart *m, const char **at, const char *end,
                                api_multipart_piece *out)
 {
@@ -359,7 +363,7 @@ static api_multipart_step seek(api_multipart *m, const char **at, const char *en
     return m->inside && out->length > 0 ? API_MULTIPART_BYTES : API_MULTIPART_MORE;
 }
 
-/* "--", or blanks and CR LF. */
+/* Reads "--", or blanks and CR LF. */
 static bool close_delimiter(api_multipart *m, char c)
 {
     if (m->close == '-' || m->close == '\r') {
@@ -372,7 +376,7 @@ static bool close_delimiter(api_multipart *m, char c)
     return good;
 }
 
-/* Have all headers come? */
+/* Did the empty line after the headers arrive? */
 static bool ends_headers(const api_multipart *m)
 {
     const char *p = m->head + m->head_length;

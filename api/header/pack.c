@@ -11,17 +11,17 @@ enum { LEVEL = 1, GZIP_MEMORY = 8 };
 struct api_pack {
     api_coding coding;
     api_plain plain;
-    size_t used; /* of plain.bytes */
+    size_t used; /* bytes of plain.bytes used */
     z_stream zlib;
     ZSTD_CCtx *zstd;
-    bool begun; /* the library has been started */
+    bool begun; /* the compressor was started */
     bool as_it_is;
-    bool read;  /* all of the body is in `in` or gone */
-    bool ended; /* and all of it has been given */
+    bool read;  /* the whole body was read: what is left of it is in `in` */
+    bool ended; /* the whole output was returned */
     bool failed;
     size_t from, to;
-    char
-        in[API_PACK_AT_ONCE + 1]; /* from..to is to be coded; one more, to see that it is not all */
+    /* from..to is uncompressed input; one byte more shows whether the body is longer */
+    char in[API_PACK_AT_ONCE + 1];
 };
 
 api_pack *api_pack_new(api_coding coding, const api_plain *plain)
@@ -46,7 +46,7 @@ void api_pack_free(api_pack *pack)
     }
 }
 
-/* Fill what is free of `in`. */
+/* Fills the free part of `in`. */
 static void fill(api_pack *pack)
 {
     const api_plain *plain = &pack->plain;
@@ -77,7 +77,8 @@ bool api_pack_whole(api_pack *pack, const char **bytes, size_t *length)
 
 static bool begin_gzip(api_pack *pack)
 {
-    /* What is short needs no more memory than it has bytes. Windows of 256 bytes zlib has not. */
+    /* A short body needs no larger window than itself. zlib does not support windows of 256
+     * bytes. */
     int window = MAX_WBITS;
     while (pack->read && window > 9 && pack->to <= (size_t)1 << (window - 1)) {
         window--;
@@ -88,7 +89,7 @@ static bool begin_gzip(api_pack *pack)
            Z_OK;
 }
 
-/* It takes its memory with the first bytes, were there none. */
+/* Compresses no bytes, to make zstd allocate now: it would allocate with the first bytes only. */
 static bool begin_zstd(api_pack *pack)
 {
     ZSTD_inBuffer none = {"", 0, 0};
@@ -112,7 +113,7 @@ void api_pack_give_up(api_pack *pack)
     pack->as_it_is = true;
 }
 
-/* Code from..to into `buffer`; how many bytes that gave. */
+/* Both compress from..to into `buffer` and return the number of bytes written. */
 static size_t step_gzip(api_pack *pack, char *buffer, size_t size)
 {
     z_stream *z = &pack->zlib;

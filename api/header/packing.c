@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* Before each block, so that giving it back knows its size. */
+/* Precedes each block, so that its size is known when it is freed. */
 typedef union head {
     size_t size;
     max_align_t align;
@@ -22,8 +22,8 @@ static void give_back(void *context, void *block)
     }
 }
 
-/* Compared and counted in one step: two threads cannot pass the ceiling together, and no other
- * thread ever sees more than is lent. */
+/* Compares and adds in one atomic step, so that two threads cannot exceed the ceiling together, and
+ * no thread reads a total above what was allocated. */
 static bool fits(api_packing_memory *memory, size_t size)
 {
     size_t lent = atomic_load_explicit(memory->lent, memory_order_relaxed);
@@ -69,7 +69,7 @@ static void *take(void *context, size_t size)
 
 static void *zlib_take(void *context, unsigned count, unsigned size)
 {
-    return take(context, (size_t)count * size); /* of 32 bits each */
+    return take(context, (size_t)count * size); /* both have 32 bits: no overflow */
 }
 
 void api_packing_zlib(z_stream *stream, api_packing_memory *memory)

@@ -13,7 +13,7 @@ static int hex(char c)
                                   : -1;
 }
 
-/* Percent-decode into the arena; NULL with the reason in `problem`. */
+/* Percent-decodes into the arena. Returns NULL with the problem filled. */
 static const char *decode(const char *raw, size_t length, int code, bool slash, api_arena *arena,
                           api_problem *problem)
 {

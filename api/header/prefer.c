@@ -8,7 +8,7 @@
 /* Longer than any request may take. */
 enum { MOST_SECONDS = 1000000 };
 
-/* The digits after "wait=", wherever a preference begins. */
+/* Reads the digits after "wait=" at the start of a preference. */
 static double read_wait(const char *header)
 {
     static const char name[] = "wait=";

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* What a frame of zstd begins with. */
+/* Length of the magic number of a zstd frame. */
 enum { MAGIC = 4 };
 static const uint32_t ZSTD_FRAME = 0xFD2FB528, ZSTD_SKIPPABLE = 0x184D2A50,
                       ZSTD_ANY_SKIPPABLE = 0xFFFFFFF0;
@@ -15,21 +15,21 @@ struct api_unpack {
     api_coding coding;
     bool (*take)(void *context, const char *bytes, size_t length);
     void *context;
-    uint64_t at;       /* of the coded body: read so far */
-    uint64_t beyond;   /* bytes that members or frames unfolded to beyond the ratio, but for this */
-    uint64_t from, to; /* bytes of this one: compressed data, and what it unfolded to */
-    size_t turn;       /* bytes unfolded by this feed */
-    bool inside;       /* of a member or frame */
+    uint64_t at;       /* bytes read of the compressed body */
+    uint64_t beyond;   /* bytes that earlier members or frames produced above the ratio */
+    uint64_t from, to; /* of this member or frame: compressed bytes, and bytes produced */
+    size_t turn;       /* bytes produced in this call */
+    bool inside;       /* inside a member or frame */
     api_unpack_room *room;
-    api_unpack_place *place; /* NULL: it does not give way */
+    api_unpack_place *place; /* NULL: cannot be evicted */
     api_packing_memory memory;
     z_stream zlib;
     bool has_zlib;
-    bool deflated; /* the member's header is behind */
+    bool deflated; /* the header of the gzip member was read */
     ZSTD_DCtx *zstd;
-    size_t wanted;                                /* bytes to the end of zstd's next part */
-    bool skipped;                                 /* the frame is one that is skipped */
-    unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* of a frame, its first bytes */
+    size_t wanted; /* bytes up to the end of zstd's next header or block */
+    bool skipped;  /* inside a skippable frame */
+    unsigned char head[ZSTD_FRAMEHEADERSIZE_MAX]; /* the first bytes of a frame */
     size_t head_length;
     char piece[API_UNPACK_PIECE];
 };
@@ -43,11 +43,11 @@ static bool fail_memory(const api_unpack *u, api_problem *problem)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
 }
 
-/* --- giving way --- */
+/* --- eviction --- */
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Decoders of gzip are small. Without a place left this one does not give way. */
+/* Decoders of gzip are small and cannot be evicted. Without a free place neither can this one. */
 static void find_place(api_unpack *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_UNPACK_PLACES; i++) {
@@ -61,7 +61,7 @@ static void find_place(api_unpack *u)
     }
 }
 
-/* Take the decoder from WAITING. False when it gave way. */
+/* Takes the decoder from WAITING to BUSY. Returns false if it was evicted. */
 static bool enter(api_unpack *u)
 {
     int state = WAITING;
@@ -72,7 +72,8 @@ static bool enter(api_unpack *u)
         if (state == GONE || state == BUSY) {
             return state == BUSY;
         }
-        state = WAITING; /* while it is TAKING, which is as long as a block takes to be freed */
+        /* spins while another thread is TAKING it, as long as freeing a block takes */
+        state = WAITING;
     }
     return true;
 }
@@ -89,14 +90,14 @@ static void leave(api_unpack *u, size_t bytes)
     }
 }
 
-/* What part of all that arrived since it began came for it. */
+/* Returns the share of this body in all compressed bytes that arrived since it began. */
 static double part_of(const api_unpack_room *room, const api_unpack_place *place)
 {
     uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);
     return all == 0 ? 1 : (double)atomic_load(&place->bytes) / (double)all;
 }
 
-/* False when no decoder waits. */
+/* Returns false if no decoder is WAITING. */
 static bool take_slowest(void *context)
 {
     api_unpack_room *room = context;
@@ -143,7 +144,8 @@ api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
         .lent = &room->lent, .most = API_MAX_UNPACKING, .make_room = take_slowest, .context = room};
     if (coding == API_GZIP) {
         api_packing_zlib(&u->zlib, &u->memory);
-        u->has_zlib = inflateInit2(&u->zlib, MAX_WBITS + 16) == Z_OK; /* gzip's framing alone */
+        /* accepts the gzip format only */
+        u->has_zlib = inflateInit2(&u->zlib, MAX_WBITS + 16) == Z_OK;
     } else {
         u->zstd = ZSTD_createDCtx_advanced(api_packing_zstd(&u->memory));
         if (u->zstd != NULL) {
@@ -180,14 +182,14 @@ static bool refuse(const api_unpack *u, api_problem *problem, const char *why)
                            (unsigned long long)u->at, api_coding_name(u->coding), why);
 }
 
-/* What this member or frame unfolded to beyond the ratio. */
+/* Returns how many bytes this member or frame has produced above the ratio. */
 static uint64_t beyond(const api_unpack *u)
 {
     uint64_t earned = u->from * API_UNPACK_RATIO;
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Hand on `length` bytes of u->piece, if the body may unfold so far. */
+/* Passes `length` bytes of u->piece on if the body may be that large. */
 static bool give(api_unpack *u, size_t length, api_problem *problem)
 {
     u->to += length;
@@ -202,7 +204,7 @@ static bool give(api_unpack *u, size_t length, api_problem *problem)
     return length == 0 || u->take(u->context, u->piece, length);
 }
 
-/* A member or frame has ended. */
+/* Ends a member or frame. */
 static void end_part(api_unpack *u)
 {
     u->beyond += beyond(u);
@@ -234,7 +236,7 @@ static bool feed_gzip(api_unpack *u, const unsigned char *bytes, size_t length, 
     z_stream *z = &u->zlib;
     const unsigned char *end = bytes + length;
     z->next_in = (z_const Bytef *)bytes;
-    /* Once all is read, as long as a whole piece comes out there may be more. */
+    /* After all input was read, a full piece of output means that there may be more. */
     bool full = false;
     while (z->next_in < end ? u->turn < API_UNPACK_TURN : full) {
         if (!u->inside) {
@@ -246,7 +248,7 @@ static bool feed_gzip(api_unpack *u, const unsigned char *bytes, size_t length, 
         z->avail_in = (unsigned)(end - before);
         z->next_out = (unsigned char *)u->piece;
         z->avail_out = sizeof u->piece;
-        /* It stops behind the header, which may be as long as one likes. */
+        /* Z_BLOCK stops after the header, whose length is not limited. */
         int status = inflate(z, u->deflated ? Z_NO_FLUSH : Z_BLOCK);
         u->at += (uint64_t)(z->next_in - before);
         u->from += u->deflated ? (uint64_t)(z->next_in - before) : 0;
@@ -284,7 +286,7 @@ static bool refuse_zstd(const api_unpack *u, size_t code, api_problem *problem)
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
 
-/* The library does not compare the lengths where the last block is empty. */
+/* zstd does not compare the lengths if the last block is empty, so this does. */
 static bool end_frame(api_unpack *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
@@ -296,7 +298,7 @@ static bool end_frame(api_unpack *u, api_problem *problem)
     return true;
 }
 
-/* Let zstd have these bytes, up to the end of the frame; `taken` of them it read. */
+/* Gives these bytes to zstd, up to the end of the frame; `taken` is how many it read. */
 static bool decode(api_unpack *u, const unsigned char *bytes, size_t length, size_t *taken,
                    api_problem *problem)
 {
@@ -321,7 +323,8 @@ static bool decode(api_unpack *u, const unsigned char *bytes, size_t length, siz
     return !ended || end_frame(u, problem);
 }
 
-/* A frame begins: older formats, which the library may know, are not the coding. */
+/* Checks the start of a frame: older formats, which the library may support, are not the zstd
+ * coding. */
 static bool begin_frame(api_unpack *u, api_problem *problem)
 {
     uint32_t magic = 0;
@@ -358,7 +361,7 @@ static bool feed_zstd(api_unpack *u, const unsigned char *bytes, size_t length, 
                 return false;
             }
         } else {
-            /* No further than to the end of a header or block, so that a refusal names it. */
+            /* Stops at the end of each header or block, so that a refusal has its offset. */
             size_t left = length - at, most = u->wanted < left ? u->wanted : left;
             keep_head(u, bytes + at, most);
             if (!decode(u, bytes + at, most, &taken, problem)) {

@@ -1,5 +1,5 @@
-/* A job as it goes on, for those who listen: each gets the newest facts whenever it is ready for
- * them, so that nothing is kept for the slow. */
+/* The event stream of a job. Each listener reads the newest state when it is ready for it, so no
+ * events are queued for slow listeners. */
 #include "api/job/job_entry.h"
 
 #include "api/job/job_out.h"
@@ -8,22 +8,22 @@
 #include <string.h>
 
 struct api_job_listener {
-    api_job_entry *job; /* with a use */
+    api_job_entry *job; /* with one use */
     api_text text;      /* being sent */
     size_t sent;
     bool begun, ended, stopping;
-    /* what it was told last */
+    /* the state last sent */
     api_job_state state;
     const char *phase;
     double progress;
 
     void (*wake)(void *context);
     void *context;
-    bool waiting; /* in the job's list */
+    bool waiting; /* it is in the job's list of listeners to wake */
     api_job_listener *next;
 };
 
-/* Less is not worth a message. */
+/* A smaller progress is not worth a message. */
 static const double STEP = 0.005;
 
 void api_job_entry_wake(api_job_entry *job)
@@ -51,7 +51,7 @@ static bool is_news(const api_job_listener *l, const api_job *facts)
            l->phase != facts->phase;
 }
 
-/* Write the next message, or arrange to be woken for it; false at the end. */
+/* Writes the next message, or arranges to be woken for it. Returns false at the end. */
 static bool next_message(api_job_listener *l)
 {
     api_job_entry *job = l->job;

@@ -1,7 +1,7 @@
-/* Jobs beyond a restart: what the store keeps of one, and what comes back of it.
+/* Jobs across a restart: storing and loading them.
  *
- * A job is noted when it is accepted and when it has ended; the records of its work say by
- * themselves that it is done. So a job that is found without an end has changed nothing. */
+ * A job is recorded when it is accepted and when it ends; the journal's records of its work show on
+ * their own that it was done. So a job that is found without an end has changed nothing. */
 #include "api/job/job_entry.h"
 #include "api/json/problem.h"
 #include "base/mem.h"
@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A larger answer is not kept beyond a restart. */
+/* A larger answer is not kept across a restart. */
 enum { KEPT_BODY = 64 << 10 };
 
-/* The numbers are written down: st_job_state. */
+/* Journals hold the numbers of st_job_state, so these must not depend on api_job_state. */
 static st_job_state kept_state(api_job_state state)
 {
     switch (state) {
@@ -95,7 +95,7 @@ st_status api_job_forget(const api_job_entry *j)
 
 enum { TEXTS = 2 + API_JOB_HEADERS };
 
-/* The texts of which there may be any length. False without memory. */
+/* Copies the texts of unlimited length. Returns false when memory is out. */
 static bool copy_texts(api_job_entry *j, const st_job *job)
 {
     const char *from[TEXTS] = {job->operation, job->phase};
@@ -138,7 +138,8 @@ static bool copy_body(api_job_entry *j, const st_job *job)
     return true;
 }
 
-/* The record of the work told that it is done, and the answer was not noted any more. */
+/* Restores Location when the record of the work shows that it was done but the answer was not
+ * recorded. */
 static void locate(api_job *facts)
 {
     enum { CREATED = 201 };
@@ -147,7 +148,7 @@ static void locate(api_job *facts)
     }
 }
 
-/* False without memory. */
+/* Marks the job as failed by the restart. Returns false when memory is out. */
 static bool interrupt(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -222,7 +223,8 @@ bool api_job_restore(api_job_table *table)
     if (st_jobs_kept(table->options.store, take, table) != ST_OK) {
         return false;
     }
-    /* Not while they are read. From now on these are jobs that ended at this start. */
+    /* Recorded after all jobs were read, because reading is not finished before. Next time these
+     * jobs are ended. */
     for (api_job_entry *j = table->first; j != NULL; j = j->next) {
         uint64_t position;
         if (j->interrupted) {

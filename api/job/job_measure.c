@@ -1,9 +1,9 @@
-/* What the table of jobs tells of itself to those who watch it. */
+/* Statistics of the table of jobs for metrics. */
 #include "api/job/job_entry.h"
 
 static uint64_t micros_between(double from, double to)
 {
-    return to > from ? (uint64_t)((to - from) * 1e6) : 0; /* the clock of the day may be set back */
+    return to > from ? (uint64_t)((to - from) * 1e6) : 0; /* the system clock may be set back */
 }
 
 void api_job_count_begin(api_job_entry *job)

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Digits of progress that mean something. */
+/* Progress is written in steps of 1/STEPS. */
 static const double STEPS = 10000;
 
 static const char *const states[] = {
@@ -45,7 +45,7 @@ static void write_time(api_out *out, const char *key, double seconds)
     }
 }
 
-/* What the request would have been answered with: nothing of it is shown before the end. */
+/* Writes the answer of the job's request, once the job has ended. */
 static void write_answer(api_out *out, const api_job *job, bool whole)
 {
     bool ended = job->state >= API_JOB_DONE;

@@ -15,7 +15,8 @@
 const char *const api_job_header_names[API_JOB_HEADERS] = {"Content-Type", "Content-Disposition",
                                                            "ETag", "Export-Warnings"};
 
-/* Tells those who listen to the mesh that the job is about: not to one that has its id since. */
+/* Sends the state to listeners of the job's mesh, by reference: a new mesh with this id must not
+ * get it. */
 static void tell_listeners(st_mesh *mesh, const api_job *job)
 {
     if (mesh != NULL && st_is_followed(mesh)) {
@@ -88,11 +89,11 @@ static void take_out(api_job_table *table, api_job_entry *j)
 
 static void forget(api_job_table *table, api_job_entry *j)
 {
-    (void)api_job_forget(j); /* what the journal refuses goes by age */
+    (void)api_job_forget(j); /* on failure, the record expires by age */
     take_out(table, j);
 }
 
-/* The one that ended first; NULL when none has. */
+/* Returns the job that ended first, or NULL if none has ended. */
 static api_job_entry *ended_first(const api_job_table *table)
 {
     api_job_entry *found = NULL;
@@ -105,8 +106,8 @@ static api_job_entry *ended_first(const api_job_table *table)
     return found;
 }
 
-/* Forget what is too old, and as many more as it takes for `room` jobs; the newest answer stays
- * however large it is. */
+/* Drops old jobs, and as many more as needed to make space for `room` jobs. The newest answer
+ * stays, however large it is. */
 static void tidy(api_job_table *table, size_t room)
 {
     double now = st_clock_utc();
@@ -147,7 +148,7 @@ api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *v
 
 /* --- running --- */
 
-/* Progress that listeners are woken for. */
+/* Listeners are woken for this much progress. */
 static const double WORTH = 0.005;
 
 static bool tell(void *context, const char *phase, double done)
@@ -164,7 +165,7 @@ static bool tell(void *context, const char *phase, double done)
     return !atomic_load_explicit(&j->stop, memory_order_relaxed);
 }
 
-/* False without memory. */
+/* Returns false when memory is out. */
 static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
 {
     size_t length = 0;
@@ -183,7 +184,7 @@ static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
     return length == 0 || at != NULL;
 }
 
-/* Without memory for its headers the body is not kept. */
+/* If there is no memory for the headers, the body is dropped. */
 static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
 {
     j->facts.status = outcome->status;
@@ -206,7 +207,7 @@ static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
     j->facts.shown = outcome->shown;
 }
 
-/* Frees the work first: its memory is back before the end shows. */
+/* Frees the work first, so that its memory is free when clients see the end. */
 static void end(api_job_entry *j)
 {
     api_job_table *table = j->table;
@@ -233,8 +234,8 @@ static void end(api_job_entry *j)
     st_release(about);
 }
 
-/* In place of an answer that says that something was done which the journal may never have.
- * Without memory only the status is left. */
+/* Replaces an answer whose change may never be in the journal. When memory is out only the status
+ * remains. */
 static void answer_lost(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -284,8 +285,8 @@ static void decide_end(api_job_entry *j)
     j->noted = 0;
 }
 
-/* Beyond a restart. Of a job that the stop of the server has cancelled nothing more is noted: it
- * will be found as interrupted. */
+/* Records the end. A job that was cancelled by the stop of the server gets no such record: after
+ * the restart it is found and marked as interrupted. */
 static void note_end(api_job_entry *j)
 {
     uint64_t position;
@@ -296,8 +297,9 @@ static void note_end(api_job_entry *j)
     }
 }
 
-/* What the work did is durable, or will never be, or the server stops. Then the note of the end is
- * waited for, so that no job that was told to be done is another after a crash. */
+/* Called when the changes of the work are durable, or never will be, or the server stops. Then the
+ * record of the end is awaited, so that a job that clients saw as done is still done after a
+ * crash. */
 static void resume(st_wait *wait)
 {
     api_job_entry *j = waiter(wait);
@@ -308,7 +310,7 @@ static void resume(st_wait *wait)
         answer_lost(j);
         note_end(j);
         break;
-    case ST_WAIT_STOPPED: /* what is noted may yet become durable */
+    case ST_WAIT_STOPPED: /* the record may still become durable */
         answer_lost(j);
         decide_end(j);
         break;
@@ -321,7 +323,7 @@ static void resume(st_wait *wait)
     }
 }
 
-/* D1: the end is not shown before it is durable. */
+/* D1: clients must not see the end before it is durable. */
 static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
@@ -357,7 +359,7 @@ static void run(void *context)
     if (!wanted) {
         return;
     }
-    tell_listeners(j->about, &facts); /* which only the end lets go */
+    tell_listeners(j->about, &facts); /* without the lock: `about` is released only at the end */
     api_job_outcome outcome = {.location = ""};
     j->work.run(j->work.self, j->facts.id, tell, j, &outcome);
     pthread_mutex_lock(&table->lock);
@@ -366,7 +368,7 @@ static void run(void *context)
     end_when_durable(j, &outcome);
 }
 
-/* --- what api asks for --- */
+/* --- the interface of job_table.h --- */
 
 const api_job *api_job_entry_facts(api_job_entry *j)
 {
@@ -403,7 +405,7 @@ static api_job_entry *job_new(api_job_table *table, const api_job_work *work, co
 static void stop_if_lost(api_job_entry *j)
 {
     if (j->accepted.end == ST_WAIT_LOST) {
-        atomic_store(&j->stop, true); /* its 202 will not be sent */
+        atomic_store(&j->stop, true); /* the client will not get its 202 */
     }
 }
 
@@ -417,7 +419,7 @@ static void resume_accepted(st_wait *wait)
     pthread_mutex_unlock(&table->lock);
 }
 
-/* Under the lock. */
+/* The caller holds the lock. */
 static void watch_note(api_job_entry *j, uint64_t position)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
@@ -430,7 +432,7 @@ static void watch_note(api_job_entry *j, uint64_t position)
     }
 }
 
-/* Under the lock. */
+/* The caller holds the lock. */
 static bool is_beyond(const api_job_table *table, const api_job_work *work)
 {
     uint64_t open = 0;
@@ -440,9 +442,9 @@ static bool is_beyond(const api_job_table *table, const api_job_work *work)
     return work->most != 0 && open >= work->most;
 }
 
-/* Under the lock: the job cannot run before that is given back. A disk that takes no more notes is
- * no reason to refuse what only reads: such a job is not kept beyond a restart, and what writes is
- * refused when it comes to that. */
+/* The caller holds the lock, so the job cannot start. If the disk accepts no more records, work
+ * that only reads goes on: such a job is lost at a restart, and work that writes is refused when it
+ * commits. */
 static st_status accept(api_job_table *table, api_job_entry *j, const st_task *task)
 {
     uint64_t position = 0;
@@ -549,8 +551,8 @@ bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after,
     return more;
 }
 
-/* Under the lock; what is left of a job that waited, and its hold of a mesh, are to be given back
- * without it. */
+/* The caller holds the lock. It must free the returned work (of a job that was queued) and release
+ * `about` after unlocking. */
 static api_job_work cancel(api_job_entry *j, st_mesh **about)
 {
     api_job_work work = {.self = NULL};
@@ -567,7 +569,8 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
-            (void)api_job_keep(j, &position); /* else it is found as interrupted */
+            /* on failure, it is found as interrupted after a restart */
+            (void)api_job_keep(j, &position);
         }
         api_job_entry_wake(j);
     }
@@ -605,7 +608,7 @@ st_status api_job_remove(api_job_table *table, const api_token *viewer, const ch
     return status;
 }
 
-/* What is left of some job that waited; NULL when none does. */
+/* Cancels a queued job and returns its work; NULL members if none is queued. */
 static api_job_work cancel_one(api_job_table *table, st_mesh **about)
 {
     api_job_work work = {.self = NULL};

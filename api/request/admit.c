@@ -121,8 +121,8 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
     return true;
 }
 
-/* An image or a link of any page sends such a request. Browsers keep the answer from the page, but
- * it would have been worked out. */
+/* Any page can make a browser send such a request, by an image or a link. The page cannot read the
+ * answer, but the server would have to compute it. */
 static bool is_of_other_site(const api_exchange *x)
 {
     const char *site = x->request.headers[API_HEADER_SEC_FETCH_SITE];
@@ -182,7 +182,7 @@ static bool find_route(api_exchange *x)
     return api_gate_enter(x) && check_variables(x, &variables) && check_query(x);
 }
 
-/* What there is of a damaged mesh can be removed or replaced, nothing else. */
+/* A damaged mesh can be deleted or replaced, nothing else. */
 static bool take_mesh(api_exchange *x, st_status status)
 {
     bool rids = (x->route->flags & (API_MAY_CREATE | API_INTERRUPTS)) != 0;
@@ -226,7 +226,7 @@ bool api_answer_from_card(api_exchange *x)
     }
     if (status != ST_OK || mesh != NULL) {
         st_release(mesh);
-        return false; /* loading finds it, or what is wrong */
+        return false; /* loading finds the mesh or the error */
     }
     x->info = cold.info;
     x->has_info = true;
@@ -296,8 +296,8 @@ bool api_refuse_format(api_exchange *x, const char *detail)
     return false;
 }
 
-/* Media types that say nothing about the body: curl -T sends none, and curl --data-binary calls any
- * file a form. */
+/* Content-Types that say nothing about the body: curl -T sends none, and curl --data-binary sends a
+ * form's for any file. */
 static bool is_generic(const char *type)
 {
     return type == NULL || api_media_is(type, "text/plain") ||
@@ -336,7 +336,8 @@ static bool check_body(api_exchange *x)
     if (empty) {
         bool optional =
             x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
-        /* A form may send an empty body of a type of its own: no body is not a type of body. */
+        /* A form on any page can send an empty body, but only with a form's Content-Type: it is
+         * refused like a body of that type. */
         bool typed = x->route->body_kind == API_BODY_OPTION &&
                      x->request.headers[API_HEADER_CONTENT_TYPE] != NULL && !check_content_type(x);
         return (optional && !typed) || (!typed && api_refuse_empty(x));
@@ -344,7 +345,7 @@ static bool check_body(api_exchange *x)
     if (r->has_length && r->length > api_body_cap(x)) {
         return api_refuse_size(x);
     }
-    /* A body without a length may yet be empty: then it is like none. */
+    /* A body of unknown length may turn out to be empty; it then counts as none. */
     return x->route->body_kind == API_BODY_NONE || (api_coded_body(x) && check_content_type(x));
 }
 

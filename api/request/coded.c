@@ -16,7 +16,7 @@ bool api_coded_body(api_exchange *x)
 
 static const api_codings only_identity = {.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
 
-/* Events are small, and are to leave at once. */
+/* Events are small and must not wait in a compressor. */
 static bool is_stream(const api_route *route)
 {
     return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
@@ -57,7 +57,7 @@ static api_header *find_header(api_exchange *x, const char *name)
     return NULL;
 }
 
-/* Types whose bytes are packed by themselves. */
+/* Types that are compressed already. */
 static bool is_packed(api_exchange *x)
 {
     static const char *const types[] = {"image/png", "image/jpeg", "image/webp", "font/woff2"};
@@ -81,7 +81,8 @@ static bool is_worth_it(api_exchange *x)
     return !x->codings.allowed[API_IDENTITY] || (!small && !is_packed(x));
 }
 
-/* Name the coding, in a header and in the tag. False, and nothing is named, without memory. */
+/* Adds the coding to the headers and the tag. Returns false, with nothing added, when memory is
+ * out. */
 static bool name_coding(api_exchange *x)
 {
     api_header *tag = find_header(x, "ETag");
@@ -99,10 +100,10 @@ static bool name_coding(api_exchange *x)
     return true;
 }
 
-/* All of it now, so that its length is known. */
+/* Compresses the whole answer now, so that its length is known. */
 static void code_whole(api_exchange *x, size_t length)
 {
-    size_t room = length + length / 4 + 512; /* more than either library asks for */
+    size_t room = length + length / 4 + 512; /* more than the worst case of either library */
     x->coded = he_mem_alloc(room);
     if (x->coded == NULL || !api_pack_begin(x->pack)) {
         return;
@@ -138,7 +139,8 @@ void api_coded_answer(api_exchange *x)
         }
         return;
     }
-    /* Some of it was read: what cannot be coded is passed on. */
+    /* Part of the body was read already: if it cannot be compressed, the pack returns it
+     * unchanged. */
     a->read = api_pack_read;
     a->context = x->pack;
     a->bytes = NULL;

@@ -118,7 +118,7 @@ bool api_fail_path(api_exchange *x, const he_error *err)
     return api_problem_set_path(&x->problem, err);
 }
 
-/* Who would write to what was lost is told what would become of the change. */
+/* A write to a mesh whose changes were lost is refused with the reason of the loss. */
 static bool fail_lost(api_exchange *x)
 {
     st_health health;
@@ -240,7 +240,7 @@ static bool read_expected(const api_in *expected, uint64_t *revision)
     return expected == NULL || api_in_u64(expected, 1, (uint64_t)1 << 53, revision);
 }
 
-/* A refusal, too, shows the state it was found in. */
+/* Even a refusal waits until the state that it reports is durable. */
 static bool write_began(api_exchange *x, st_status status)
 {
     x->info = x->write.info;
@@ -273,7 +273,8 @@ bool api_write_claim(api_exchange *x, const api_in *expected)
     const st_cause cause = api_cause(x);
     return read_expected(expected, &revision) &&
            write_began(x, st_write_claim(x->mesh, &cause, &x->write)) &&
-           /* They hold until the claim ends: no other write can change the mesh. */
+           /* If they hold now, they hold until the claim ends: no other write can change the
+            * mesh. */
            api_preconditions_hold(x, expected == NULL ? NULL : &revision);
 }
 
@@ -497,7 +498,8 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     char coded[API_ETAG];
     api_coding coding;
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
-    /* Where it matched, there was no job; the mesh may have changed since. */
+    /* If the tag had matched when the job was requested, there would be no job; the mesh may have
+     * changed since. */
     if (none == NULL || x->phase == API_PHASE_JOB ||
         !api_etag_listed(none, etag, &x->codings, &coding)) {
         api_answer_header(x, "ETag", etag);

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* RFC 9110 11.4 and RFC 6750 2.1: a scheme, blanks, and a token, which nothing follows. *text is
- * NULL where there is no header or another scheme in it. */
+/* Finds the token in `Bearer TOKEN` (RFC 9110 11.4 and RFC 6750 2.1): a scheme, blanks, and a token
+ * with nothing after it. Sets *text to NULL if there is no header or another scheme. */
 static size_t read_bearer(const char *header, const char **text)
 {
     static const char scheme[] = "bearer";
@@ -21,7 +21,7 @@ static size_t read_bearer(const char *header, const char **text)
     return strcspn(*text, " \t");
 }
 
-/* It counts for the address: who tries tokens is stopped like any other client. */
+/* Counts the attempt for the address, so that guessing tokens is limited like other requests. */
 static bool refuse_unknown(api_exchange *x, bool has_token)
 {
     if (!api_rating_enter(x)) {
@@ -40,7 +40,7 @@ static bool refuse_role(api_exchange *x, api_role needed)
     return false;
 }
 
-/* A dry run is a read, but only the body says that it is one. */
+/* A dry run is a read, but the server knows only from the body that it is one. */
 static bool may_rehearse(const api_exchange *x)
 {
     return (x->route->flags & API_REHEARSED) != 0 && api_role_allows(x->token->role, API_ROLE_READ);
@@ -53,7 +53,7 @@ const char *api_gate_ticket(const char *query)
     return strncmp(last, API_TICKET, strlen(API_TICKET)) == 0 ? last : NULL;
 }
 
-/* The ticket is taken off the query: what is left is what it was made for. */
+/* Removes the ticket from the query: the ticket was made for the rest. */
 static bool take_ticket(api_exchange *x, const char *ticket)
 {
     const char *path = x->request.path, *query = x->request.query;
@@ -96,7 +96,7 @@ static bool enter(api_exchange *x)
     bool asks = x->service->options.tokens != NULL;
     const char *header = x->request.headers[API_HEADER_AUTHORIZATION];
     const char *ticket = header == NULL ? api_gate_ticket(x->request.query) : NULL;
-    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* nobody else needs the secret */
+    x->request.headers[API_HEADER_AUTHORIZATION] = NULL; /* the secret is not needed any more */
     if (x->route->role == API_ROLE_OPEN || (!asks && ticket == NULL)) {
         return api_rating_enter(x);
     }

@@ -1,6 +1,6 @@
 #include "api/request/gather.h"
 
-/* Bytes between two looks at the watch; an answer of known length has them all at once. */
+/* Bytes between two polls of the watch; an answer of known length is read at once. */
 enum { PIECE = 256 * 1024 };
 
 static bool read_piece(api_exchange *x, bool *ended)
@@ -34,7 +34,7 @@ void api_gather(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
-    /* The last look at the stream, which finds its end, has room too. */
+    /* One piece more, for the last read, which finds the end. */
     if (expected > 0 && api_text_room(&x->text, (size_t)expected + PIECE) == NULL) {
         api_fail_memory(x);
         return;

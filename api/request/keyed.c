@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* With the 0 at its end, so that texts do not run together. */
+/* Includes the terminating 0, so that two texts never hash like their concatenation. */
 static void add_text(he_siphash *hash, const char *text)
 {
     he_siphash_add(hash, text == NULL ? "" : text, (text == NULL ? 0 : strlen(text)) + 1);
@@ -27,7 +27,7 @@ bool api_keyed_begin(api_exchange *x)
         return api_fail(x, API_BAD_HEADER, "Idempotency-Key has %zu characters, 1 to %d are taken",
                         length, API_MAX_KEY_LENGTH);
     }
-    x->key = api_arena_copy(&x->arena, key, length); /* outlives the connection, in a job */
+    x->key = api_arena_copy(&x->arena, key, length); /* a job outlives the connection's buffer */
     if (x->key == NULL) {
         return api_fail_memory(x);
     }
@@ -53,7 +53,7 @@ void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* Which tag an answer of the route has. */
+/* The representation in the ETag of the route's answers. */
 static const char *representation_of(const api_route *route)
 {
     if (route->flags & API_KEYED_NEW || strcmp(route->path, "/v1/meshes/{mesh}") == 0) {
@@ -62,7 +62,7 @@ static const char *representation_of(const api_route *route)
     return strstr(route->path, "/attributes/") != NULL ? "attribute" : "edits";
 }
 
-/* A token may have other prefixes than when it made the mesh. */
+/* The mesh is checked again: the token's prefixes may have changed since it made the mesh. */
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->keyed);
@@ -132,7 +132,8 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
-/* No record tells of the request: it is noted by itself, and the answer waits for that. */
+/* If no record of a change holds the key, the request gets a record of its own, and the answer
+ * waits for it. */
 static void note_unchanged(api_exchange *x, st_kept *kept)
 {
     st_keyed_note(x->store, x->keyed, &x->info, &x->noted);
@@ -145,7 +146,7 @@ void api_keyed_settle(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     if (x->keyed == NULL || st_keyed_answer(x->keyed)->status != 0) {
-        return; /* without a key, or a replay, whose answer is lent until the end */
+        return; /* no key, or a replayed answer, which is borrowed until the end */
     }
     if (answer->status < 300) {
         st_kept kept = {.status = answer->status,

@@ -2,8 +2,8 @@
 
 #include "api/request/at_revision.h"
 
-/* x->info was filled. False and 503 when the mesh was lost, 404 when it was removed; but where the
- * route may create it, a removed one is forgotten, as if it had never been. */
+/* Checks x->info. Returns false with 503 if the mesh was lost, or with 404 if it was deleted. A
+ * route that may create it treats a deleted mesh as absent. */
 static bool is_there(api_exchange *x)
 {
     if (x->info.lost) {
@@ -21,7 +21,7 @@ static bool is_there(api_exchange *x)
     return true;
 }
 
-/* The content under the shared lock, if the mesh is there. */
+/* Takes the shared lock on the content, if the mesh is there. */
 static bool lock(api_exchange *x)
 {
     x->content = st_read_begin(x->mesh, &x->info);
@@ -32,7 +32,7 @@ static bool lock(api_exchange *x)
     return is_there(x);
 }
 
-/* What is at hand is a snapshot, or under the shared lock. */
+/* Releases the snapshot or the shared lock. */
 static void give_back(api_exchange *x)
 {
     if (x->content != NULL && x->snapshot == NULL) {
@@ -45,7 +45,7 @@ static void give_back(api_exchange *x)
     x->content = NULL;
 }
 
-/* The lock becomes a snapshot of what is under it. */
+/* Replaces the lock by a snapshot. */
 static bool take_snapshot(api_exchange *x)
 {
     st_status status = st_snapshot_held(x->mesh, &x->snapshot);
@@ -66,7 +66,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
         return false;
     }
     if (x->phase == API_PHASE_BODY) {
-        x->deferred = api_read; /* it may copy and replay; what is refused is no job */
+        /* it may copy and replay; a request that is refused must not become a job */
+        x->deferred = api_read;
         return false;
     }
     if (!api_at_revision_take(x, revision, &x->snapshot)) {
@@ -76,7 +77,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
     return true;
 }
 
-/* With the mesh at hand: is it to be read here, and is the answer not one that the client has? */
+/* With the mesh obtained: shall the handler run on this thread, and does the client not have the
+ * answer already? */
 static bool is_read_here(api_exchange *x)
 {
     api_cost cost = {0};
@@ -98,7 +100,7 @@ static bool is_read_here(api_exchange *x)
 static bool obtain(api_exchange *x)
 {
     uint64_t revision;
-    x->keeps = false; /* what an attempt before this one had to keep */
+    x->keeps = false; /* a snapshot that an earlier attempt had to keep */
     give_back(x);
     if (!lock(x)) {
         return false;
@@ -114,7 +116,8 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
-/* Before a write: is it to begin here? A route that may create its mesh has none to look at. */
+/* Before a write: shall the handler run on this thread? A route that may create its mesh may have
+ * none to look at. */
 static bool look(api_exchange *x)
 {
     api_cost cost = {0};

@@ -1,4 +1,4 @@
-/* Which row of the table answers a request, and how the values of its parameters read. */
+/* Finds the row of the table that answers a request, and parses its parameters. */
 #include "api/request/route.h"
 
 #include "base/mem.h"
@@ -28,21 +28,21 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
 
 /* --- the tree of templates --- */
 
-/* Rows with one path: their methods differ. */
+/* Rows with one path, which differ in the method. */
 enum { MOST_METHODS = 5 };
 
-/* One segment of the templates, below those that come before it. The children of a node are literal
- * segments, each another one, or a single variable. */
+/* One segment of templates, below the segments before it. The children of a node are either
+ * different literal segments or a single variable. */
 typedef struct node {
-    const char *segment; /* in a template, where it ends at a slash or with the text */
+    const char *segment; /* in a template; ends at a slash or at the end of the text */
     size_t length;
-    struct node *child, *sibling;            /* the first below it, the next beside it */
-    const api_route *rows[MOST_METHODS + 1]; /* whose template ends here; ends in NULL */
+    struct node *child, *sibling;            /* first child, next sibling */
+    const api_route *rows[MOST_METHODS + 1]; /* rows whose template ends here; ends in NULL */
 } node;
 
 struct api_route_tree {
     size_t count;
-    node nodes[]; /* nodes[0] is before the first segment */
+    node nodes[]; /* nodes[0] is the root, before the first segment */
 };
 
 static bool is_variable(const node *n)
@@ -50,7 +50,7 @@ static bool is_variable(const node *n)
     return n->segment[0] == '{';
 }
 
-/* Which variable it is: the letters after the brace differ. */
+/* Returns the letter after the brace, which differs for each variable. */
 static char letter_of(const node *n)
 {
     return is_variable(n) ? n->segment[1] : '\0';
@@ -61,7 +61,7 @@ static bool is_literal(const node *n, const char *text, size_t length)
     return n->length == length && memcmp(n->segment, text, length) == 0;
 }
 
-/* The child of `parent` with this segment, which is made where there is none. */
+/* Returns the child of `parent` with this segment, added if missing. */
 static node *find_or_add(api_route_tree *tree, node *parent, const char *segment)
 {
     size_t length = strcspn(segment, "/");
@@ -119,7 +119,7 @@ void api_route_tree_free(api_route_tree *tree)
     he_mem_free(tree);
 }
 
-/* --- the way of a path through it --- */
+/* --- matching a path --- */
 
 static bool take_variable(const node *n, const char *segment, api_variables *out)
 {
@@ -152,7 +152,7 @@ static bool take_variable(const node *n, const char *segment, api_variables *out
     }
 }
 
-/* The child of `n` that takes the segment; NULL: none. */
+/* Returns the child of `n` that matches the segment, or NULL. */
 static const node *step(const node *n, const char *segment, api_variables *out)
 {
     size_t length = strlen(segment);
@@ -166,7 +166,7 @@ static const node *step(const node *n, const char *segment, api_variables *out)
     return child;
 }
 
-/* As far as templates lead: `*taken` segments. */
+/* Follows the path as far as templates match: `*taken` segments. */
 static const node *walk(const api_route_tree *tree, const api_path *path, api_variables *out,
                         size_t *taken)
 {
@@ -178,7 +178,7 @@ static const node *walk(const api_route_tree *tree, const api_path *path, api_va
             return n;
         }
         n = next;
-        if (letter_of(n) == 'a') { /* {asset} is all that is left */
+        if (letter_of(n) == 'a') { /* {asset} matches the rest of the path */
             *taken = path->count;
             return n;
         }
@@ -217,7 +217,7 @@ const api_route *api_route_find(const api_route_tree *tree, const char *method,
     const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
     const node *n = walk(tree, path, out, &taken);
     allow[0] = '\0';
-    /* Only a name may hold a slash. */
+    /* Only a {name} may contain a slash. */
     if (taken < path->count || (path->has_slash && letter_of(n) != 'n')) {
         return NULL;
     }

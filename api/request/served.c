@@ -1,4 +1,4 @@
-/* Requests that ended are counted under the number of their row. */
+/* Requests are counted by the index of their row when they end. */
 #include "api/request/exchange.h"
 
 api_metrics *api_metrics_of(const api_service *service)

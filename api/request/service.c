@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A file of tokens that is read later may limit them. */
+/* Always made with tokens: a file of tokens that is read later may set limits. */
 static bool make_rates(api_service *service, const api_options *options)
 {
     const uint64_t *most = options->address_limits.most;
@@ -87,8 +87,8 @@ static bool has_header(const api_exchange *x, const char *name)
     return false;
 }
 
-/* Headers that every answer has. Their values live with the exchange or for ever, so that this
- * works when memory is out. */
+/* Sets a header of every answer. The values live as long as the exchange or for ever, so this works
+ * when memory is out. */
 static void put_header(api_exchange *x, const char *name, const char *value)
 {
     if (x->answer.header_count < API_ANSWER_HEADERS && !has_header(x, name)) {
@@ -150,7 +150,7 @@ static void answer_problem(api_exchange *x)
     }
 }
 
-/* What is left of the answer to a write that took effect. */
+/* Keeps only the status of the answer to a write that took effect. */
 static void answer_published(api_exchange *x)
 {
     x->problem = (api_problem){0};
@@ -163,7 +163,7 @@ static void answer_published(api_exchange *x)
     }
 }
 
-/* Several representations at one URL: caches must look at Accept. */
+/* Several representations share one URL: caches must look at Accept. */
 static bool varies(const api_exchange *x)
 {
     const api_route *route = x->route;
@@ -171,7 +171,7 @@ static bool varies(const api_exchange *x)
            route->produces[1] != NULL && !(route->flags & API_FIXED);
 }
 
-/* A client that has the answer may write at once. */
+/* Ends the claim before the answer is sent, so that the client may write at once after it. */
 static void end_claim(api_exchange *x)
 {
     if (x->write.claimed) {
@@ -179,7 +179,8 @@ static void end_claim(api_exchange *x)
     }
 }
 
-/* However the work noticed that it was given up, that is what happened. */
+/* Whatever problem the interrupted work reported, the client gets the reason of the interruption.
+ */
 static void end_given_up(api_exchange *x)
 {
     if (x->watch.cancelled && x->problem.code != HE_OK) {
@@ -190,15 +191,15 @@ static void end_given_up(api_exchange *x)
     }
 }
 
-/* What the answer waits for. One that is not about one mesh alone may show that others are there or
- * not, and so do refusals. */
+/* The changes that the answer waits for. An answer that is not about one mesh alone may show
+ * whether other meshes exist, and so may a refusal. */
 static st_shown shown(const api_exchange *x)
 {
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
-    /* What the server has no room for, whatever meshes there are. A client is to hear why, not that
-     * something else was lost for the same reason. */
+    /* Failures of the server itself depend on no mesh. They wait for nothing, so that the client
+     * hears of them and not of another loss with the same cause. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }
@@ -207,7 +208,8 @@ static st_shown shown(const api_exchange *x)
         one.position = x->noted > one.position ? x->noted : one.position;
         return one;
     }
-    /* What a write read of other meshes came before it: what is lost later is not in its answer. */
+    /* Whatever a write read of other meshes was stored before it, so waiting up to its position is
+     * enough. */
     if (x->published != 0 && x->has_info && x->info.position != 0) {
         return (st_shown){.position = x->info.position, .since = x->since};
     }
@@ -232,7 +234,7 @@ static api_step finish(api_exchange *x)
     }
     put_header(x, "X-Request-Id", x->request.request_id);
     put_header(x, "X-Content-Type-Options", "nosniff");
-    /* A tag is worth keeping: the client asks again with it. Nothing else is. */
+    /* An answer with a tag may be cached and revalidated; others may not be stored. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
     if (x->rates != NULL) {
         api_rating_fields(x);
@@ -244,18 +246,18 @@ static api_step finish(api_exchange *x)
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    api_keyed_settle(x); /* which may add to what the answer waits for */
+    api_keyed_settle(x); /* may add to what the answer waits for */
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
     if (x->phase != API_PHASE_JOB) {
-        api_coded_answer(x); /* what is kept of the answer, here or of a job, is plain */
+        api_coded_answer(x); /* kept answers (keys, jobs) are uncompressed */
     }
     x->phase = API_PHASE_DONE;
     return API_READY;
 }
 
-/* Answer before the body was read: what of it is still on its way must not be taken for the next
- * request. */
+/* Answers before the body was read. The connection is closed, so that the rest of the body is not
+ * taken for the next request. */
 static api_step finish_early(api_exchange *x)
 {
     x->answer.close =
@@ -281,8 +283,8 @@ static bool copy_request(api_exchange *x, const api_request *request)
 
 /* --- detaching --- */
 
-/* Preconditions are read again when the work is published, and Accept when it is known what there
- * is: the connection is gone by then. False, and nothing has changed, when memory is out. */
+/* The connection is gone when the work reads its headers: preconditions when it publishes, Accept
+ * when it answers. Returns false, with nothing changed, when memory is out. */
 static bool copy_headers(api_exchange *x)
 {
     const char *copies[API_REQUEST_HEADERS] = {NULL};
@@ -378,14 +380,14 @@ static const char *header_of_answer(const api_answer *answer, const char *name)
     return NULL;
 }
 
-/* The bytes of the answer, for others to keep; NULL without memory, or where it has none. */
+/* Returns the answer's bytes for a job to keep; NULL when memory is out or there are none. */
 static char *take_bytes(api_exchange *x)
 {
     const api_answer *answer = &x->answer;
     char *bytes = NULL;
     if (answer->bytes != NULL && answer->bytes == x->text.bytes) {
         bytes = he_mem_resize(x->text.bytes, answer->length > 0 ? (size_t)answer->length : 1);
-        bytes = bytes == NULL ? x->text.bytes : bytes; /* as long as it was */
+        bytes = bytes == NULL ? x->text.bytes : bytes; /* keeps the block if it cannot shrink */
         x->text = (api_text){0};
     } else if (answer->bytes != NULL && answer->length > 0) {
         bytes = he_mem_alloc((size_t)answer->length);
@@ -396,7 +398,7 @@ static char *take_bytes(api_exchange *x)
     return bytes;
 }
 
-/* The exchange as the table of jobs works on it. */
+/* Runs the work of the exchange as a job of the table. */
 static void run_job(void *self, const char *id, api_job_progress *progress, void *context,
                     api_job_outcome *out)
 {
@@ -476,7 +478,7 @@ api_exchange *api_detach(api_exchange *x)
     return answer;
 }
 
-/* Some of the body, unfolded. */
+/* Receives decompressed bytes of the body. */
 static bool take_body(void *context, const char *bytes, size_t length)
 {
     api_exchange *x = context;
@@ -554,7 +556,7 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
     return step;
 }
 
-/* With its memory, which may be megabytes. */
+/* Frees the decoder, which may hold megabytes. */
 static bool end_coding(api_exchange *x)
 {
     bool good = x->unpack == NULL || api_unpack_end(x->unpack, &x->problem);
@@ -588,7 +590,7 @@ static bool parse_body(api_exchange *x)
     return x->has_root;
 }
 
-/* A read that took too long for the worker, and has changed nothing. */
+/* Resets a read that took too long for a worker and has changed nothing. */
 static void begin_anew(api_exchange *x)
 {
     drop_answer(x);
@@ -634,7 +636,7 @@ static void parse_and_run(api_exchange *x)
     }
 }
 
-/* With the mesh at hand, if there is one. Reading a large document takes its time too. */
+/* Runs the handler with its mesh, if it has one. Decoding a large document may take long, too. */
 static void go_on(api_exchange *x)
 {
     if (!api_keyed_find(x)) {
@@ -647,8 +649,8 @@ static void go_on(api_exchange *x)
     }
 }
 
-/* The mesh is loaded now, and the request is handled as on a worker: a short one reads the mesh
- * under its lock without a copy, a long one goes on in this thread. */
+/* The mesh was loaded, and the request goes on as on a worker: a short one reads the mesh under its
+ * lock without a copy, a long one continues in this thread. */
 static void load_and_go_on(api_exchange *x)
 {
     if (api_answer_from_card(x) || !api_load_mesh(x)) {
@@ -682,7 +684,7 @@ static api_step work(api_exchange *x)
     void (*handler)(api_exchange * x) = x->deferred;
     he_error err = {0};
     x->deferred = NULL;
-    /* It may have waited for long, and the client may have left. */
+    /* Loading may have taken long, and the client may have disconnected. */
     if (he_watch_step(&x->watch, 0, 1, &err) != HE_OK) {
         api_fail_core(x, &err);
     } else {

@@ -8,19 +8,19 @@
 
 typedef struct stream {
     api_tokens *tokens;
-    api_token *token; /* held */
+    api_token *token; /* a reference */
     api_source inner;
     api_token_watch watch;
     void (*wake)(void *context);
     void *context;
     _Atomic bool started;
     bool begun, ended;
-    char tail[2]; /* the last bytes that were sent: an event ends in two newlines */
+    char tail[2]; /* the last two bytes sent: an event ends in two newlines */
     api_text bye;
-    size_t sent; /* of it */
+    size_t sent; /* bytes sent of it */
 } stream;
 
-/* Before `started` a read follows in any case. */
+/* Before `started` is set no wake is needed, because a read follows anyway. */
 static void lose_token(api_token_watch *watch)
 {
     stream *s = (stream *)((char *)watch - offsetof(stream, watch));
@@ -44,7 +44,7 @@ static bool is_between_events(const stream *s)
     return !s->begun || (s->tail[0] == '\n' && s->tail[1] == '\n');
 }
 
-/* How many of the bytes belong to the event that was begun. */
+/* Returns how many of the bytes belong to the event that was begun. */
 static size_t rest_of_event(const stream *s, const char *bytes, size_t length)
 {
     char before[2] = {s->tail[0], s->tail[1]};
@@ -94,8 +94,7 @@ static int64_t read_stream(void *self, char *buffer, size_t size)
     }
     int64_t got = s->inner.read(s->inner.self, buffer, size);
     if (!good && got == API_READ_WAIT) {
-        return -1; /* it would wait in the middle of an event, which nobody is to have the rest of
-                    */
+        return -1; /* cuts the connection: the source would wait in the middle of an event */
     }
     if (got > 0) {
         got = good ? got : (int64_t)rest_of_event(s, buffer, (size_t)got);
