@@ -1,7 +1,7 @@
 /* GET .../check: broken invariants, and defects that a valid mesh may have.
  *
- * What it looks at costs the mesh a few times over, so that a large one becomes a job where the
- * client would not wait; self-intersections, which cost the most, are looked for on request. */
+ * It visits the mesh several times, so for a large mesh it becomes a job if the client would not
+ * wait that long. Self-intersections, the most expensive, are searched for only on request. */
 #include "api/request/handlers.h"
 
 #include "api/ask/spatial.h"
@@ -12,11 +12,12 @@
 #include <assert.h>
 #include <stdio.h>
 
-/* Named one by one, of broken invariants and of each code of defect; the rest is counted. */
+/* Broken invariants and defects of each code that are named one by one; the rest is only
+ * counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
 static_assert((int)NAMED == HE_DEFECTS_LISTED, "as the document says of both");
 
-/* The share of the other defects in the time where intersections are looked for. */
+/* Share of the other defects in the time, if intersections are searched for. */
 static const double FOUND = 0.2;
 
 typedef struct report {
@@ -58,7 +59,7 @@ static bool examine(api_asker *a, report *r)
         return api_fail_core(a->x, &err);
     }
     if (r->broken > 0) {
-        return true; /* on broken links no test could be trusted */
+        return true; /* the other tests rely on valid links */
     }
     he_watch_span(watch, r->meets ? FOUND : 1);
     r->thresholds = read_thresholds(a->x, a->mesh);
@@ -68,7 +69,7 @@ static bool examine(api_asker *a, report *r)
     return !r->meets || find_intersections(a, r);
 }
 
-/* --- telling --- */
+/* --- writing --- */
 
 static void write_problems(api_out *out, const report *r)
 {
@@ -87,7 +88,7 @@ static void write_problems(api_out *out, const report *r)
     api_out_array_end(out);
 }
 
-/* One sentence, and whether the value says more. */
+/* Writes one sentence about a defect. Returns whether its value is written, too. */
 static bool describe(const he_mesh *m, he_defect_code code, const he_defect_found *d, char *text,
                      size_t size)
 {

@@ -1,6 +1,6 @@
 /* Measures: {"measure":"dihedral","of":{"edge":3}}, of one element or of many.
  *
- * Values are numbers or vectors, and null where there is none, which is NaN in octets. */
+ * Values are numbers or vectors. A missing value is null in JSON and NaN in octets. */
 #include "api/ask/question.h"
 #include "api/read/elements.h"
 #include "geometry/geometry.h"
@@ -11,11 +11,11 @@
 #include <math.h>
 #include <string.h>
 
-/* What the measure of an element depends on beside it. */
+/* Parameters of a measure beside its element. */
 typedef struct options {
     he_weight weight;
     double crease;
-    he_watch *watch; /* of the exchange */
+    he_watch *watch; /* the exchange's */
 } options;
 
 typedef struct measure {
@@ -23,10 +23,11 @@ typedef struct measure {
     const char *name;
     unsigned components;
     enum { PLAIN, WEIGHTS, CREASE } option;
-    /* One element; NULL where `many` does those too. */
+    /* Measures one element; NULL where `many` does that too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
-    /* A list, or with `of` NULL all in the order of ids, at most those; NULL: one by one. `most`
-     * bounds the squared corners of faces beside a list. */
+    /* Measures a list, or, if `of` is NULL, all live elements in the order of ids. NULL: they are
+     * measured one by one. `most` limits the squared number of corners of the faces around listed
+     * elements. */
     he_status (*many)(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
                       uint64_t most, double *out, he_error *err);
 } measure;
@@ -38,7 +39,7 @@ static void put(he_vec3 v, double *out)
     out[2] = v.z;
 }
 
-/* Of an array with an entry for each issued row, those that live. */
+/* From an array with an entry for each id, keeps those of live elements. */
 static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double *out)
 {
     for (uint32_t id = 0; id < he_mesh_issued(m, kind); id++) {
@@ -86,7 +87,7 @@ static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t cou
     return status;
 }
 
-/* One member of the curvatures: `at` is its offset. */
+/* Computes one member of the curvatures; `at` is its offset. */
 static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
                            uint64_t most, size_t at, double *out, he_error *err)
 {
@@ -305,7 +306,7 @@ static bool read(api_asker *a, const api_in *question, asked *q)
            read_name(&name, q->target.kind, &q->measure) && read_options(question, q);
 }
 
-/* --- what they cost --- */
+/* --- costs --- */
 
 static uint64_t beside(const he_mesh *m, he_halfedge h)
 {
@@ -327,7 +328,7 @@ static uint64_t about(const he_mesh *m, he_vertex v, uint64_t most)
     return cost;
 }
 
-/* Half-edges of the faces that one element's measure looks at. */
+/* Returns the half-edges of the faces that the measure of one element visits. */
 static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t most)
 {
     switch (q->target.kind) {
@@ -346,7 +347,7 @@ static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t 
     return 1;
 }
 
-/* Faces of many corners are cut into triangles, at up to the square of those. */
+/* Faces with many corners are triangulated, which takes up to the square of their number. */
 static uint64_t cost_of_cutting(const he_mesh *m)
 {
     uint64_t cost = 0;
@@ -373,7 +374,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
         if (a->on_worker && cost >= api_asker_left(a)) {
             return api_asker_exceed(a, question);
         }
-        api_asker_pay(a, cost); /* one pass is granted */
+        api_asker_pay(a, cost); /* one pass over the mesh is always allowed */
         return true;
     }
     uint64_t cost = 0;

@@ -1,5 +1,6 @@
-/* POST .../query: many questions of one revision. A failed one is its problem object, in its place;
- * it stops no other. */
+/* POST .../query: many questions about one revision. Each answer stands at the index of its
+ * question. The answer to a failed question is a problem object; the other questions are still
+ * answered. */
 #include "api/request/handlers.h"
 
 #include "api/ask/question.h"
@@ -21,7 +22,7 @@ static bool write_problem(api_exchange *x, api_text *scratch)
     return true;
 }
 
-/* Is it about one question, and not about the request? */
+/* Is the problem about one question rather than about the request? */
 static bool is_of_question(const api_problem *problem)
 {
     return problem->code != HE_NO_MEMORY && problem->code != HE_CANCELLED;
@@ -50,7 +51,7 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 
 /* --- octets --- */
 
-/* One block after another, all little-endian. */
+/* Two blocks, one after the other, little-endian. */
 enum { BLOCKS = 2 };
 
 typedef struct octets {
@@ -90,7 +91,8 @@ static int64_t read_octets(void *stream, char *buffer, size_t size)
     return (int64_t)written;
 }
 
-/* Nothing where the machine has this order already: compilers see that. */
+/* Converts ids to little-endian; compilers see that this does nothing on a little-endian
+ * machine. */
 static void order_ids(octets *o, int block, he_ids *list)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -150,7 +152,7 @@ static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
     api_answer_stream(x, 200, "application/octet-stream", length, read_octets, o, free_octets);
 }
 
-/* --- which --- */
+/* --- the handler --- */
 
 static void answer(api_exchange *x, api_asker *a)
 {
@@ -172,7 +174,7 @@ static void answer(api_exchange *x, api_asker *a)
             return;
         }
     }
-    /* What is wrong with one of them is its answer. */
+    /* A problem of one question becomes its answer. */
     if (!a->reads_only && answer_each(x, a, &queries)) {
         api_answer_json(x, 200);
     }
@@ -181,7 +183,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_query_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* it is found as the questions are answered */
+    (void)out; /* the cost is found as the questions are answered */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* What the shortest question costs beside what it looks at: reading and writing its text. */
+/* The cost of reading and writing the text of the shortest question. */
 enum { QUESTION_COST = 4 };
 
 enum {
@@ -26,7 +26,7 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Is the request to begin anew? */
+/* Calls `answer`. Returns whether the request must start again. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
@@ -72,7 +72,7 @@ void api_asker_pay(api_asker *a, uint64_t halfedges)
 
 bool api_asker_exceed(api_asker *a, const api_in *in)
 {
-    /* A client that waits for a while and takes a job then (respond-async, wait=10) gets one. */
+    /* A client that waits for a while and then accepts a job (respond-async, wait=10) gets one. */
     bool may_be_job = api_can_be_job(a->x);
     bool is_job = !a->on_worker && may_be_job && a->x->prefer.respond_async;
     if (a->on_worker || is_job) {
@@ -142,7 +142,7 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
 
 /* --- targets --- */
 
-/* {"vertices":...}: which kind is it plural of? */
+/* Finds the kind whose plural is a member: {"vertices":...}. */
 static bool find_plural(const api_in *of, he_kind *kind, api_in *member)
 {
     if (!api_in_is_object(of) || !api_in_first(of, member)) {
@@ -164,7 +164,7 @@ bool api_target_is_dense(const api_in *of)
     return find_plural(of, &kind, &member);
 }
 
-/* A list of elements that live. */
+/* Reads a list of live elements. */
 static bool read_ids(api_asker *a, const api_in *list, he_kind kind, uint32_t **ids, size_t *count)
 {
     if (!api_in_ids(list, 0, a->arena, ids, count)) {
@@ -213,17 +213,17 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out)
 
 /* --- relations --- */
 
-/* A question about adjacency, decoded. */
+/* A decoded question about adjacency. */
 typedef struct asked {
     const he_relation *relation;
     unsigned flags;
     api_target target;
 } asked;
 
-/* More than a kind has. */
+/* More than any kind has. */
 enum { MOST_RELATIONS = 8 };
 
-/* The names of a kind's relations, with NULL behind the last. */
+/* Lists the names of a kind's relations, followed by NULL. */
 static void list_relations(he_kind of, const char *names[MOST_RELATIONS + 1])
 {
     size_t count = 0;
@@ -270,8 +270,8 @@ static bool read_relation(api_asker *a, const api_in *question, asked *out)
     return true;
 }
 
-/* A face whose neighbours are few may yet have many corners. All other relations answer with as
- * many ids as they look at half-edges, or half as many. */
+/* Returns the number of half-edges visited. A face with few neighbours may have many corners; all
+ * other relations return as many ids as they visit half-edges, or half as many. */
 static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
 {
     if (q->relation->of != HE_FACE || q->relation->gives != HE_FACE) {
@@ -343,7 +343,7 @@ static bool ask_relation(api_asker *a, const api_in *question)
 
 /* --- find and get --- */
 
-/* What he_find_halfedge costs: the smaller degree, or `most`. */
+/* Returns the cost of he_find_halfedge: the smaller degree, at most `most`. */
 static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, uint64_t most)
 {
     he_halfedge first_a = he_vertex_halfedge(mesh, a), first_b = he_vertex_halfedge(mesh, b);
@@ -360,7 +360,7 @@ static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, ui
     return steps;
 }
 
-/* The degree of a vertex, or `most`. */
+/* Returns the degree of a vertex, at most `most`. */
 static uint64_t degree_of(const he_mesh *mesh, he_vertex v, uint64_t most)
 {
     he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
@@ -444,7 +444,7 @@ static bool ask_get(api_asker *a, const api_in *question)
     return true;
 }
 
-/* --- any --- */
+/* --- any question --- */
 
 bool api_question_ask(api_asker *a, const api_in *question)
 {

@@ -1,4 +1,4 @@
-/* Questions about space: rays, nearest points, and where a mesh meets itself. */
+/* Spatial questions: rays, nearest points, and self-intersections. */
 #include "api/ask/spatial.h"
 
 #include <float.h>
@@ -11,7 +11,8 @@ static bool read_max(const api_in *in, double *out)
     return !api_in_find(in, "max", &max) || api_in_number_within(&max, 0, DBL_MAX, false, out);
 }
 
-/* Corners without weight are left out: a point on an edge has two, a vertex one. */
+/* Corners with weight 0 are left out: a point on an edge has two corners, a point at a vertex
+ * one. */
 static void write_hit(api_out *out, const char *key, const he_hit *hit)
 {
     api_out_object_begin(out);
@@ -104,7 +105,7 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
     return true;
 }
 
-/* Steps beside the budget, once a request: so many that a large mesh can be searched at all. */
+/* Additional steps for one search per request, enough to search a large mesh. */
 static uint64_t granted_for(const api_asker *a)
 {
     return a->on_worker || a->has_met ? 0 : API_MEET_STEPS * api_elements_of(a->mesh);
@@ -114,7 +115,7 @@ bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
 {
     he_watch *watch = &a->x->watch;
     a->asked = "self_intersections";
-    he_watch_span(watch, 0.5 * (1 + watch->done)); /* it takes about as long */
+    he_watch_span(watch, 0.5 * (1 + watch->done)); /* the tree takes about half of the time */
     const he_bvh *tree = api_asker_tree(a, in);
     if (tree == NULL) {
         return false;
@@ -152,6 +153,6 @@ bool api_self_intersections_ask(api_asker *a, const api_in *question)
         return false;
     }
     size_t total = a->first.count / 2;
-    api_asker_pay(a, total < limit ? total : limit); /* the text */
+    api_asker_pay(a, total < limit ? total : limit); /* for writing the text */
     return write_pairs(a, (size_t)limit, complete);
 }

@@ -1,7 +1,7 @@
-/* Walks: POST .../traverse, and those among the questions of POST .../query.
+/* Walks: POST .../traverse, and the walks among the questions of POST .../query.
  *
- * An answer repeats the walk, so that it can be read alone, with the defaults filled in. All of a
- * walk is found before anything is written. */
+ * An answer repeats the walk with its defaults filled in, so that it can be understood alone. The
+ * whole walk is computed before anything is written. */
 #include "api/request/handlers.h"
 
 #include "api/ask/question.h"
@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-/* Half-edges looked at for each element that a flood meets, on average and roomily. */
+/* Half-edges charged for each element that a flood reaches; the average is lower. */
 enum { FLOOD_COST = 8 };
 
 static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds,
@@ -21,7 +21,7 @@ static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigne
     return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, kind, id);
 }
 
-/* What every answer begins with. */
+/* Writes the beginning of every answer. */
 static void begin_answer(api_asker *a, const char *walk, he_kind kind, uint32_t from)
 {
     api_out_object_begin(a->out);
@@ -31,7 +31,7 @@ static void begin_answer(api_asker *a, const char *walk, he_kind kind, uint32_t 
     api_write_reference(a->out, kind, from);
 }
 
-/* Longer than any walk may answer with. */
+/* Is the walk longer than an answer may be? */
 static bool is_too_long(const he_ids *ids)
 {
     return ids->count > API_MAX_WALK;
@@ -50,7 +50,7 @@ typedef struct path {
     size_t count;
     bool has_repeat;
     uint64_t repeat;
-    const char *until_name; /* NULL: only the count ends it */
+    const char *until_name; /* NULL: only the count ends the path */
     he_until until;
 } path;
 
@@ -179,7 +179,7 @@ static bool ask_loop(api_asker *a, const api_in *walk)
 
 /* --- rings, breadth first --- */
 
-/* How far a flood may go here. */
+/* Returns how many elements a flood may reach. */
 static uint64_t most_of_flood(const api_asker *a)
 {
     if (a->on_worker) {
@@ -189,7 +189,7 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Fills a->first with elements and a->second with depths. `limit` 0: all there are. */
+/* Fills a->first with elements and a->second with depths. `limit` 0: no limit. */
 static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from, uint32_t depth,
                   size_t limit)
 {
@@ -379,7 +379,7 @@ static bool ask_edge_ring(api_asker *a, const api_in *walk)
     return ask_edges(a, walk, "edge_ring", he_traverse_edge_ring);
 }
 
-/* --- any --- */
+/* --- any walk --- */
 
 /* X(name) */
 #define WALK_MAP(X) \
@@ -411,7 +411,7 @@ static void answer(api_exchange *x, api_asker *a)
 bool api_traverse_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* it is found on the way */
+    (void)out; /* the cost is found during the walk */
     return !api_wants_job(x, 0) || api_asker_read(x, answer);
 }
 

@@ -2,9 +2,10 @@
 
 #include <stdatomic.h>
 
-/* `bvh` and `abandoned` are written once, under the place; both unset, it is being made. */
+/* `bvh` or `abandoned` is set once, under the lock of the place; while neither is set, the tree is
+ * being made. */
 typedef struct api_tree {
-    _Atomic uint32_t uses; /* one while it is kept, one for each asker */
+    _Atomic uint32_t uses; /* one use while it is kept, one for each asker */
     uint64_t revision;
     he_bvh *bvh;
     bool abandoned; /* it could not be made */
@@ -28,7 +29,7 @@ static void hold(api_tree *tree)
     atomic_fetch_add_explicit(&tree->uses, 1, memory_order_relaxed);
 }
 
-/* One that is still to be made. */
+/* Returns an entry for a tree that is to be made. */
 static api_tree *tree_new(const api_asker *a)
 {
     api_tree *tree = he_mem_zero(1, sizeof *tree);
@@ -49,7 +50,7 @@ static bool must_be_made(const api_tree *tree)
     return tree->bvh == NULL && !tree->abandoned;
 }
 
-/* Under the place. NULL when memory is out, or with a->spent. */
+/* The caller holds the lock of the place. Returns NULL when memory is out, or with a->spent. */
 static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tree **dropped,
                       bool *made_here)
 {
@@ -67,7 +68,7 @@ static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tre
         return NULL;
     }
     if (fits) {
-        hold(kept); /* somebody else makes it */
+        hold(kept); /* another request makes it */
         return kept;
     }
     api_tree *tree = tree_new(a);
@@ -84,8 +85,8 @@ static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tre
     return tree;
 }
 
-/* The one that is kept, if it is of this revision; else one that the asker has to make, which takes
- * the place of one of an earlier revision. */
+/* Returns the kept tree if it is of this revision. Otherwise returns a new entry, which replaces
+ * that of an earlier revision, and the asker must make the tree. */
 static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
 {
     api_tree *dropped = NULL;
@@ -96,7 +97,8 @@ static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
     return tree;
 }
 
-/* Somebody else makes it. HE_CANCELLED when the asker gives up first. */
+/* Waits until another request has made it. Returns HE_CANCELLED if the asker's own watch stops it
+ * first. */
 static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
 {
     for (;;) {
@@ -114,7 +116,8 @@ static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
     }
 }
 
-/* Once made, or given up with NULL: whoever waits for it goes on. */
+/* Sets the tree, or marks the entry as abandoned if `bvh` is NULL, and wakes all waiting
+ * requests. */
 static void finish(const api_asker *a, api_tree *tree, he_bvh *bvh)
 {
     st_derived *place = st_derived_begin(a->x->mesh, ST_DERIVED_TREE);
@@ -153,11 +156,13 @@ const he_bvh *api_asker_tree(api_asker *a, const api_in *in)
             return NULL;
         }
         if (tree->bvh == NULL) {
-            api_tree_release(tree); /* who made it gave up: nothing that takes long is in it */
+            /* the request that was making it stopped; its entry is almost empty */
+            api_tree_release(tree);
             continue;
         }
-        /* So that what is left for the questions depends on the mesh alone. A worker's answer is
-         * the same whatever is left, or given on the job pool. */
+        /* Charged even if another request made the tree, so that the result depends on the mesh
+         * alone. A worker need not charge: if its steps run out, the request starts again on the
+         * job pool. */
         if (made_here || !a->on_worker) {
             api_asker_pay(a, cost_of(a));
         }

@@ -98,7 +98,7 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* Lines are of a component schema, but for the last. */
+/* All lines but the last have the schema of a component. */
 static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
@@ -115,9 +115,9 @@ static void write_line_schema(api_out *out, const char *line)
     api_out_object_end(out);
 }
 
-/* Media types with the schema of those that are the API's own JSON, which a model is not; that of a
- * line is an extension, since OpenAPI has a word for it (itemSchema) only from 3.2 on. `example`
- * gives a body of one for `route`. */
+/* Writes the media types of a body. API JSON has a schema, mesh files have none. The schema of a
+ * line is an extension, since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example`
+ * returns an example body for `route`. */
 /* The server takes any field name; clients generated from this document use this one. */
 static void write_files_schema(api_out *out)
 {
@@ -182,7 +182,7 @@ static bool is_stream(const api_route *route)
     return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
 }
 
-/* Of every answer with a body, events aside. */
+/* Headers of every answer with a body, except events. */
 static void write_coding_headers(api_out *out)
 {
     api_out_key(out, "Content-Encoding");
@@ -217,7 +217,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
                      false);
     }
     if (tagged) {
-        /* A dry run made no state. Neither knows one what published, but could not say more. */
+        /* A dry run makes no state, and the short answer of a published write may not know its
+         * state: neither has a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Names the state that is shown.", always);
     }
@@ -262,7 +263,7 @@ static void write_success(api_out *out, const api_route *route, int status)
     api_out_object_end(out);
 }
 
-/* Refusals with a header of their own; all others are a "problem". */
+/* Refusals with headers of their own; all others are a "problem". */
 static const struct {
     int status;
     const char *name, *header, *doc;
@@ -328,7 +329,7 @@ static void write_header_parameter(api_out *out, const char *name, const char *d
     api_out_object_end(out);
 }
 
-/* What the route reads beside Accept and Content-Type. */
+/* Writes the headers that the route reads, except Accept and Content-Type. */
 static void write_header_parameters(api_out *out, const api_route *route)
 {
     if (answers(route, 304)) {
@@ -374,7 +375,7 @@ static void write_header_parameters(api_out *out, const api_route *route)
     }
 }
 
-/* Longer than any row's, with a sentence more. */
+/* Longer than the documentation of any row with one more sentence. */
 enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
@@ -390,8 +391,8 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
-/* A token, or a ticket in its place, whose role stands where OAuth has scopes (OpenAPI 3.1 lets
- * other schemes name them too); or nothing, since a server may ask for none. */
+/* A token, or a ticket instead of it, with the role in place of OAuth's scopes (OpenAPI 3.1 allows
+ * that for other schemes, too); or nothing, since a server may have no tokens. */
 static void write_security(api_out *out, const api_route *route)
 {
     api_out_key(out, "security");
@@ -597,7 +598,7 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key_string(out, "url", url != NULL ? url : "/");
     api_out_object_end(out);
     api_out_array_end(out);
-    api_out_key(out, "security"); /* of the rows that say nothing: there is none */
+    api_out_key(out, "security"); /* for routes without their own: no token is needed */
     api_out_array_begin(out);
     api_out_array_end(out);
     write_paths(out);

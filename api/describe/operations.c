@@ -38,7 +38,7 @@ static const char *param_type(const he_param *param)
     return "";
 }
 
-/* What holds where the parameter is not given. */
+/* Writes the value of a parameter that is not given. */
 static void write_default(api_out *out, const he_param *param)
 {
     if (param->flags & (HE_REQUIRED | HE_DERIVED)) {
@@ -281,7 +281,7 @@ static void write_alternative(api_out *out, const char *name)
     api_out_object_end(out);
 }
 
-/* "Exactly one of these members", for each group where one is required, seen from its first. */
+/* Writes "exactly one of these members" for each group that requires one. */
 static void write_groups(api_out *out, const he_op *op)
 {
     bool opened = false;
@@ -321,7 +321,7 @@ static void write_groups(api_out *out, const he_op *op)
     }
 }
 
-/* Begin the schema of an object with the operation's name as its member "op", and leave both it and
+/* Begins the schema of an object whose member "op" is the operation's name; leaves the object and
  * its properties open. */
 static void begin_named(api_out *out, const he_op *op, const char *description)
 {
@@ -362,7 +362,8 @@ static void write_op_schema(api_out *out, const he_op *op)
     api_out_object_end(out);
 }
 
-/* One of the operations with members beside: "as" in a list, "expected_revision" alone. */
+/* Writes the schema of any operation with additional members: "as" in a list, "expected_revision"
+ * for a single one. */
 static void write_any_op(api_out *out, const char *name, const char *beside)
 {
     api_out_key(out, name);
@@ -433,7 +434,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     api_out_object_end(out);
 }
 
-/* What an operation gives back: its name, and those of its results that the call had. */
+/* Writes the schema of an operation's results: its name, and results that the call may have had. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
     begin_named(out, op, NULL);

@@ -16,7 +16,7 @@ static const api_told_header warnings = {"Export-Warnings", "What the format cou
 /* --- the table --- */
 
 static const api_route routes[] = {
-    /* the collection */
+    /* the collection of meshes */
     {.method = "GET",
      .path = "/v1/meshes",
      .name = "meshes_list",
@@ -213,7 +213,7 @@ static const api_route routes[] = {
      .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
             "earlier revision where one is named."},
 
-    /* its elements: a collection, an element and what is adjacent to it, for each kind */
+    /* elements of a mesh: a collection, an element and its neighbours, for each kind */
     ELEMENT_ROWS,
 
     {.method = "GET",
@@ -316,7 +316,7 @@ static const api_route routes[] = {
      .summary = "Delete an attribute",
      .doc = "One revision, which can be undone."},
 
-    /* questions */
+    /* queries */
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/query",
      .name = "query_post",
@@ -627,7 +627,7 @@ static const api_route routes[] = {
      .doc = "A file for `hedged --restore`. A job unless the client waits; its result is the file, "
             "of which the server keeps one at a time: DELETE the job when it is fetched."},
 
-    /* the tables */
+    /* descriptions of the API */
     {.method = "GET",
      .path = "/v1/operations",
      .name = "operations_get",
@@ -651,7 +651,7 @@ static const api_route routes[] = {
      .summary = "This document",
      .doc = "The API as OpenAPI 3.1."},
 
-    /* beside the API */
+    /* outside of the API */
     {.method = "GET",
      .path = "/livez",
      .name = "live_get",

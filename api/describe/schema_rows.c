@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-enum { OPTIONAL = false, REQUIRED = true }; /* to be read in a row of strings */
+enum { OPTIONAL = false, REQUIRED = true }; /* names for a column of the table */
 
 const api_member api_answer_members[] = {
     {"counts", "vertices", "count", REQUIRED, "Live ones."},

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Schemas that are not a list of members, as JSON Schema. */
+/* Schemas that are not just a list of members, as JSON Schema. */
 static const struct {
     const char *name, *json;
 } others[] = {
@@ -185,7 +185,7 @@ void api_schema_ref_key(api_out *out, const char *key, const char *name)
 static void write_base(api_out *out, const char *type, size_t length)
 {
     static const struct {
-        const char *name, *json; /* the members of the schema object */
+        const char *name, *json; /* `json` holds the members of the schema object */
     } bases[] = {
         {"id", "\"$ref\":\"#/components/schemas/id\""},
         {"point", "\"$ref\":\"#/components/schemas/point\""},
@@ -244,7 +244,7 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     }
 }
 
-/* The schema whose rows begin at `rows`; returns how many those are. */
+/* Writes the schema whose rows begin at `rows`; returns their number. */
 static size_t write_schema(api_out *out, const api_member *rows, bool closed)
 {
     size_t count = 0;
@@ -276,7 +276,7 @@ static size_t write_schema(api_out *out, const api_member *rows, bool closed)
     return count;
 }
 
-/* An object of a member with the id of an element of this kind: of_vertex. */
+/* Writes the schema of an object with the id of one element of this kind: of_vertex. */
 static void write_reference_schema(api_out *out, he_kind kind)
 {
     char name[32];
@@ -292,7 +292,7 @@ static void write_reference_schema(api_out *out, he_kind kind)
     api_out_object_end(out);
 }
 
-/* What the row of one relation answers with: vertex_faces. */
+/* Writes the schema of the answer of one relation: vertex_faces. */
 static void write_adjacency_schema(api_out *out, const he_relation *relation)
 {
     static const char *const required[] = {"revision", "of", "relation", "ids", NULL};

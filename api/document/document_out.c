@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Text is made a buffer at a time; what is written between two looks at the room left is at most
- * a vertex or a corner, so UNIT bytes must be free. */
+/* The text is made one buffer at a time. Between two checks for space at most a vertex or a corner
+ * is written, so UNIT bytes must be free. */
 enum { BUFFER = 64 * 1024, UNIT = 128 };
 
 typedef enum phase {
@@ -22,20 +22,20 @@ typedef enum phase {
 
 struct api_document_out {
     const he_mesh *mesh;
-    api_text text;  /* what stands before the vertices, and a part of the attributes */
-    bool from_text; /* begin and end are in `text`, not in the buffer */
-    uint32_t *rank; /* number of each live vertex; NULL when none is dead */
-    /* The half-edge that the document's e-th edge begins with: faces in their order run along it
-     * first. NULL where no attribute needs it. */
+    api_text text;  /* the text before the vertices, then pieces of the attributes */
+    bool from_text; /* begin and end are positions in `text`, not in the buffer */
+    uint32_t *rank; /* number of each live vertex; NULL if none is dead */
+    /* For each edge of the document, the half-edge in the face that comes first in the document.
+     * NULL if no attribute needs it. */
     uint32_t *edges;
     size_t column; /* slot of the attribute being written */
-    bool begun;    /* was its head? */
+    bool begun;    /* its head was written */
     phase phase;
-    uint32_t next; /* vertex or face */
-    bool listed;   /* one was written already */
+    uint32_t next; /* next vertex or face */
+    bool listed;   /* an item of the list was written */
     bool open;     /* `corner` is the next corner of the open face */
     he_halfedge corner;
-    size_t begin, end; /* of the text in the buffer */
+    size_t begin, end; /* range of the buffer that was not read yet */
     char buffer[BUFFER];
 };
 
@@ -131,7 +131,7 @@ static void put(api_document_out *out, const char *text)
     out->end += length;
 }
 
-/* What stands before the next item of a list: every item has its line. */
+/* Writes the separator before an item of a list: each item has its own line. */
 static void begin_item(api_document_out *out)
 {
     put(out, out->listed ? ",\n[" : "\n[");
@@ -186,14 +186,15 @@ static size_t next_column(const he_mesh *mesh, size_t from)
     return from;
 }
 
-/* How many values an attribute has in the document, dead rows of vertices and faces included. */
+/* Returns the number of values that an attribute has in the document, with dead rows of vertices
+ * and faces. */
 static uint64_t count_places(const api_document_out *out, he_kind domain)
 {
     return domain == HE_EDGE || domain == HE_HALFEDGE ? he_mesh_count(out->mesh, domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* The row of the i-th place; HE_NONE for a dead one. */
+/* Returns the row of the i-th value; HE_NONE for a dead one. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {
@@ -226,7 +227,7 @@ static void begin_attribute(api_document_out *out, const he_column *column)
     out->next = 0;
 }
 
-/* What comes behind the lists: materials, and the end. */
+/* Writes what follows the lists: materials, and the end. */
 static void end_document(api_document_out *out)
 {
     const he_materials *materials = he_mesh_materials(out->mesh);
@@ -240,7 +241,7 @@ static void end_document(api_document_out *out)
     out->phase = PHASE_DONE;
 }
 
-/* The next part, onto the text. */
+/* Appends the next part to the text. */
 static void fill_attributes(api_document_out *out)
 {
     const he_column *column = he_mesh_column(out->mesh, out->column);
@@ -276,7 +277,7 @@ static void fill_attributes(api_document_out *out)
     out->end = out->text.length;
 }
 
-/* Everything up to a full buffer. Dead rows write nothing, so a call may scan many. */
+/* Fills the buffer. Dead rows write nothing, so a call may skip many. */
 static void fill(api_document_out *out)
 {
     out->begin = out->end = 0;

@@ -5,13 +5,13 @@
 
 #include <string.h>
 
-/* Enough to tell any format by. */
+/* Enough to recognize any format. */
 enum { SNIFF_BYTES = 512 };
 
 typedef struct part {
     char *name;
-    api_part_kind kind; /* as its name or media type say */
-    api_text bytes;     /* not of the mesh's file, unless that is only known at the end */
+    api_part_kind kind; /* by its name or media type */
+    api_text bytes;     /* content, except of the mesh file if that is known from its name */
 } part;
 
 struct api_parts {
@@ -19,7 +19,7 @@ struct api_parts {
     const char *wanted; /* ?format=, or NULL */
     part parts[API_MAX_PARTS];
     size_t count;
-    size_t candidates; /* how many could be the mesh's file */
+    size_t candidates; /* how many files could be the mesh */
     part *mesh;        /* the first of them */
     he_beside_file files[API_MAX_PARTS];
     he_beside beside;
@@ -54,7 +54,7 @@ void api_parts_free(api_parts *p)
     he_mem_free(p);
 }
 
-/* --- which one is the mesh --- */
+/* --- choosing the mesh --- */
 
 static const char *extension_of(const char *name)
 {
@@ -116,14 +116,14 @@ static bool refuse(api_exchange *x, const api_parts *p)
                     p->wanted == NULL ? "" : p->wanted, names);
 }
 
-/* What others refer to is not looked at. */
+/* Files of these types belong to another file and are no meshes. */
 static bool is_companion(const char *name)
 {
     const char *extension = extension_of(name);
     return api_equal_nocase(extension, "bin") || api_equal_nocase(extension, "mtl");
 }
 
-/* No name and no media type said so: the first bytes may. */
+/* Neither names nor media types decided: looks at the first bytes. */
 static void look_inside(api_parts *p)
 {
     for (size_t i = 0; i < p->count; i++) {
@@ -196,7 +196,7 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
         return API_PARTS_BYTES;
     }
     if (is_wanted(p, &one->kind)) {
-        return API_PARTS_MORE; /* one too many, which is said when all of them are known */
+        return API_PARTS_MORE; /* a second mesh file; refused when all files are known */
     }
     api_text_add(&one->bytes, bytes, length);
     if (one->bytes.failed) {

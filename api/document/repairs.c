@@ -1,6 +1,6 @@
 #include "api/document/repairs.h"
 
-/* Unless the request says so: of the holes that `fill` closes. */
+/* The largest hole that `fill` closes, unless the request sets another limit. */
 enum { HOLE_EDGES = 16 };
 
 bool api_repairs_read(api_exchange *x, he_repair_plan *plan)
@@ -36,7 +36,8 @@ static void write_ids(api_out *out, const char *key, const he_repair_account *ac
     api_out_array_end(out);
 }
 
-/* drop_degenerate names faces that are gone, of which there are 0 faces now, and others. */
+/* drop_degenerate reports faces as pairs: a face with the number of faces that replaced it. This
+ * selects those that were removed (0), or the others. */
 static he_repair_account degenerate_ones(const he_repair_account *account, bool gone)
 {
     he_repair_account some = {.count = 0};
@@ -64,7 +65,7 @@ static void write_parents(api_out *out, const he_repair_account *account)
     api_out_object_end(out);
 }
 
-/* Where in the input the things were that are gone. */
+/* Writes where in the input the removed things were. */
 static void write_places(api_out *out, const he_repair_account *account, const he_places *places)
 {
     if (places == NULL || places->unit == HE_PLACE_NONE || places->count == 0) {

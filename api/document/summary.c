@@ -9,7 +9,7 @@
 bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
 {
     he_error err = {0};
-    /* Padding too, since the store compares nothing but keeps every byte. */
+    /* Clears the padding, too, since the store keeps every byte. */
     memset(out, 0, sizeof *out);
     he_topology topology;
     if (he_topology_find(mesh, &topology, &err) != HE_OK) {
@@ -143,7 +143,7 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
     write_answer(x, summary, status, extra);
 }
 
-/* Shows the mesh as it was created: other clients may have changed or deleted it by now. */
+/* Describes the mesh as it was created: other clients may have changed or deleted it by now. */
 static void find_facts_as_made(api_exchange *x, const char *name)
 {
     (void)st_read_card(x->mesh, &x->info);
@@ -162,7 +162,7 @@ void api_answer_created(api_exchange *x, const char *name, const api_summary *su
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* A summary that is kept is left in x->state, and nothing more is read. */
+/* A cached summary is left in x->state, and the mesh is not read. */
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);
@@ -211,7 +211,7 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.best == API_IDENTITY) {
-        /* Its length is not known. */
+        /* The length is unknown. */
         api_answer_stream(x, 200, "application/json", -1, read_nothing, NULL, NULL);
     }
 }

@@ -14,14 +14,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Enough to tell any format by. */
+/* Enough to recognize any format. */
 enum { SNIFF_BYTES = 512 };
 
-/* Bytes of a file that is read at its end, for each vertex or corner: a guess, of the time alone.
+/* Bytes of a file per vertex or corner: a guess, used only to estimate time.
  */
 enum { ELEMENT_BYTES = 5 };
 
-/* Of the making of a mesh; what is left is its summary's. */
+/* Progress of making a mesh after each step; the rest is its summary. */
 static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
                     FILL_SHARE = 0.75;
 
@@ -32,11 +32,11 @@ typedef struct attribute {
 
 typedef struct upload {
     he_limits limits;
-    /* exactly one of these reads; neither while the first bytes are gathered */
+    /* one of these is the reader; neither while the first bytes are collected */
     api_document_in *document;
     he_reader *reader;
-    const he_format *format; /* of the reader */
-    api_parts *parts;        /* where the body is several files */
+    const he_format *format; /* the reader reads this */
+    api_parts *parts;        /* if the body has several files */
     char head[SNIFF_BYTES];  /* the first bytes of the body */
     size_t head_length;
 
@@ -49,13 +49,13 @@ typedef struct upload {
     he_report report;
     he_repair_plan plan;
     he_repaired repaired;
-    size_t vertices, faces; /* as read */
+    size_t vertices, faces; /* as read, before repairs */
     attribute *attributes;
     size_t attribute_count;
     he_ids bowties;
-    uint64_t seams;      /* edges that a weld would make */
-    uint64_t isolated;   /* vertices */
-    he_ids isolated_ids; /* the first */
+    uint64_t seams;      /* edges that a weld would join */
+    uint64_t isolated;   /* vertices without a face */
+    he_ids isolated_ids; /* the first of them */
 } upload;
 
 static void free_upload(void *state)
@@ -105,7 +105,7 @@ bool api_upload_begin(api_exchange *x)
     }
     const char *name = api_param_text(x, "format");
     if (name == NULL && strcmp(x->media_in, "application/octet-stream") == 0) {
-        return true; /* the first bytes will tell */
+        return true; /* the first bytes will decide */
     }
     if (strcmp(name != NULL ? name : x->media_in, name != NULL ? "json" : "application/json") ==
         0) {
@@ -122,8 +122,8 @@ bool api_upload_begin(api_exchange *x)
     return open_reader(x, u, format);
 }
 
-/* What was said to be of one format may be of another, or no mesh at all: then that is the reason,
- * and no place in it. Of text that is UTF-16 the reader says so itself. */
+/* A file with the wrong declared format, or one that is no mesh, is refused with that reason and
+ * without a position. The reader itself reports text in UTF-16. */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
     const char *foreign = he_foreign_find(u->head, u->head_length);
@@ -152,14 +152,14 @@ static bool feed(api_exchange *x, upload *u, const char *bytes, size_t length)
     return he_reader_feed(u->reader, bytes, length, &err) == HE_OK || fail_reading(x, u, &err);
 }
 
-/* Choose a reader by what has arrived, and let it read that. */
+/* Chooses a reader by the bytes that have arrived, and passes them to it. */
 static bool choose(api_exchange *x, upload *u)
 {
     size_t blank = 0;
     while (blank < u->head_length && strchr(" \t\r\n", u->head[blank]) != NULL) {
         blank++;
     }
-    /* glTF is JSON too, with a member that our document has not */
+    /* glTF is JSON too, with a member that mesh documents do not have */
     const he_format *gltf = he_format_find("gltf");
     bool json =
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
@@ -183,7 +183,7 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* How many of them found room. */
+/* Keeps as many bytes as fit and returns their number. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
@@ -224,7 +224,7 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* The mesh's file is known, and what came beside it. */
+/* Reads the mesh file, now that it is known, with the other files. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;
@@ -258,7 +258,7 @@ bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
     return length == 0 || feed(x, u, bytes, length);
 }
 
-/* {"shape":"cube","size":2,"name":"..."}: the members are the shape's parameters. */
+/* Reads {"shape":"cube","size":2,"name":"..."}: the other members are parameters of the shape. */
 static bool read_shape(upload *u, const api_in *rest, const api_in *shape)
 {
     const char *name, *names[HE_SHAPE_PARAMS + 3] = {"shape", "name"};
@@ -335,7 +335,7 @@ static bool finish_reading(api_exchange *x, upload *u)
     return true;
 }
 
-/* Is the whole file still to be read? */
+/* Is the whole file still unread? */
 static bool is_unread(const upload *u)
 {
     return u->reader != NULL && !u->has_import;
@@ -369,7 +369,8 @@ uint64_t api_upload_elements(const api_exchange *x)
     const he_soup *soup = soup_of(u);
     uint64_t elements =
         is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
-    return u->plan.which == 0 ? elements : 2 * elements; /* repairs read it as often as building */
+    /* repairs take about as long as building */
+    return u->plan.which == 0 ? elements : 2 * elements;
 }
 
 bool api_upload_is_guessed(const api_exchange *x)
@@ -383,8 +384,8 @@ const char *api_upload_name(const api_exchange *x)
     return u->name;
 }
 
-/* Which repairs would let the body pass. That none is found for want of memory leaves the refusal
- * what it is; HE_CANCELLED. */
+/* Finds the repairs with which the body would pass. When memory is out it finds none and the
+ * refusal stays as it is. Returns HE_CANCELLED if the watch stops it. */
 static he_status advise(upload *u, unsigned *which, he_error *err)
 {
     *which = 0;
@@ -396,7 +397,7 @@ static he_status advise(upload *u, unsigned *which, he_error *err)
     return status == HE_CANCELLED ? status : HE_OK;
 }
 
-/* Everything is named as in the body, whatever was repaired before it was refused. */
+/* Defects are named by their place in the body, even if repairs were applied before. */
 static void name_defects(api_exchange *x, upload *u)
 {
     x->problem.report = &u->report;
@@ -408,8 +409,8 @@ static void name_defects(api_exchange *x, upload *u)
     }
 }
 
-/* The report is the reason only where the work came to its end: what gave it up, or was short of
- * memory, may have found some defects before. */
+/* The report explains the refusal only if the work came to its end: work that was cancelled or ran
+ * out of memory may have reported other defects before. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
     bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
@@ -436,7 +437,7 @@ static bool refuse(api_exchange *x, upload *u, he_error *err)
     return false;
 }
 
-/* Vertices without a face, the first of them with their ids. */
+/* Finds vertices without a face and keeps the ids of the first ones. */
 static he_status find_isolated(upload *u, const he_mesh *mesh, he_error *err)
 {
     he_status status = HE_OK;
@@ -470,7 +471,7 @@ static he_status name_attributes(upload *u, const he_mesh *mesh, he_error *err)
     return HE_OK;
 }
 
-/* That an OFF file gives another number of edges than it has is only known now. */
+/* Notes an OFF file that declares a wrong number of edges, which is only known now. */
 static void note_edges(upload *u, const he_mesh *mesh)
 {
     const he_import *import = &u->import;
@@ -481,7 +482,7 @@ static void note_edges(upload *u, const he_mesh *mesh)
     }
 }
 
-/* From the repaired soup on. */
+/* The second half of making a mesh, from the repaired soup on. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};
@@ -560,7 +561,7 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     return true;
 }
 
-/* "lines":[7,12], or "bytes", of the first things it counts. */
+/* Writes "lines":[7,12], or "bytes", for the first things that a warning counts. */
 static void write_spots(api_out *out, const he_notes *notes, size_t i)
 {
     if (notes->items[i].place == HE_PLACE_NONE || notes->items[i].count == 1) {
@@ -592,7 +593,7 @@ static void write_note(api_out *out, const he_notes *notes, size_t i)
     api_out_object_end(out);
 }
 
-/* What is unusual about vertices of the mesh; the first has its place, where it came from one. */
+/* Writes a warning about vertices of the mesh, with the place of the first one in the file. */
 static void write_vertices(api_out *out, const upload *u, const char *code, const char *detail,
                            uint64_t count, const he_ids *ids)
 {
@@ -615,7 +616,7 @@ static void write_vertices(api_out *out, const upload *u, const char *code, cons
     api_out_object_end(out);
 }
 
-/* Other programs write a vertex for each corner whose values differ. */
+/* Other programs write one vertex for each corner with different values: warns of such seams. */
 static void write_seams(api_out *out, const upload *u)
 {
     if (u->seams == 0) {

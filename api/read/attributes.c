@@ -1,4 +1,5 @@
-/* GET .../attributes, and the values of one: a page, some by their ids, or all rows as octets. */
+/* GET .../attributes, and the values of one attribute: a page, some by their ids, or all rows as
+ * octets. */
 #include "api/request/handlers.h"
 
 #include "api/document/attribute_path.h"
@@ -44,7 +45,7 @@ const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh)
     return column;
 }
 
-/* Everything but letters, digits and a few marks is escaped. */
+/* Percent-encodes everything but letters, digits and a few marks. */
 static void write_segment(const char *name, char *out)
 {
     static const char digits[] = "0123456789ABCDEF";
@@ -106,10 +107,10 @@ static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
                              (unsigned long long)limit, cursor);
 }
 
-/* Which rows are asked for. */
+/* The rows that the client wants. */
 typedef struct choice {
-    uint64_t from;      /* the first of a page */
-    const uint32_t *of; /* those alone; NULL: a page */
+    uint64_t from;      /* first id of a page */
+    const uint32_t *of; /* these ids only; NULL: a page */
     size_t count;
 } choice;
 
@@ -142,7 +143,7 @@ static void answer_page(api_exchange *x, const he_mesh *mesh, const he_column *c
     api_answer_json(x, 200);
 }
 
-/* "1,2,3": at most one id in two bytes of the parameter. */
+/* Reads "1,2,3": at most one id per two bytes of the parameter. */
 static bool read_ids(api_exchange *x, const char *text, choice *out)
 {
     uint32_t *ids = api_arena_array(&x->arena, strlen(text) / 2 + 1, sizeof *ids);
@@ -171,7 +172,7 @@ static bool read_ids(api_exchange *x, const char *text, choice *out)
     }
 }
 
-/* Elements that live. */
+/* Reads ids of live elements. */
 static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 {
     he_error err = {0};
@@ -203,7 +204,7 @@ static void answer_some(api_exchange *x, const he_mesh *mesh, const he_column *c
 
 typedef struct rows {
     const he_column *column;
-    uint64_t next, end; /* bytes */
+    uint64_t next, end; /* in bytes */
 } rows;
 
 static void free_rows(void *stream)
@@ -211,7 +212,7 @@ static void free_rows(void *stream)
     he_mem_free(stream);
 }
 
-/* Stored rows as they are; those beyond are the default. */
+/* Copies stored rows; rows that are not stored hold the default. */
 static int64_t read_rows(void *stream, char *buffer, size_t size)
 {
     rows *r = stream;
@@ -246,7 +247,7 @@ static void answer_octets(api_exchange *x)
     api_answer_stream(x, 200, "application/octet-stream", (int64_t)r->end, read_rows, r, free_rows);
 }
 
-/* --- which --- */
+/* --- handlers --- */
 
 static bool wants_octets(const api_exchange *x)
 {

@@ -17,7 +17,8 @@ static void make(api_exchange *x)
     }
 }
 
-/* How large the store is nobody knows before: it is a job unless the client waits. */
+/* The size of the store is not known in advance, so a backup is a job unless the client prefers to
+ * wait. */
 void api_admin_backup(api_exchange *x)
 {
     if (x->service->options.backup == NULL) {

@@ -1,4 +1,4 @@
-/* GET .../content: a mesh as a file or document, made as it is pulled from a snapshot. */
+/* GET .../content: a mesh as a file or document, made from a snapshot while it is sent. */
 #include "api/request/handlers.h"
 
 #include "api/document/document_out.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What writes the mesh, one of the two; freed with the exchange. */
+/* One of the two writers; freed with the exchange. */
 typedef struct content {
     he_writer *writer;
     api_document_out *document;
@@ -43,7 +43,7 @@ static bool find_encoding(api_exchange *x, const he_format *format, const char *
     return true;
 }
 
-/* The number of the encoding that is wanted: a compressed one is one of its own. */
+/* Finds the index of the encoding in ?encoding=; a compressed encoding counts as its own. */
 static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
 {
     const char *name = api_param_text(x, "encoding"), *packed = api_param_text(x, "compress");
@@ -52,7 +52,7 @@ static bool choose_encoding(api_exchange *x, const he_format *format, size_t *en
            (packed == NULL || find_encoding(x, format, "compression", packed, encoding));
 }
 
-/* What is wanted: NULL is the JSON document. False when nothing fits. */
+/* Finds the format; NULL is the JSON document. Returns false if the client accepts none. */
 static bool choose(api_exchange *x, const he_format **format)
 {
     const char *name = api_param_text(x, "format");
@@ -72,10 +72,10 @@ static bool choose(api_exchange *x, const he_format **format)
     return true;
 }
 
-/* Bytes of the header at most, and of its last words. */
+/* Maximum size of the header, and of its last words. */
 enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
 
-/* What the file cannot carry, so that nobody finds out by losing it. */
+/* Lists what the file cannot represent, so that the client does not lose it unawares. */
 static void answer_losses(api_exchange *x, const he_notes *notes)
 {
     char list[MOST_WARNINGS] = "", text[HE_ERROR_TEXT], more[MORE_WARNINGS] = "";
@@ -99,7 +99,7 @@ static void answer_losses(api_exchange *x, const he_notes *notes)
 
 enum { REPRESENTATION = 40 };
 
-/* What is asked for. */
+/* The representation that the client wants. */
 typedef struct choice {
     const he_format *format; /* NULL: the JSON document */
     size_t encoding;
@@ -132,7 +132,7 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
-    he_watch_span(&x->watch, 0.5); /* as a job it takes about as long to write */
+    he_watch_span(&x->watch, 0.5); /* in a job, the copy is about half of the time */
     bool long_faces = format->writing != NULL && format->writing->cuts;
     if ((long_faces && he_long_faces_keep(x->content, &x->watch, &err) != HE_OK) ||
         he_writer_new(format, x->content, chosen->encoding, &x->watch, &c->writer, &err) != HE_OK) {
@@ -142,7 +142,7 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
     return true;
 }
 
-/* A name that means nothing to a header, a shell or a file system. */
+/* Is the name safe in a header, a shell and a file system? */
 static bool is_plain(const char *name)
 {
     size_t length =
@@ -150,7 +150,7 @@ static bool is_plain(const char *name)
     return name[length] == '\0' && length > 0 && length <= HE_BESIDE_NAME && name[0] != '.';
 }
 
-/* A library is called as the mesh's OBJ file calls it. */
+/* A material library gets the file name by which the mesh's OBJ file refers to it. */
 static void name_file(api_exchange *x, const he_format *format)
 {
     const char *names[HE_COLUMN_COMPONENTS];

@@ -1,4 +1,4 @@
-/* GET .../vertices, halfedges, edges, faces: a page of a collection, or all of it in lines. */
+/* GET .../vertices, halfedges, edges, faces: a page of a collection, or all of it as lines. */
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
@@ -47,7 +47,7 @@ static void write_page(api_exchange *x, uint64_t from)
     api_answer_json(x, 200);
 }
 
-/* The first id of the page. */
+/* Reads the first id of the page. */
 static bool read_from(api_exchange *x, uint64_t *from)
 {
     const char *cursor = api_param_text(x, "cursor");
@@ -64,19 +64,19 @@ static void answer_page(api_exchange *x)
     }
 }
 
-/* --- all of it, a line each --- */
+/* --- the whole collection, one line per element --- */
 
-/* What is made at a time; a face of many corners may need more for its line. */
+/* Bytes made at a time; the line of a face with many corners may be longer. */
 enum { LINES_BUFFER = 64 * 1024 };
 
 typedef struct lines {
     const he_mesh *mesh;
     he_kind kind;
-    uint64_t next;  /* id to look at */
+    uint64_t next;  /* next id to visit */
     uint64_t count; /* lines written */
     bool ended;
     api_text text;
-    size_t sent; /* of the text */
+    size_t sent; /* bytes of the text */
 } lines;
 
 static void free_lines(void *stream)
@@ -146,14 +146,15 @@ static void answer_lines(api_exchange *x)
     api_answer_stream(x, 200, "application/x-ndjson", -1, read_lines, l, free_lines);
 }
 
-/* --- which --- */
+/* --- handlers --- */
 
 static bool wants_lines(const api_exchange *x)
 {
     return strcmp(x->media_out, "application/x-ndjson") == 0;
 }
 
-/* Lines copy the mesh. Writing an element costs about as much as copying twenty. */
+/* Lines are made from a copy of the mesh. Writing an element takes as long as copying about
+ * twenty. */
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";

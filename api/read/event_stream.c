@@ -4,9 +4,9 @@
 #include "api/event/event_follow.h"
 #include "api/event/events.h"
 
-/* A browser that was cut off repeats its request with what it saw last, which is newer than the
- * `since` of the URL. An id that is none of ours is answered as one of another incarnation: a
- * refusal would end an EventSource for good. */
+/* A browser that reconnects repeats its request with Last-Event-ID, which is newer than the `since`
+ * in the URL. An id that this server did not make is treated as one of another incarnation, because
+ * a refusal would end an EventSource for good. */
 static bool read_since(api_exchange *x, st_since *since)
 {
     const char *last = x->request.headers[API_HEADER_LAST_EVENT_ID];

@@ -1,9 +1,9 @@
-/* GET .../geometry: the arrays from which a renderer draws a mesh, or what changed in them; see
- * geometry_rows.h for their bytes.
+/* GET .../geometry: the arrays from which a renderer draws a mesh, or the changes in them; see
+ * geometry_rows.h for the layout.
  *
- * The slots of a mesh's triangles are derived from it when they are first asked for, kept with it,
- * and brought forward by whoever asks next. What few rows an edit changed are drawn under the read
- * lock; all of them, and many, from a snapshot. */
+ * The slots of a mesh's triangles are computed when they are first needed and kept with the mesh; a
+ * later request brings them up to date. A few changed rows are drawn under the read lock; all rows,
+ * or many, from a snapshot. */
 #include "api/request/handlers.h"
 
 #include "api/read/geometry_rows.h"
@@ -19,12 +19,12 @@ typedef struct geometry {
     api_rows rows;
 } geometry;
 
-/* What became of the slots that are kept. */
+/* The outcome of using the kept slots. */
 typedef enum geometry_step {
-    TAKEN,   /* g->rows is known */
-    MISSING, /* there are none */
-    LATER,   /* too much for a worker */
-    ANSWERED /* or refused */
+    TAKEN,   /* g->rows is filled */
+    MISSING, /* no slots are kept */
+    LATER,   /* too much work for a worker */
+    ANSWERED /* the request was answered or refused */
 } geometry_step;
 
 static void free_geometry(void *stream)
@@ -46,8 +46,9 @@ static bool is_working(const api_exchange *x)
 
 /* --- the slots --- */
 
-/* HE_LIMIT on a worker, where it is left to another thread. There the way forward may take a while,
- * but less than making the slots anew, which costs the rows. */
+/* Brings the slots up to date. On a worker it returns HE_LIMIT if that takes long, and another
+ * thread does it. There it may take a while, but less than making the slots again, which visits all
+ * rows. */
 static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_mesh *mesh,
                                he_error *err)
 {
@@ -109,7 +110,7 @@ static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *
     return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
 }
 
-/* From slots at the present revision. */
+/* Fills g->rows from slots at the present revision. */
 static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slots)
 {
     api_exchange *x = g->x;
@@ -137,7 +138,7 @@ static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slot
     return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
 }
 
-/* Under the read lock. Slots that cannot be brought forward are dropped. */
+/* The caller holds the read lock. Slots that cannot be brought up to date are dropped. */
 static geometry_step take_kept(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -161,8 +162,8 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
     return outcome;
 }
 
-/* Keep new slots. Of two requests that make some at the same time the second takes those of the
- * first, unless they are of another revision by now: then its own are not kept. */
+/* Keeps new slots. If two requests made slots at the same time, the second one uses those of the
+ * first; if these are of another revision by now, it uses its own without keeping them. */
 static geometry_step keep_or_take(geometry *g, he_slots *slots)
 {
     api_exchange *x = g->x;
@@ -203,7 +204,7 @@ static void answer_stream(api_exchange *x, geometry *g)
                       free_geometry);
 }
 
-/* Changed rows, drawn under the read lock while they are few. */
+/* Answers with changed rows, drawn under the read lock while they are few. */
 static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -234,7 +235,7 @@ static geometry_step make_slots(geometry *g)
     api_exchange *x = g->x;
     he_error err = {0};
     he_slots *slots = NULL;
-    /* A number that JSON's readers can hold. */
+    /* 53 bits, so that JSON readers represent it exactly. */
     uint64_t layout = st_random() >> 11 | 1;
     if (he_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
         return fail(x, &err);
@@ -242,7 +243,7 @@ static geometry_step make_slots(geometry *g)
     return keep_or_take(g, slots);
 }
 
-/* What few rows have changed is answered under the lock; for all else the mesh is kept. */
+/* A few changed rows are sent under the lock; otherwise the handler takes a snapshot. */
 static geometry_step answer_or_take(geometry *g)
 {
     api_exchange *x = g->x;
@@ -262,8 +263,8 @@ static geometry_step answer_or_take(geometry *g)
     return outcome == MISSING ? make_slots(g) : outcome;
 }
 
-/* Answers 304 before a job is made: a client whose tag is the present one had its arrays from the
- * slots that are cached. */
+/* Answers 304 before a job is made: a client with the present tag got its arrays from the cached
+ * slots. */
 static bool name_kept(api_exchange *x)
 {
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
@@ -283,7 +284,7 @@ static bool name_kept(api_exchange *x)
 bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     (void)mesh;
-    (void)out; /* it depends on the slots that are kept */
+    (void)out; /* the cost depends on the kept slots */
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
         return api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
     }

@@ -4,7 +4,7 @@
 
 enum { HEADER = 96, VERSION = 2, ROW = API_ROW_BYTES, IDS_A_ROW = 4 };
 
-/* The lists of an answer, in their order. */
+/* The parts of an answer, in their order. */
 enum { IN_HEADER, VERTEX_IDS, VERTICES, SLOT_IDS, TRIANGLES, AT_END };
 
 void api_rows_clear(api_rows *r)
@@ -16,7 +16,7 @@ void api_rows_clear(api_rows *r)
     *r = (api_rows){0};
 }
 
-/* --- which --- */
+/* --- choosing rows --- */
 
 static he_status take(api_rows *r, const he_slots *slots, uint64_t since, size_t triangles,
                       he_error *err)
@@ -101,7 +101,7 @@ he_status api_rows_draw(api_rows *r, const he_mesh *mesh, uint64_t most, he_erro
     return status;
 }
 
-/* --- bytes --- */
+/* --- writing --- */
 
 static uint64_t ids_bytes(const api_rows *r, uint32_t rows)
 {
@@ -189,7 +189,7 @@ static bool put_vertex(api_rows *r)
     return true;
 }
 
-/* All slots of a face follow one another, so its triangles are walked once. */
+/* Slots of a face are consecutive, so its triangles are visited once. */
 static bool put_triangle(api_rows *r)
 {
     if (r->next == triangle_rows(r)) {
@@ -208,7 +208,7 @@ static bool put_triangle(api_rows *r)
     return true;
 }
 
-/* What is next of the present list: the header, four ids, or a row. */
+/* Writes the next piece of the current part: the header, four ids, or a row. */
 static bool put(api_rows *r)
 {
     switch (r->part) {

@@ -1,11 +1,11 @@
-/* GET .../edits: what each revision did. */
+/* GET .../edits: what each revision changed. */
 #include "api/request/handlers.h"
 
 #include "api/event/changes.h"
 
 #include <string.h>
 
-/* "a,b,..." as ["a","b","..."]. */
+/* Writes "a,b,..." as ["a","b","..."]. */
 static void write_names(api_out *out, const char *names)
 {
     api_out_array_begin(out);
@@ -53,14 +53,14 @@ typedef struct page {
     uint64_t first, last, limit;
 } page;
 
-/* The entry of a revision, unless it is after the page's last. */
+/* Finds the entry of a revision, unless it is past the end of the page. */
 static bool find_entry(const api_exchange *x, const page *p, uint64_t revision, st_entry *out)
 {
     return revision > p->last &&
            st_history_entry(x->mesh, (size_t)(x->info.revision - revision), out);
 }
 
-/* What is after the page's entries goes to `*next`, 0 at the end. */
+/* Sets `*next` to the revision after the page's entries, or to 0 at the end. */
 static void write_entries(api_exchange *x, const page *p, uint64_t *next)
 {
     st_entry entry;
@@ -76,7 +76,7 @@ static void write_entries(api_exchange *x, const page *p, uint64_t *next)
     *next = more ? revision : 0;
 }
 
-/* The cursor is the revision that comes next, which edits made meanwhile do not change. */
+/* The cursor is a revision number, so edits made meanwhile do not move it. */
 static void write_next(api_exchange *x, const page *p, uint64_t next)
 {
     char cursor[API_CURSOR];
@@ -111,7 +111,7 @@ static void write_history(api_exchange *x, const page *p)
     api_out_object_end(out);
 }
 
-/* False when the cursor leads nowhere. */
+/* Returns false if the cursor is invalid. */
 static bool read_cursor(api_exchange *x, const char *cursor, page *p)
 {
     st_entry entry;

@@ -1,4 +1,4 @@
-/* GET and DELETE /v1/jobs: what has become of work that was answered 202. */
+/* GET and DELETE /v1/jobs: the state and the results of work that was answered 202. */
 #include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "api/request/handlers.h"
@@ -28,7 +28,7 @@ void api_job_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-/* Headers of an answer that is kept, but for those that are put with it. */
+/* Sends the kept headers of an answer, except those that the answer sets on its own. */
 static void answer_kept_headers(api_exchange *x, const api_job *job)
 {
     for (size_t i = 0; i < API_JOB_HEADERS; i++) {
@@ -121,10 +121,10 @@ void api_job_events(api_exchange *x)
     }
 }
 
-/* A page of the list while it is written. */
+/* State of writing a page of the list. */
 typedef struct page {
     api_out *out;
-    uint64_t last; /* number */
+    uint64_t last; /* number of the last job on the page */
 } page;
 
 static void show_brief(void *context, const api_job *job)
@@ -134,7 +134,8 @@ static void show_brief(void *context, const api_job *job)
     p->last = job->number;
 }
 
-/* A page is continued by the number it ended with, behind a letter that keeps it opaque. */
+/* The cursor is the number of the last job, after a letter that keeps clients from using it as
+ * one. */
 static bool read_cursor(api_exchange *x, uint64_t *after)
 {
     const char *cursor = api_param_text(x, "cursor");

@@ -1,4 +1,4 @@
-/* The collection and its members, but for what makes their content: list, summary, name, removal,
+/* The collection and its members, except the making of content: list, summary, name, deletion,
  * copy. */
 #include "api/request/handlers.h"
 
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A page is continued by the id it ended with, behind a letter that keeps it opaque. */
+/* The cursor is the id of the last mesh, after a letter that keeps clients from using it as one. */
 static bool read_list_cursor(api_exchange *x, const char **after)
 {
     const char *cursor = api_param_text(x, "cursor");
@@ -25,8 +25,8 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* Of the whole server: it is here that a client sees what to delete. A token with prefixes learns
- * nothing of what others have. */
+/* Totals of the whole server, which help a client decide what to delete. A token with prefixes does
+ * not see them, since they include meshes of others. */
 static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
@@ -41,24 +41,25 @@ static void write_server(api_exchange *x)
     }
 }
 
-/* At once: where memory is short, large blocks are the first to be refused. */
+/* Cards per batch; when memory is short, large blocks are refused first. */
 enum { CARDS = 32 };
 
-/* A page while it is written. */
+/* State of writing a page. */
 typedef struct list_page {
-    st_card *cards;            /* room for CARDS */
-    size_t limit, given;       /* items */
-    char from[ST_MESH_ID + 1]; /* what follows is looked for; no id, at the beginning of a range */
+    st_card *cards;      /* an array of CARDS */
+    size_t limit, given; /* in items */
+    /* the search goes on after this; at the start of a range it is no valid id */
+    char from[ST_MESH_ID + 1];
     char last[ST_MESH_ID + 1]; /* id of the last item */
     bool more;                 /* there is a next page */
 } list_page;
 
-/* The meshes whose ids begin with `prefix`, after p->from. */
+/* Writes the meshes whose ids begin with `prefix`, after p->from. */
 static bool write_range(api_exchange *x, list_page *p, const char *prefix)
 {
     size_t count = 0, asked;
     do {
-        /* One more than asked tells whether there is a next page. */
+        /* One more than needed shows whether there is a next page. */
         size_t left = p->limit - p->given + 1;
         asked = left < CARDS ? left : CARDS;
         st_status status = st_cards(x->store, p->from, p->cards, asked, &count);
@@ -84,8 +85,9 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
     return true;
 }
 
-/* Goes on before the first id that begins with `prefix`, unless the page is beyond it already. All
- * characters of ids come before the one that follows the prefix's neighbour. */
+/* Moves to just before the first id that begins with `prefix`, unless the page is already past it.
+ * The text is the prefix with its last character lowered by one, and then \x7f, which sorts after
+ * all characters of ids. */
 static void go_to(list_page *p, const char *prefix)
 {
     char before[API_TOKEN_PREFIX + 2];
@@ -99,7 +101,7 @@ static void go_to(list_page *p, const char *prefix)
     }
 }
 
-/* Only what the token sees is looked for, however much else there is. */
+/* Reads only ids that the token sees, however many others there are. */
 static bool write_items(api_exchange *x, list_page *p)
 {
     const char *ranges[API_TOKEN_PREFIXES];
@@ -162,7 +164,7 @@ void api_meshes_list(api_exchange *x)
 
 static const char *const patch_members[] = {"name", NULL};
 
-/* RFC 7396: a member that is null is removed, which for a name is the empty one. */
+/* RFC 7396: null removes a member, which makes the name empty. */
 void api_mesh_patch(api_exchange *x)
 {
     const char *name = NULL;
@@ -196,7 +198,7 @@ void api_mesh_patch(api_exchange *x)
 
 void api_mesh_delete(api_exchange *x)
 {
-    /* The preconditions are those of any write. */
+    /* Renaming has the preconditions of any write. */
     if (!api_write_begin(x, NULL)) {
         return;
     }
@@ -223,7 +225,7 @@ void api_mesh_delete_cold(api_exchange *x, st_cold *cold)
 
 static const char *const copy_members[] = {"id", "name", NULL};
 
-/* What the copy will be called; NULL: it is chosen. */
+/* The id of the copy; NULL: the server chooses one. */
 typedef struct copy_request {
     const char *id, *name;
 } copy_request;
@@ -253,7 +255,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
            api_in_string(&member, ST_MESH_NAME, &r->name);
 }
 
-/* Of making the copy; what is left is its summary's. */
+/* Share of copying in the progress; the rest is the summary. */
 static const double COPY_SHARE = 0.4;
 
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
@@ -270,7 +272,7 @@ bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     return read_copy(x, r) && api_preconditions_hold(x, NULL);
 }
 
-/* The content with its summary, which is found before anybody can change it. */
+/* Copies the content and computes its summary, before other requests can change it. */
 static bool make_copy(api_exchange *x, he_mesh **out, api_summary *summary)
 {
     he_mesh *fresh = NULL;

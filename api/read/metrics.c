@@ -1,6 +1,6 @@
-/* GET /metrics: each family of metric_rows.h, from what was counted and from how things are now.
+/* GET /metrics: each family of metric_rows.h, from counters and from the present state.
  *
- * Nothing here waits, so that a worker can answer: the locks that are taken are held for moments.
+ * Nothing here blocks, so a worker can answer: locks are held only for moments.
  */
 #include "api/metric/metric_page.h"
 
@@ -9,7 +9,7 @@
 #include "system/memory.h"
 #include "system/process.h"
 
-/* All that is read once for a page. */
+/* Everything that is read once per page. */
 typedef struct sources {
     const api_service *service;
     const api_metrics *metrics;
@@ -69,7 +69,7 @@ static uint64_t total_of(const st_distribution *distribution)
     return total;
 }
 
-/* A series appears with its first request: most of those that there could be never are. */
+/* A series appears with its first request, since most possible series never get one. */
 static void put_series(sources *s, const char *route, int number, api_method method,
                        const char *method_name, bool times)
 {
@@ -109,7 +109,8 @@ static void put_problems(sources *s)
     }
 }
 
-/* Two sums that are found one after the other: what ended in between never makes it negative. */
+/* The difference of two counters that are read one after the other; requests that end in between
+ * never make it negative. */
 static uint64_t difference(const api_metrics *metrics, api_counter begun, api_counter ended)
 {
     const uint64_t ends = api_counted(metrics, ended), begins = api_counted(metrics, begun);

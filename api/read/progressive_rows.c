@@ -75,7 +75,7 @@ static unsigned char *put_element(unsigned char *at, const he_mesh *base, he_kin
     return at;
 }
 
-/* Splits are sent from the last to the first: those before `first` are not. */
+/* Splits are sent from the last to the first; those before `first` are not sent. */
 static void drop_splits(he_progressive *mesh, size_t first)
 {
     if (first == 0) {
@@ -91,7 +91,7 @@ static void drop_splits(he_progressive *mesh, size_t first)
     memmove(mesh->moved.ids, mesh->moved.ids + moved, mesh->moved.count * sizeof *mesh->moved.ids);
 }
 
-/* Give back what room the lists have beyond their rows, which may fail. */
+/* Frees unused capacity of the lists; failure does no harm. */
 static void fit(he_progressive *mesh)
 {
     he_progressive_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);

@@ -1,5 +1,5 @@
-/* GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: which token a request has, a ticket in
- * its place, and reading the file of tokens again. */
+/* GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: the token of a request, a ticket that
+ * replaces it, and reading the file of tokens again. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where no tokens are asked for, everybody is what an admin is. */
+/* Without tokens every client is an admin. */
 void api_token_get(api_exchange *x)
 {
     const api_token *token = x->token;
@@ -38,7 +38,7 @@ void api_token_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-/* A raw path with its query, as it will stand in a request line, of a GET. */
+/* Checks a raw path with its query, as it will appear in the request line of a GET. */
 static bool check_target(api_exchange *x, const api_in *in, const char *target)
 {
     const size_t most = API_MAX_URI - sizeof "?" API_TICKET - API_TOKEN_TEXT;

@@ -5,7 +5,7 @@
 #include "query/topology.h"
 #include "query/traverse.h"
 
-/* Answer 200 with what `write` puts into an object that begins with the revision. */
+/* Answers 200 with an object that has the revision and what `write` adds. */
 static void answer(api_exchange *x, bool (*write)(api_exchange *x, const he_mesh *mesh))
 {
     api_out_object_begin(&x->out);

@@ -1,4 +1,4 @@
-/* PUT, PATCH and DELETE .../attributes/{domain}/{name}: edits like any other. */
+/* PUT, PATCH and DELETE .../attributes/{domain}/{name}: they are edits. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -11,20 +11,20 @@
 
 #include <string.h>
 
-/* A request between decoding and answer. */
+/* State of a request between decoding and answer. */
 typedef struct writing {
-    api_text body; /* of a PUT */
+    api_text body; /* body of a PUT */
     api_document document;
     api_in root, expected;
     bool has_expected, dry_run, octets;
-    he_column *column;     /* what PUT makes, until it is the mesh's */
+    he_column *column;     /* the new column of a PUT, until the mesh owns it */
     unsigned char *values; /* packed rows */
     size_t count;
-    bool same; /* one value for all */
-    api_in at; /* where a refusal about the values points */
+    bool same; /* `values` is one value for all elements */
+    api_in at; /* place of the values, for refusals */
     bool has_at;
-    bool effect;        /* the values differ from those there were */
-    size_t revision_at; /* in the answer, which is told by the commit */
+    bool effect;        /* the new values differ from the old ones */
+    size_t revision_at; /* position in the answer of the revision, which is known at the commit */
 } writing;
 
 static void free_writing(void *state)
@@ -52,8 +52,8 @@ static writing *begin(api_exchange *x)
 
 /* --- publishing --- */
 
-/* The whole answer is written before anything is published, so that no failure follows it; but the
- * revision, which the commit tells. */
+/* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
+ * revision is filled in later. */
 static bool write_answer(api_exchange *x, writing *w)
 {
     const he_mesh *mesh = x->write.content;
@@ -79,7 +79,7 @@ static bool write_answer(api_exchange *x, writing *w)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* Ends what api_write_begin began, after `good` work. */
+/* Commits the write of api_write_begin if the work was `good`, else aborts it. */
 static void publish(api_exchange *x, writing *w, const char *op, int status, bool good)
 {
     he_error err = {0};
@@ -119,7 +119,7 @@ static he_mesh *write_begin(api_exchange *x, writing *w)
     return begun ? x->write.content : NULL;
 }
 
-/* A refusal about the values: 422, since it takes this mesh to see it. */
+/* Refuses values with 422, since they are wrong for this mesh only. */
 static bool refuse_values(api_exchange *x, const writing *w, const he_error *err)
 {
     api_fail_core(x, err);
@@ -132,7 +132,7 @@ static bool refuse_values(api_exchange *x, const writing *w, const he_error *err
     return false;
 }
 
-/* --- members that PUT and PATCH share --- */
+/* --- members of PUT and PATCH --- */
 
 static bool read_common(writing *w, const api_in *root)
 {
@@ -141,7 +141,7 @@ static bool read_common(writing *w, const api_in *root)
     return !api_in_find(root, "dry_run", &dry) || api_in_bool(&dry, &w->dry_run);
 }
 
-/* "values" or "value"; neither is told by a NULL w->values. */
+/* Reads "values" or "value"; leaves w->values NULL if there is neither. */
 static bool read_values(writing *w, const api_in *root, const he_column *column)
 {
     api_in one;
@@ -175,8 +175,8 @@ static bool refuse_body(api_exchange *x, const writing *w)
                     (unsigned long long)body_cap(w), w->octets ? "" : ": octets may have more");
 }
 
-/* The most octets a good body can have bound what is kept. They are known before it comes where the
- * mesh is in memory. */
+/* Limits the body to the size of valid octets. It is known before the body arrives if the mesh is
+ * in memory. */
 static void set_maximum(api_exchange *x, writing *w)
 {
     uint64_t most = body_cap(w);
@@ -280,7 +280,8 @@ static bool decode_octets(api_exchange *x, writing *w)
     return true;
 }
 
-/* One value for each live element, one for all of them, all rows as octets, or the default. */
+/* Fills the column: one value for each live element, one for all of them, all rows as octets, or
+ * the default. */
 static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
 {
     he_column *column = w->column;
@@ -348,7 +349,7 @@ void api_attribute_put(api_exchange *x)
 
 /* --- PATCH --- */
 
-/* The ids a request names; NULL for all. */
+/* Reads the ids that a request names; NULL: all. */
 static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uint32_t **ids,
                      size_t *count)
 {
@@ -367,7 +368,7 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
     return api_in_ids(in, 1, &x->arena, ids, count);
 }
 
-/* The pointer of a refused element is the last place that names it. */
+/* Sets the pointer of a refusal to the last place that names the element. */
 static void point_at_id(const api_exchange *x, const api_in *ids)
 {
     api_in child, found;

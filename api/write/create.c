@@ -7,7 +7,7 @@
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 
-/* Both routes read alike; what differs is where the mesh goes. */
+/* Both routes read the body in one way; they differ in where the mesh is stored. */
 static void body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->problem.code == HE_OK) {
@@ -15,7 +15,7 @@ static void body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* An id that will be refused spares the client its body. */
+/* Refuses an invalid id before the client sends the body. */
 void api_meshes_create_begin(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
@@ -29,7 +29,7 @@ void api_meshes_create_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* A PUT is as good where the mesh was removed while it came: go on as if it had never been. */
+/* If the mesh was deleted while the body of a PUT arrived, the PUT creates it instead. */
 static bool forget_removed(api_exchange *x)
 {
     if (x->problem.code != API_NO_SUCH_MESH) {
@@ -41,10 +41,10 @@ static bool forget_removed(api_exchange *x)
     return true;
 }
 
-/* Preconditions that fail already spare the client its body. */
+/* Refuses failed preconditions before the client sends the body. */
 void api_mesh_put_begin(api_exchange *x)
 {
-    bool good = x->is_cold; /* which is known when the body is whole */
+    bool good = x->is_cold; /* a mesh on disk is checked after the body */
     if (x->mesh != NULL) {
         good = (!x->info.busy || api_fail_store(x, ST_BUSY)) && api_preconditions_hold(x, NULL);
     } else if (!x->is_cold) {
@@ -60,7 +60,7 @@ void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* A mesh on its way into the store, and what is known of it before others can change it. */
+/* A new mesh before it is stored, with facts computed before other requests can change it. */
 typedef struct made {
     he_mesh *mesh;
     api_summary summary;
@@ -81,14 +81,14 @@ static bool build(api_exchange *x, made *out)
     return true;
 }
 
-/* The name that a mesh is made with. */
+/* Returns the name of a new mesh. */
 static const char *first_name(const api_exchange *x)
 {
     const char *name = api_upload_name(x);
     return name == NULL ? "" : name;
 }
 
-/* Takes `mesh` on success. `id` NULL lets the store choose. */
+/* Stores the mesh; takes `mesh` on success. `id` NULL: the store chooses one. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     return api_mesh_new(x, id, first_name(x), mesh, NULL, &x->mesh);
@@ -110,7 +110,7 @@ static void create(api_exchange *x)
     }
 }
 
-/* Nothing of a damaged mesh stays but its id, and its name where none is given. */
+/* Replaces a damaged mesh. It keeps its id, and its name unless the request has one. */
 static bool replace_damaged(api_exchange *x, const made *m)
 {
     st_mesh *fresh = NULL;
@@ -138,7 +138,7 @@ static bool replace_damaged(api_exchange *x, const made *m)
     return status != ST_ABSENT;
 }
 
-/* False, with nothing done, where the mesh was removed meanwhile. */
+/* Replaces the content. Returns false, with nothing changed, if the mesh was deleted meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
     if (st_unreadable(x->mesh) != ST_OK) {
@@ -173,8 +173,8 @@ static bool replace(api_exchange *x, const made *m)
     return true;
 }
 
-/* Make the mesh under the id of the path. False, with nothing done, where it exists by now: then
- * x->mesh is it. */
+/* Creates the mesh under the id of the path. Returns false, with nothing changed, if the mesh
+ * exists by now; x->mesh is then a reference to it. */
 static bool create_named(api_exchange *x, const made *m)
 {
     if (!api_precondition_absent(x)) {
@@ -197,8 +197,8 @@ static bool create_named(api_exchange *x, const made *m)
     return true;
 }
 
-/* The mesh may come and go while the body does: replace it or make it, whichever holds when it is
- * tried. */
+/* The mesh may be created or deleted by other requests meanwhile, so this tries to replace and to
+ * create it in turn. */
 static void put(api_exchange *x)
 {
     made m;

@@ -5,18 +5,18 @@
 
 #include <string.h>
 
-/* What one decoding carries along. */
+/* State of decoding one operation. */
 typedef struct decoder {
     const api_in *object;
     const api_references *references;
-    const he_mesh *mesh; /* NULL while sets are not looked up */
+    const he_mesh *mesh; /* NULL: sets are not looked up */
     const api_meshes *meshes;
     api_arena *arena;
     const he_op *op;
     api_call *call;
 } decoder;
 
-/* An id, or what a reference stands for: `found` is either. */
+/* Reads an id into `one`, or a reference's ids into `found`. */
 static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_t *one,
                        api_found *found)
 {
@@ -55,7 +55,7 @@ static bool decode_element(const decoder *d, const he_param *param, const api_in
     return true;
 }
 
-/* Two passes: the lists that references put in make the length known only after looking. */
+/* Two passes: the first adds up the length, because references may insert lists. */
 static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, min, SIZE_MAX)) {
@@ -227,7 +227,7 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_MATRIX:
         return decode_matrix(in, arg);
     case HE_PARAM_CYCLE:
-        /* Too few corners is a refusal of the operation, not of the document. */
+        /* Too few corners are refused by the operation, not by the decoder. */
         return decode_list(d, param->kind, 0, in, arg);
     case HE_PARAM_TEXT:
         return api_in_string(in, SIZE_MAX, &arg->text);
@@ -239,7 +239,8 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     return api_in_fail(in, API_INTERNAL, "a parameter has no type");
 }
 
-/* The parameter a member names; `*plural` says by which of its names. -1 when none. */
+/* Returns the index of the parameter that a member names, or -1; `*plural` says whether by its
+ * plural. */
 static int find_param(const he_op *op, const char *name, bool *plural)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
@@ -307,7 +308,7 @@ static bool decode_member(const decoder *d, const char *const *also, const api_i
     return decode_value(d, &d->op->params[i], in, plural, arg);
 }
 
-/* Is every required parameter there, and of each group of alternatives at most one? */
+/* Checks that all required parameters are given, and at most one of each group of alternatives. */
 static bool check_given(const decoder *d)
 {
     for (size_t i = 0; i < he_op_params(d->op); i++) {
@@ -343,7 +344,7 @@ static bool check_given(const decoder *d)
     return true;
 }
 
-/* A list of points goes with a list of elements, one for each. */
+/* Checks that a list of points is as long as the list of elements that it belongs to. */
 static bool check_points(const decoder *d)
 {
     size_t elements = 0;

@@ -11,7 +11,7 @@ void api_edit_cost_clear(api_edit_cost *cost)
     }
 }
 
-/* Beyond the most that a worker may look at it is enough to know that there are more. */
+/* Adds one id. Above what a worker may visit it is enough to know that there are more. */
 static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
     he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;
@@ -42,7 +42,8 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
     return status;
 }
 
-/* Steps about the origin of `first`, or around its face or hole; at most `most`. */
+/* Returns the steps around the origin of `first`, or (`turn` is false) around its face or hole; at
+ * most `most`. */
 static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most)
 {
     he_halfedge h = first;
@@ -54,8 +55,8 @@ static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_
     return count;
 }
 
-/* A hole is as long as it likes beside an edge that is split; only what names one of its half-edges
- * goes around it. */
+/* Splitting an edge does not walk around the hole beside it, however long that is; only an
+ * operation that names a half-edge of the hole does. */
 static uint64_t about_edge(const he_mesh *mesh, he_edge e, bool holes, uint64_t most)
 {
     uint64_t count = 0;
@@ -89,7 +90,7 @@ static uint64_t about(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
     return 0;
 }
 
-/* Corners of the faces about a vertex, and its edges at holes. */
+/* Returns the corners of the faces around a vertex, plus its edges at holes. */
 static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
 {
     he_halfedge first = he_vertex_halfedge(mesh, v), h = first;
@@ -104,7 +105,7 @@ static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     return count;
 }
 
-/* Edges at the corners of a loop, or corners of the faces about them. */
+/* Returns the edges at the corners of a loop, or (`faces`) the corners of the faces around them. */
 static uint64_t along(const he_mesh *mesh, he_halfedge first, bool faces, uint64_t most)
 {
     he_halfedge h = first;
@@ -142,7 +143,7 @@ static uint64_t reach(const he_mesh *mesh, he_kind kind, uint32_t id, uint64_t m
     return count;
 }
 
-/* Of a list of one kind, added to `total` until that is more than `most`. */
+/* Sums `count` over ids of one kind, starting from `total`, until the sum exceeds `most`. */
 static uint64_t add_all(const he_mesh *mesh, he_kind kind, const he_ids *ids,
                         uint64_t (*count)(const he_mesh *mesh, he_kind kind, uint32_t id,
                                           uint64_t most),
@@ -170,18 +171,18 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
     return total > most;
 }
 
-/* --- what a list of operations is charged --- */
+/* --- the charges of a list of operations --- */
 
-/* Rings and loops of fewer steps are not remembered. */
+/* Smaller degrees are not cached. */
 enum { HUB = 256 };
 
-/* Steps about a vertex, or around the face of `first`. */
+/* Returns the steps around a vertex, or around the face of `first`, from the cache if possible. */
 static uint64_t hub_steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most,
                           api_hubs *hubs)
 {
     uint32_t id = turn ? he_origin(mesh, first).i : he_face_of(mesh, first).i;
     if (id >= HE_MAX_ROWS) {
-        return steps(mesh, first, turn, most); /* of a hole, which has no id */
+        return steps(mesh, first, turn, most); /* a hole has no id to cache it by */
     }
     uint32_t key = 2 * id + 2 + (turn ? 0 : 1);
     size_t slot = key / 2 % (sizeof hubs->slots / sizeof hubs->slots[0]);
@@ -211,7 +212,7 @@ static uint64_t walk_about_edge(const he_mesh *mesh, he_edge e, bool holes, uint
     return count;
 }
 
-/* Around the corners of a face but the origin of h. */
+/* Returns the steps around all corners of a face except the origin of h. */
 static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t most,
                                    api_hubs *hubs)
 {
@@ -222,7 +223,7 @@ static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t 
     return count;
 }
 
-/* What a face that is sorted, compared and linked anew takes beside a step. */
+/* What sorting, comparing and relinking one face takes, in steps. */
 enum { FACE_STEPS = 250 };
 
 static uint64_t walk_about_faces(const he_mesh *mesh, he_vertex v, uint64_t most, api_hubs *hubs)
@@ -286,8 +287,8 @@ uint64_t api_edit_cost_steps(const api_call *call, const he_mesh *mesh, uint64_t
             count += walk_about(mesh, param, arg->ids[j], most, hubs);
         }
     }
-    /* An operation walks over no part of the mesh more than a few times, however often its
-     * elements have it about them. */
+    /* An operation walks over no part of the mesh more than a few times, even if many of its
+     * elements have that part around them. */
     uint64_t all = 8 * (uint64_t)he_mesh_count(mesh, HE_HALFEDGE);
     return count < all ? count : all;
 }

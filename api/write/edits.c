@@ -12,47 +12,48 @@
 
 #include <string.h>
 
-/* A request between decoding and answer. */
+/* State of a request between decoding and answer. */
 typedef struct edits {
-    api_in list; /* the array of operations; unused when there is one */
-    api_item op; /* of it, the one at hand */
+    api_in list; /* cursor at the array of operations; unused for a single one */
+    api_item op; /* the current item of the list */
     bool is_list;
     size_t count;
     api_in expected;
     bool has_expected;
     bool dry_run;
-    size_t whole;             /* operations that cost the mesh */
-    uint64_t passes;          /* over the mesh that they take as long as */
-    double growth;            /* by how many times they make it larger, all in all */
-    uint64_t elements_beside; /* of the other meshes that are named */
-    bool costly, claims;      /* where it is to run: api_edits_cost */
+    size_t whole;             /* operations on the whole mesh */
+    uint64_t passes;          /* how many passes over the mesh they take */
+    double growth;            /* the factor by which they enlarge the mesh together */
+    uint64_t elements_beside; /* elements of the other meshes */
+    bool costly, claims;      /* where it runs: see api_edits_cost */
     double seconds;
     api_edit_cost cost;
-    uint64_t looked_at; /* elements, by the operations so far: see API_MAX_EDITS_ELEMENTS */
-    uint64_t steps;     /* about hubs, by the operations so far */
-    uint64_t work;      /* of both, in the unit of API_POOL_EDITS */
-    uint64_t most_work; /* more belongs elsewhere */
-    bool exceeded;      /* it would be more */
-    size_t most_rows;   /* of the delta; more belong to a claim */
-    bool crowded;       /* they are more */
-    uint64_t paid;      /* looks at its watch that the operation at hand was charged for */
-    uint64_t look;      /* what another one costs */
-    bool unlimited;     /* there is no better place than this thread */
-    he_watch told;      /* x->watch, which x->watch passes on to meanwhile */
+    uint64_t looked_at; /* elements charged so far: see API_MAX_EDITS_ELEMENTS */
+    uint64_t steps;     /* steps around vertices of high degree so far */
+    uint64_t work;      /* both together, in the unit of API_POOL_EDITS */
+    uint64_t most_work; /* a list with more work runs elsewhere */
+    bool exceeded;      /* `most_work` would be exceeded */
+    size_t most_rows;   /* rows of the delta; a list with more needs a claim */
+    bool crowded;       /* `most_rows` was exceeded */
+    uint64_t paid;      /* polls of the watch that the current operation has paid for */
+    uint64_t look;      /* work charged for each further poll */
+    bool unlimited;     /* this thread may do any amount of work */
+    he_watch told;      /* the original x->watch, to which the replacement forwards */
     api_hubs hubs;
     api_names names;
     api_others others;
-    api_arena scratch; /* arguments of the operation at hand */
+    api_arena scratch; /* arguments of the current operation */
     api_text results;  /* objects of `results`, comma-separated */
-    api_out out;       /* writes them */
+    api_out out;       /* writes `results` */
     char ops[ST_ENTRY_OPS];
-    uint32_t ran[API_MOST_OPERATIONS]; /* operations that did, by number */
-    size_t at;                         /* number of the operation at hand; API_OPERATIONS: none */
-    bool effect;                       /* the operations came to something */
-    size_t revision_at;                /* in the answer, which is told by the commit */
+    uint32_t ran[API_MOST_OPERATIONS]; /* how often each operation ran, by its number */
+    size_t at;                         /* number of the current operation; API_OPERATIONS: none */
+    bool effect;                       /* the operations changed something */
+    size_t revision_at; /* position in the answer of the revision, which is known at the commit */
 } edits;
 
-/* Of a long edit: the copy, then the operations, then what they changed; and the answer. */
+/* Progress of a long edit after copying, after the operations, and after finding the changes; the
+ * rest is writing the answer. */
 static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
 
 static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
@@ -70,7 +71,7 @@ static void free_edits(void *state)
     he_mem_free(e);
 }
 
-/* Append an operation's name to the text of the history, or dots where no more fit. */
+/* Appends an operation's name to the text in the history, or dots if it does not fit. */
 static void note_name(edits *e, const char *name)
 {
     static const char more[] = ",...";
@@ -112,7 +113,7 @@ static bool note(edits *e, const api_in *in, const api_call *call)
            api_problem_set_core(in->problem, &err);
 }
 
-/* All that is wrong with the document itself is found before the first operation runs. */
+/* Finds all mistakes in the document before the first operation runs. */
 static bool check_ops(const api_exchange *x, edits *e)
 {
     api_call call;
@@ -147,7 +148,7 @@ static bool read_request(api_exchange *x, edits *e)
         return false;
     }
     e->is_list = api_in_find(root, "ops", &e->list);
-    /* The array is empty here: its items were left in the text. */
+    /* The array is empty here: its items are read from the text. */
     e->count = e->is_list ? x->ops.count : 1;
     if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
                        !check_count(&e->list, e->count))) {
@@ -160,7 +161,7 @@ static bool read_request(api_exchange *x, edits *e)
     return (e->dry_run || api_gate_may_change(x)) && check_ops(x, e);
 }
 
-/* Elements in number beyond which it does not matter how many more there are. */
+/* Above this number of elements the exact number does not matter. */
 static const double MANY = 1e12;
 
 static uint64_t issued(const he_mesh *mesh)
@@ -169,7 +170,7 @@ static uint64_t issued(const he_mesh *mesh)
            he_mesh_issued(mesh, HE_FACE);
 }
 
-/* A list of few bytes may ask for the whole mesh as often as it has operations, and for one hub. */
+/* A short list may name the whole mesh in every operation, or one vertex of high degree. */
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
@@ -187,10 +188,10 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     return true;
 }
 
-/* Looks that an operation takes at its watch however small it is. */
+/* Polls of the watch that even the smallest operation makes. */
 enum { PHASES = 24 };
 
-/* Charge one operation. False where it and those before it belong on another thread. */
+/* Charges one operation. Returns false if the list must continue on another thread. */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
 {
     bool whole = he_op_is_whole(call->op, call->args);
@@ -215,7 +216,7 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
 }
 
 typedef struct attribute_count {
-    size_t columns, labels; /* labels of the one that has most */
+    size_t columns, labels; /* labels of the attribute with the most */
 } attribute_count;
 
 static attribute_count count_attributes(const he_mesh *mesh)
@@ -232,8 +233,8 @@ static attribute_count count_attributes(const he_mesh *mesh)
     return count;
 }
 
-/* What an operation adds counts like what a request brings: another mesh does, a first material,
- * corners that a weld keeps apart. */
+/* Limits attributes that an operation adds like those that a request adds: they may come from
+ * another mesh, a first material, or corners that a weld keeps apart. */
 static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
 {
     attribute_count after = count_attributes(mesh);
@@ -248,7 +249,7 @@ static bool within_attributes(attribute_count before, const he_mesh *mesh, const
     return true;
 }
 
-/* Run one operation and write its results. The pointer of a refusal is the operation. */
+/* Runs one operation and writes its results. The pointer of a refusal is that of the operation. */
 static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta,
                    const api_in *in)
 {
@@ -281,7 +282,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* A list looks at its watch after so many operations or so much work, which takes a system call. */
+/* A poll takes a system call, so a list polls once per this many operations or this much work. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
@@ -310,8 +311,8 @@ static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *de
     return true;
 }
 
-/* The whole answer is written before anything is published, so that no failure follows it; but the
- * revision, which the commit tells. */
+/* Writes the whole answer before the commit, so that no failure can follow the commit. Only the
+ * revision is filled in later. */
 static bool write_answer(api_exchange *x, edits *e)
 {
     api_out *out = &x->out;
@@ -331,7 +332,7 @@ static bool write_answer(api_exchange *x, edits *e)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* A rehearsal tells the revision that there would be. */
+/* A dry run answers with the revision that the edit would have. */
 static void answer(api_exchange *x, const edits *e)
 {
     api_out_fill(&x->text, e->revision_at, x->info.revision + (e->dry_run && e->effect ? 1 : 0));
@@ -343,7 +344,7 @@ static void answer(api_exchange *x, const edits *e)
     }
 }
 
-/* What the operations make of x->write.content. True when that is to be committed. */
+/* Runs the operations on x->write.content. Returns true if the result shall be committed. */
 static bool edit(api_exchange *x, edits *e)
 {
     he_mesh *mesh = x->write.content;
@@ -358,20 +359,21 @@ static bool edit(api_exchange *x, edits *e)
     if (e->results.failed) {
         return api_fail_memory(x);
     }
-    e->paid = UINT64_MAX; /* what follows depends on the rows of the delta, which were counted */
+    /* the rest of the work is limited by the rows of the delta, which were charged */
+    e->paid = UINT64_MAX;
     he_watch_span(&x->watch, CHANGES_SHARE);
     if (st_write_changes(&x->write, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
-    /* An edit without effect makes no revision, unless it used up ids that its answer names. */
+    /* An edit without effect makes no revision, unless its answer names ids that it used up. */
     e->effect = !he_changes_none(&x->write.changes) || issued(mesh) != ids;
     return write_answer(x, e) && e->effect && !e->dry_run;
 }
 
 /* --- work that turns out to be long --- */
 
-/* What an operation will take is not always known before: flips spread. It looks at its watch every
- * HE_WATCH_STRIDE elements, and looks beyond those that it was charged for are charged. */
+/* The work of some operations is not known in advance: flips spread. An operation polls its watch
+ * every HE_WATCH_STRIDE elements, and polls beyond those it has paid for are charged here. */
 static bool tell_and_charge(void *context, const char *phase, double done)
 {
     edits *e = context;
@@ -384,7 +386,7 @@ static bool tell_and_charge(void *context, const char *phase, double done)
     return !e->exceeded && (e->told.tell == NULL || e->told.tell(e->told.context, phase, done));
 }
 
-/* Until unlimit_work no more is done than this thread has time for. */
+/* Limits the work to what this thread may do, until unlimit_work. */
 static void limit_work(api_exchange *x, edits *e)
 {
     e->most_work = e->unlimited                 ? UINT64_MAX
@@ -404,7 +406,7 @@ static void unlimit_work(api_exchange *x, const edits *e)
     x->watch.cancelled = x->watch.cancelled && !e->exceeded;
 }
 
-/* A list that was rolled back, as if it had not begun. */
+/* Resets a list that was rolled back. */
 static void start_over(edits *e)
 {
     e->looked_at = e->steps = e->work = 0;
@@ -423,8 +425,8 @@ static void go_on_elsewhere(api_exchange *x, edits *e);
 
 /* --- long edits --- */
 
-/* For the metrics. Of operations that were taken back with the one that was refused, that one
- * alone. */
+/* Counts operations for the metrics. If one was refused, only that one is counted: the others were
+ * rolled back. */
 static void count_operations(const api_exchange *x, const edits *e)
 {
     api_metrics *metrics = x->service->metrics;
@@ -443,7 +445,8 @@ static void count_operations(const api_exchange *x, const edits *e)
     }
 }
 
-/* What the first operation is bound to be refused for: nothing changes the mesh before it. */
+/* Refuses the request if its first operation is sure to fail: nothing changes the mesh before
+ * it. */
 static bool foresee(api_exchange *x, edits *e)
 {
     const api_in *in = e->is_list ? &e->op.in : &x->root;
@@ -465,13 +468,13 @@ static bool foresee(api_exchange *x, edits *e)
     return false;
 }
 
-/* Before the client is answered, so that it knows whether the mesh is its own. */
+/* Claims the mesh before the client gets 202, so that a conflict is reported at once. */
 static bool claim(api_exchange *x, edits *e)
 {
     return api_write_claim(x, e->has_expected ? &e->expected : NULL) && foresee(x, e);
 }
 
-/* Ends what limit_work began; `good`: the write is to be committed. */
+/* Ends what limit_work began; `good`: commit the write. */
 static void end_edit(api_exchange *x, edits *e, bool good)
 {
     if (good) {
@@ -496,7 +499,7 @@ static void run_claimed(api_exchange *x)
 {
     edits *e = x->state;
     he_error err = {0};
-    /* There is no better place than a job, and none where the client would rather wait. */
+    /* Nothing is left to move to in a job, or if the client prefers to wait. */
     e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
     he_watch_span(&x->watch, COPY_SHARE);
     if (!api_others_take(x, &e->others)) {
@@ -514,12 +517,12 @@ static void run_claimed(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* From a worker to the pool, from there to a job. With many rows from either to a claim. */
+/* Moves the list from a worker to the pool, or from there to a job; with many rows, to a claim. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;
     bool crowded = e->crowded;
-    x->problem = (api_problem){.code = HE_OK}; /* of what was ended, if any */
+    x->problem = (api_problem){.code = HE_OK}; /* the problem of the attempt that was rolled back */
     start_over(e);
     if (crowded) {
         if (claim(x, e)) {
@@ -549,9 +552,9 @@ static void run(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* A list of many operations, or one that costs the mesh or a huge element of it, belongs on a
- * thread that may block; what costs a really large mesh must not keep it locked. Which thread that
- * is, the handler says: a claim is to be made before the client is answered. */
+/* A list of many operations, or one that visits the whole mesh or a huge element, belongs on a
+ * thread that may block. Work on a really large mesh must not keep it locked. The handler chooses
+ * the thread, because a claim must be made before the client is answered. */
 bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     edits *e = x->state;

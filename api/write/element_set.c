@@ -43,7 +43,7 @@ bool api_find_set(const api_in *in, const char *name, const he_mesh *mesh, he_ki
     }
     size_t found = 0;
     for (size_t i = 0; i < column->rows; i++) {
-        found += column->data[i] != 0; /* a dead row holds the default */
+        found += column->data[i] != 0; /* dead rows hold the default, false */
     }
     uint32_t issued = he_mesh_issued(mesh, kind);
     found = column->fallback[0] ? issued : found;

@@ -5,8 +5,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* The slot where the name is, or where it would be put. The table is never full. The key is not
- * known outside, so that nobody can choose names that meet. */
+/* Returns the slot of the name, or the empty one where it belongs. The table is never full. The key
+ * is secret, so that clients cannot choose colliding names. */
 static size_t find_slot(const api_names *names, const char *text, size_t length)
 {
     size_t slot = (size_t)he_siphash_of(names->secret, text, length) & (names->table_size - 1);
@@ -29,7 +29,7 @@ static api_name *find_name(const api_names *names, const char *text, size_t leng
     return entry == 0 ? NULL : &names->names[entry - 1];
 }
 
-/* "0", "17", without signs or leading zeros; -1 where it is none. */
+/* Reads an index such as "0" or "17", without sign or leading zeros. Returns -1 otherwise. */
 static int64_t read_index(const char *text)
 {
     int64_t value = 0;
@@ -126,7 +126,7 @@ void api_names_clear(api_names *names)
     api_names_init(names, names->secret);
 }
 
-/* Keep the table at most half full. */
+/* Keeps the table at most half full. */
 static bool grow(api_names *names)
 {
     if (names->count == names->capacity) {

@@ -3,14 +3,14 @@
 
 #include "api/event/changes.h"
 
-/* A request between decoding and answer. */
+/* State of a request between decoding and answer. */
 typedef struct steps {
     st_action which;
     api_in expected, to;
     bool has_expected;
-    uint64_t revision; /* to that of `to`; 0: by count */
+    uint64_t revision; /* revision that `to` names; 0: undo by count */
     uint32_t count;
-    size_t revision_at, undo_at, redo_at; /* in the answer */
+    size_t revision_at, undo_at, redo_at; /* positions in the answer */
 } steps;
 
 static const char *const members[] = {"expected_revision", "steps", "to_revision", NULL};
@@ -69,8 +69,9 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
     }
 }
 
-/* What all steps come to; none when there are none. Written before they are committed, so that no
- * failure follows; but the numbers that the commit tells. */
+/* Writes the changes of all steps together, none if there are no steps. It is written before the
+ * commit, so that no failure can follow; only numbers that are known at the commit are filled in
+ * later. */
 static bool write_answer(api_exchange *x, steps *s)
 {
     api_out *out = &x->out;
@@ -89,7 +90,7 @@ static bool write_answer(api_exchange *x, steps *s)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* Takes `count` steps and writes the answer. False with the problem filled. */
+/* Makes `count` steps and writes the answer. Returns false with the problem filled. */
 static bool take(api_exchange *x, steps *s, uint32_t count)
 {
     st_status status = count == 0 ? ST_OK : st_write_step(&x->write, s->which, count);
