@@ -107,7 +107,7 @@ STAMPS     := build/.stamps
 
 # TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
 # `make test TESTS=tests/web/rows.test.mjs`.
-TESTS   ?= $(SUITES) fuzz web install soak hostile durable lint
+TESTS   ?= $(SUITES) transport fuzz web install soak hostile durable lint
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web tests/web/%,$(TESTS))
 WITH_FUZZ = $(filter fuzz,$(TESTS))
@@ -116,9 +116,13 @@ WITH_SOAK = $(filter soak,$(TESTS))
 WITH_HOSTILE = $(filter hostile,$(TESTS))
 WITH_DURABLE = $(filter durable,$(TESTS))
 WITH_LINT = $(filter lint,$(TESTS))
+WITH_TRANSPORT = $(filter transport,$(TESTS))
+# TRANSPORT=tls or unix has the daemons of e2e reached like that; these programs always are.
+export TRANSPORT
+TRANSPORTED = $(addprefix $(BUILD)/tests/e2e/test_,vertical history tokens limits metrics proxy service)
 # What a narrower choice asks does not reach every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
-WITH_DAEMON = $(filter e2e web install soak hostile durable tests/e2e/% tests/web/%,$(TESTS))
+WITH_DAEMON = $(filter e2e transport web install soak hostile durable tests/e2e/% tests/web/%,$(TESTS))
 
 # --- what must be installed ----------------------------------------------------------------
 # The sets of .ci/deps that each target needs. A target asks for all of them in one call before
@@ -273,7 +277,7 @@ $(STAMPS)/page: $(PAGE_FILES) $(STAMPS)/modules
 
 TEST_NEEDS = $(if $(WITH_DAEMON)$(WITH_LINT),$(HEDGED)) $(if $(WITH_WEB)$(WITH_INSTALL),page) \
              $(if $(WITH_TRAFFIC),$(STAMPS)/modules) $(if $(WITH_FUZZ),$(FUZZERS)) \
-             $(if $(WITH_DURABLE),$(FAULTS) $(DAMAGE))
+             $(if $(WITH_DURABLE),$(FAULTS) $(DAMAGE)) $(if $(WITH_TRANSPORT),$(TRANSPORTED))
 
 programs: $(PROGRAMS) ## all test programs, without running them
 
@@ -286,14 +290,15 @@ ready: built $(BUILD)/tests/crosscheck/peers $(STAMPS)/openapi | $(INSTALLED) ##
 
 test: built | $(INSTALLED) ## all tests, with their counts
 	@BUILD=$(BUILD) HEDGED=$(abspath $(HEDGED)) FUZZ=$(abspath $(BUILD)/tests/fuzz) \
+	    TRANSPORTED="$(TRANSPORTED)" \
 	    sh .ci/run-tests $(BUILD)/logs $(if $(filter web,$(TESTS)),--web) \
 	    $(if $(WITH_TRAFFIC),--traffic) $(CHOSEN) $(filter tests/web/%,$(TESTS)) \
 	    $(if $(WITH_FUZZ),tests/fuzz/replay.sh) $(if $(WITH_INSTALL),tests/install.sh) \
-	    $(if $(WITH_LINT),tests/lint.sh) \
+	    $(if $(WITH_TRANSPORT),tests/transport.sh) $(if $(WITH_LINT),tests/lint.sh) \
 	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh) \
 	    $(if $(WITH_DURABLE),tests/durable.sh)
 
-ASAN_TESTS = $(filter-out web tests/web/% install soak hostile durable lint,$(TESTS))
+ASAN_TESTS = $(filter-out transport web tests/web/% install soak hostile durable lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" test
 

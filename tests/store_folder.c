@@ -3,6 +3,8 @@
 #include "stored/stored.h"
 
 #include <assert.h>
+#include <dirent.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,9 +12,8 @@
 
 /* --- folders --- */
 
-static const char *const files[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark",
-                                    "ballast",  "lock",         "fresh"};
-enum { FILES = sizeof files / sizeof *files, COPIED = 4 };
+static const char *const copied[] = {"hedge.db", "hedge.db-wal", "hedge.db-shm", "hedge.mark"};
+enum { COPIED = sizeof copied / sizeof *copied };
 
 void folder_make(char out[FOLDER_PATH])
 {
@@ -26,10 +27,12 @@ void folder_make(char out[FOLDER_PATH])
 
 void folder_remove(const char *folder)
 {
-    char path[2 * FOLDER_PATH];
-    for (size_t i = 0; i < FILES; i++) {
-        (void)snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-        (void)unlink(path);
+    DIR *open_folder = opendir(folder);
+    for (struct dirent *e; open_folder != NULL && (e = readdir(open_folder)) != NULL;) {
+        (void)unlinkat(dirfd(open_folder), e->d_name, 0); /* "." and ".." are refused */
+    }
+    if (open_folder != NULL) {
+        (void)closedir(open_folder);
     }
     (void)rmdir(folder);
 }
@@ -69,9 +72,9 @@ void folder_copy(const char *from, const char *to)
 {
     for (size_t i = 0; i < COPIED; i++) {
         size_t size;
-        unsigned char *bytes = folder_read(from, files[i], &size);
-        if (bytes != NULL && strcmp(files[i], "hedge.db-shm") != 0) {
-            folder_write(to, files[i], bytes, size);
+        unsigned char *bytes = folder_read(from, copied[i], &size);
+        if (bytes != NULL && strcmp(copied[i], "hedge.db-shm") != 0) {
+            folder_write(to, copied[i], bytes, size);
         }
         free(bytes);
     }

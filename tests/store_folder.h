@@ -10,7 +10,7 @@ enum { FOLDER_PATH = 256 };
 
 /* Makes an empty folder of its own. */
 void folder_make(char out[FOLDER_PATH]);
-/* Removes it with the files of a store in it. */
+/* Removes it with the files in it. */
 void folder_remove(const char *folder);
 /* Copies the files of a store as they are, which is what a killed process leaves. */
 void folder_copy(const char *from, const char *to);

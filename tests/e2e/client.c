@@ -1,5 +1,6 @@
 #include "tests/e2e/client.h"
 
+#include "tests/e2e/transport.h"
 #include "tests/traffic.h"
 
 #include <arpa/inet.h>
@@ -139,6 +140,8 @@ reply client_send(client *c, const char *method, const char *path, const void *b
     }
     if (c->trusted != NULL) {
         curl_easy_setopt(c->curl, CURLOPT_CAINFO, c->trusted);
+    } else if (transport_get() == TRANSPORT_TLS) {
+        curl_easy_setopt(c->curl, CURLOPT_CAINFO, transport_certificate());
     }
     struct curl_slist *list = header_list(headers, body != NULL);
     curl_easy_setopt(c->curl, CURLOPT_URL, url);
@@ -252,7 +255,7 @@ int client_connect(const daemon_process *d, int buffer)
     struct sockaddr_in address = {.sin_family = AF_INET,
                                   .sin_port = htons((uint16_t)daemon_port(d)),
                                   .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    int fd = socket(is_path ? AF_UNIX : AF_INET, SOCK_STREAM, 0);
+    int fd = socket(is_path ? AF_UNIX : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     assert_true(fd >= 0);
     if (buffer > 0) {
         assert_int_equal(setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer), 0);
@@ -263,7 +266,7 @@ int client_connect(const daemon_process *d, int buffer)
     } else {
         assert_int_equal(connect(fd, (struct sockaddr *)&address, sizeof address), 0);
     }
-    return fd;
+    return transport_get() == TRANSPORT_TLS ? transport_secure(fd, buffer) : fd;
 }
 
 /* How many whole answers are in what came, going by Content-Length. */

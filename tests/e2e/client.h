@@ -45,8 +45,9 @@ reply client_send(client *c, const char *method, const char *path, const void *b
 reply client_get(client *c, const char *path);
 reply client_post(client *c, const char *path, const char *json);
 
-/* A connection of one's own, which the caller closes. `buffer` is the size of its receive buffer, 0
- * for the usual one: a small one makes a client slow that does not read. */
+/* A connection of one's own, which the caller closes; over TLS the end of one that a thread
+ * encrypts (transport.h). `buffer` is the size of its receive buffer, 0 for the usual one: a small
+ * one makes a client slow that does not read. */
 int client_connect(const daemon_process *d, int buffer);
 
 /* Send bytes as they are on a connection of their own and read until the server closes it, or until

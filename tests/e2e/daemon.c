@@ -1,5 +1,7 @@
 #include "tests/e2e/daemon.h"
 
+#include "tests/e2e/transport.h"
+
 #include <errno.h>
 #include <pthread.h>
 #include <pty.h>
@@ -153,7 +155,8 @@ static bool find_url(daemon_process *d)
 
 static daemon_process *start(const char *const *arguments, outlet to)
 {
-    static const char *const own[] = {"--listen", "127.0.0.1:0", "--store", "memory", NULL};
+    const char *own[2 + TRANSPORT_OPTIONS] = {"--store", "memory"};
+    memcpy(own + 2, transport_options(), TRANSPORT_OPTIONS * sizeof *own);
     daemon_process *d = calloc(1, sizeof *d);
     assert_non_null(d);
     pthread_mutex_init(&d->lock, NULL);

@@ -6,9 +6,9 @@
 
 typedef struct daemon_process daemon_process;
 
-/* Start $HEDGED (build/hedged without) with --listen 127.0.0.1:0 --store memory and more
- * arguments, which end in NULL (or are NULL) and win over these, and wait until it says where it
- * listens. Fails the test when it does not. */
+/* Start $HEDGED (build/hedged without) with --store memory, a free port or path as transport.h
+ * says, and more arguments, which end in NULL (or are NULL) and win over these, and wait until it
+ * says where it listens. Fails the test when it does not. */
 daemon_process *daemon_start(const char *const *arguments);
 /* Start it with a terminal of its own as stderr, whose lines end as they are written. */
 daemon_process *daemon_start_on_terminal(const char *const *arguments);

@@ -2,6 +2,7 @@
  * each is what the daemon does, exports are read back, and no file that is refused costs memory.
  * Without the corpus there is nothing to show. */
 #include "tests/e2e/client.h"
+#include "tests/e2e/transport.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,11 @@ static void test_files_of_the_corpus(void **state)
     if (access(CHECKER, R_OK) != 0) {
         skip();
     }
+    transport_skip_over(TRANSPORT_UNIX, "the corpus' checker opens URLs alone");
     daemon_process *d = daemon_start(NULL);
+    if (transport_get() == TRANSPORT_TLS) {
+        assert_int_equal(setenv("SSL_CERT_FILE", transport_certificate(), 1), 0);
+    }
     char command[256], line[512], last[512] = "";
     snprintf(command, sizeof command, "python3 " CHECKER " --base %s --roundtrip --pid %d 2>&1",
              daemon_url(d), (int)daemon_pid(d));

@@ -1,6 +1,7 @@
 /* A daemon that speaks TLS, and one on a Unix socket: who gets through, and what a new certificate
  * does. */
 #include "tests/e2e/client.h"
+#include "tests/e2e/transport.h"
 #include "tests/store_folder.h"
 
 #include <setjmp.h>
@@ -34,20 +35,6 @@ static int shell(char *said, size_t size, const char *format, ...)
     size_t length = fread(said, 1, size - 1, pipe);
     said[length] = '\0';
     return pclose(pipe);
-}
-
-/* A new key and a certificate that it signed itself, of this name. */
-static void make_pair(const char *name, const char *to_certificate, const char *to_key)
-{
-    char said[2000];
-    int status = shell(said, sizeof said,
-                       "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes "
-                       "-keyout %s -out %s -days 2 -subj /CN=%s "
-                       "-addext subjectAltName=DNS:localhost,IP:127.0.0.1 2>&1",
-                       to_key, to_certificate, name);
-    if (status != 0) {
-        fail_msg("openssl: %s", said);
-    }
 }
 
 static void copy(const char *from, const char *to)
@@ -127,14 +114,14 @@ static void a_new_certificate_is_for_new_connections(void **state)
 {
     (void)state;
     char said[20000];
-    make_pair("before", certificate, key);
+    transport_make_pair("before", certificate, key);
     copy(certificate, first);
     daemon_process *d = start();
     client *c = client_new(d);
     client_trust(c, first);
     reply_done(reply_expect(200, client_get(c, "/livez")));
 
-    make_pair("after", certificate, key);
+    transport_make_pair("after", certificate, key);
     kill(daemon_pid(d), SIGHUP);
     free(daemon_wait_log(d, "new connections get the certificate", 1));
     s_client(d, "", said, sizeof said);
@@ -154,10 +141,10 @@ static void a_bad_pair_leaves_the_one_before_in_force(void **state)
     (void)state;
     char said[20000], other[FOLDER_PATH + 20];
     snprintf(other, sizeof other, "%s/other.pem", folder);
-    make_pair("kept", certificate, key);
+    transport_make_pair("kept", certificate, key);
     copy(certificate, first);
     daemon_process *d = start();
-    make_pair("unused", other, key);
+    transport_make_pair("unused", other, key);
     kill(daemon_pid(d), SIGHUP);
     char *log = daemon_wait_log(d, "what was in force before still is", 1);
     assert_non_null(strstr(log, "is not the key of the first certificate in"));
@@ -180,8 +167,8 @@ static void what_cannot_serve_stops_the_start(void **state)
     (void)state;
     char said[20000], other[FOLDER_PATH + 20];
     snprintf(other, sizeof other, "%s/second.pem", folder);
-    make_pair("one", certificate, key);
-    make_pair("two", first, other);
+    transport_make_pair("one", certificate, key);
+    transport_make_pair("two", first, other);
     const struct {
         const char *certificate, *key, *why;
     } rows[] = {
@@ -214,7 +201,7 @@ static void what_cannot_serve_stops_the_start(void **state)
 static void what_comes_over_tls_is_checked_byte_for_byte(void **state)
 {
     (void)state;
-    make_pair("checked", certificate, key);
+    transport_make_pair("checked", certificate, key);
     daemon_process *d = start();
     char said[20000];
     static const char *const requests[] = {
@@ -238,7 +225,7 @@ static void what_comes_over_tls_is_checked_byte_for_byte(void **state)
 static void a_handshake_that_is_not_finished_is_closed(void **state)
 {
     (void)state;
-    make_pair("slow", certificate, key);
+    transport_make_pair("slow", certificate, key);
     daemon_process *d = daemon_start(ARGUMENTS("--tls-cert", certificate, "--tls-key", key,
                                                "--header-timeout", "1", "--idle-timeout", "3600"));
     char byte;
@@ -252,7 +239,7 @@ static void a_health_check_speaks_as_its_daemon_does(void **state)
 {
     (void)state;
     char said[400], listen[FOLDER_PATH + 20];
-    make_pair("healthy", certificate, key);
+    transport_make_pair("healthy", certificate, key);
     daemon_process *d = start();
     assert_int_equal(daemon_run(ARGUMENTS("--healthcheck", daemon_url(d)), said, sizeof said), 0);
     snprintf(listen, sizeof listen, "%s", daemon_url(d) + strlen("https://"));
@@ -334,11 +321,12 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 static int make_folder(void **state)
 {
     (void)state;
+    transport_choose(TRANSPORT_TCP); /* each test has options of its own */
     folder_make(folder);
     snprintf(certificate, sizeof certificate, "%s/certificate.pem", folder);
     snprintf(key, sizeof key, "%s/key.pem", folder);
     snprintf(first, sizeof first, "%s/first.pem", folder);
-    make_pair("localhost", certificate, key);
+    transport_make_pair("localhost", certificate, key);
     return 0;
 }
 

@@ -1,0 +1,206 @@
+/* The thread of transport_secure: what is written into a socket goes out over TLS, and back. */
+#include "tests/e2e/transport.h"
+
+#include "server/tls/tls_record.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+#include <gnutls/gnutls.h>
+
+enum { RECORD = 16 * 1024, LITTLE = 4096, LONGEST_MILLIS = 600 * 1000 };
+
+/* A record on its way in one direction. */
+typedef struct parcel {
+    unsigned char bytes[RECORD];
+    size_t at, end;
+    bool ended; /* nothing follows this one */
+    bool told;  /* the other side knows that */
+} parcel;
+
+typedef struct relay {
+    int inside, outside; /* the pair's other end, the daemon's socket */
+    gnutls_session_t session;
+    parcel out, in;
+    bool is_left; /* the test closed its socket */
+} relay;
+
+static bool comes_later(ssize_t code)
+{
+    return code == GNUTLS_E_AGAIN || code == GNUTLS_E_INTERRUPTED;
+}
+
+/* Returns false when the connection is of no more use. */
+static bool take_from_inside(relay *r)
+{
+    parcel *p = &r->out;
+    if (p->at < p->end || p->ended) {
+        return true;
+    }
+    ssize_t got = recv(r->inside, p->bytes, sizeof p->bytes, MSG_DONTWAIT);
+    if (got < 0) {
+        return errno == EAGAIN || errno == EINTR;
+    }
+    p->at = 0;
+    p->end = (size_t)got;
+    p->ended = got == 0;
+    return true;
+}
+
+static bool give_outside(relay *r)
+{
+    parcel *p = &r->out;
+    if (p->at < p->end) {
+        ssize_t sent = gnutls_record_send(r->session, p->bytes + p->at, p->end - p->at);
+        if (sent < 0) {
+            return comes_later(sent);
+        }
+        p->at += (size_t)sent;
+    } else if (p->ended && !p->told) {
+        int code = gnutls_bye(r->session, GNUTLS_SHUT_WR);
+        p->told = code == GNUTLS_E_SUCCESS;
+        return p->told || comes_later(code);
+    }
+    return true;
+}
+
+static bool take_from_outside(relay *r)
+{
+    parcel *p = &r->in;
+    if (p->at < p->end || p->ended) {
+        return true;
+    }
+    ssize_t got = srv_tls_receive(r->session, p->bytes, sizeof p->bytes);
+    if (got < 0 && comes_later(got)) {
+        return true;
+    }
+    /* The end in order, or cut off: either way what came is passed on first. */
+    p->at = 0;
+    p->end = got > 0 ? (size_t)got : 0;
+    p->ended = got <= 0;
+    return true;
+}
+
+static bool give_inside(relay *r)
+{
+    parcel *p = &r->in;
+    if (p->at < p->end && !r->is_left) {
+        ssize_t sent =
+            send(r->inside, p->bytes + p->at, p->end - p->at, MSG_DONTWAIT | MSG_NOSIGNAL);
+        if (sent < 0) {
+            return errno == EAGAIN || errno == EINTR;
+        }
+        p->at += (size_t)sent;
+    }
+    return p->at < p->end || !p->ended;
+}
+
+/* Waits until one of the sockets can do what is needed next. False where nothing comes for long,
+ * where the daemon reset the connection and its client is not reading, and where the test closed
+ * its socket and all it wrote is sent. */
+static bool wait_for_more(relay *r)
+{
+    const bool is_out = r->out.at < r->out.end || (r->out.ended && !r->out.told);
+    const bool is_in = r->in.at < r->in.end;
+    if (r->is_left && !is_out) {
+        return !r->out.ended;
+    }
+    if (!is_in && gnutls_record_check_pending(r->session) > 0) {
+        return true;
+    }
+    struct pollfd both[] = {
+        {.fd = r->is_left ? -1 : r->inside},
+        {.fd = r->outside},
+    };
+    both[0].events = (short)((is_in ? POLLOUT : 0) | (is_out || r->out.ended ? 0 : POLLIN));
+    both[1].events = (short)((is_out ? POLLOUT : 0) | (is_in ? 0 : POLLIN));
+    if (poll(both, 2, LONGEST_MILLIS) <= 0) {
+        return errno == EINTR;
+    }
+    r->is_left |= (both[0].revents & POLLHUP) != 0;
+    return !is_in || (both[1].revents & POLLERR) == 0;
+}
+
+static bool shake_hands(relay *r)
+{
+    int code;
+    while ((code = gnutls_handshake(r->session)) != GNUTLS_E_SUCCESS) {
+        if (gnutls_error_is_fatal(code) != 0) {
+            return false;
+        }
+        struct pollfd wait = {.fd = r->outside, .events = POLLIN};
+        if (gnutls_record_get_direction(r->session) != 0) {
+            wait.events = POLLOUT;
+        }
+        if (poll(&wait, 1, LONGEST_MILLIS) == 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void *pass_on(void *context)
+{
+    relay *r = context;
+    bool goes_on = shake_hands(r);
+    while (goes_on && wait_for_more(r)) {
+        goes_on = take_from_inside(r) && give_outside(r) && take_from_outside(r) && give_inside(r);
+    }
+    close(r->inside);
+    close(r->outside);
+    gnutls_deinit(r->session);
+    free(r);
+    return NULL;
+}
+
+/* What all connections trust, for as long as the program runs. */
+static gnutls_certificate_credentials_t trust(void)
+{
+    static gnutls_certificate_credentials_t all;
+    if (all == NULL) {
+        assert_int_equal(gnutls_certificate_allocate_credentials(&all), 0);
+        assert_int_equal(gnutls_certificate_set_x509_trust_file(all, transport_certificate(),
+                                                                GNUTLS_X509_FMT_PEM),
+                         1);
+    }
+    return all;
+}
+
+int transport_secure(int connected, int buffer)
+{
+    const int on = 1;
+    int pair[2];
+    pthread_t thread;
+    relay *r = calloc(1, sizeof *r);
+    assert_non_null(r);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair), 0);
+    if (buffer > 0) {
+        const int little = LITTLE;
+        assert_int_equal(setsockopt(pair[1], SOL_SOCKET, SO_SNDBUF, &little, sizeof little), 0);
+    }
+    assert_int_equal(fcntl(connected, F_SETFL, O_NONBLOCK), 0);
+    r->inside = pair[1];
+    r->outside = connected;
+    assert_int_equal(setsockopt(connected, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on), 0);
+    assert_int_equal(gnutls_init(&r->session, GNUTLS_CLIENT | GNUTLS_NO_SIGNAL | GNUTLS_NONBLOCK),
+                     0);
+    assert_int_equal(gnutls_set_default_priority(r->session), 0);
+    assert_int_equal(gnutls_credentials_set(r->session, GNUTLS_CRD_CERTIFICATE, trust()), 0);
+    gnutls_session_set_verify_cert(r->session, NULL, 0);
+    gnutls_transport_set_int(r->session, connected);
+    assert_int_equal(pthread_create(&thread, NULL, pass_on, r), 0);
+    assert_int_equal(pthread_detach(thread), 0);
+    return pair[0];
+}
