@@ -1,5 +1,6 @@
 #include "server/http/http_recv.h"
 
+#include "server/http/limits.h"
 #include "server/tls/tls_record.h"
 #include "system/clock.h"
 
@@ -122,6 +123,9 @@ bool srv_recv_has_ended(const srv_connection *c)
 
 bool srv_recv_send(srv_connection *c, const char *bytes, size_t length)
 {
+    /* Answers that the client has not read yet may fill the buffer that the socket began with. */
+    const int most = SRV_SEND_BUFFER;
+    (void)setsockopt(c->socket, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
     return c->session != NULL
                ? srv_tls_send(c->session, bytes, length)
                : send(c->socket, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)length;

@@ -3,6 +3,8 @@
 
 #include "server/assets.h"
 #include "server/http/http_deadline.h"
+#include "server/http/http_recv.h"
+#include "server/http/limits.h"
 #include "system/clock.h"
 #include "system/random.h"
 #include "system/thread_pool.h"
@@ -233,6 +235,32 @@ static void a_client_that_closed_its_side_waits_for_a_second(void **state)
     close(c.socket);
 }
 
+/* Small messages fill the buffer of a Unix socket by what the kernel keeps of each. */
+static void a_last_answer_fits_beside_those_not_read_yet(void **state)
+{
+    (void)state;
+    static char answer[4096];
+    static const char part[] = "HTTP/1.1 200 OK";
+    const int first = SRV_FIRST_SEND_BUFFER;
+    int ends[2];
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
+    assert_int_equal(setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &first, sizeof first), 0);
+    size_t parts = 0;
+    while (send(ends[0], part, sizeof part, MSG_NOSIGNAL) > 0) {
+        parts++;
+    }
+    srv_connection c = {.socket = ends[0]};
+    assert_true(srv_recv_send(&c, answer, sizeof answer));
+    for (ssize_t left = (ssize_t)(parts * sizeof part + sizeof answer); left > 0;) {
+        char bytes[4096];
+        ssize_t got = recv(ends[1], bytes, sizeof bytes, 0);
+        assert_true(got > 0);
+        left -= got;
+    }
+    close(ends[0]);
+    close(ends[1]);
+}
+
 static void a_client_that_was_reset_does_not_wait(void **state)
 {
     (void)state;
@@ -269,6 +297,7 @@ int main(void)
         cmocka_unit_test(test_deadlines),
         cmocka_unit_test(test_slow_readers),
         cmocka_unit_test(a_client_that_closed_its_side_waits_for_a_second),
+        cmocka_unit_test(a_last_answer_fits_beside_those_not_read_yet),
         cmocka_unit_test(a_client_that_was_reset_does_not_wait),
         cmocka_unit_test(test_random_ids),
     };
