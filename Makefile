@@ -101,7 +101,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-large bench-space container fresh \
+        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space container fresh \
         screenshot \
         install uninstall clean ALWAYS
 
@@ -154,6 +154,7 @@ NEEDS.bench-http   := build bench-http
 NEEDS.bench-store  := build durable bench-http
 NEEDS.bench-events := build
 NEEDS.bench-slow   := build bench-http bench-slow
+NEEDS.bench-flood  := build bench-slow
 NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
 NEEDS.screenshot   := build web browser
@@ -443,6 +444,9 @@ bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listen
 
 bench-slow: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## a thousand clients who read slowly: what others wait for, and when those are closed
 	@sh tests/bench/slow.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
+
+bench-flood: $(HEDGED) $(BUILD)/tests/bench/http/paced | $(INSTALLED) ## one token far beyond its rate, 10,000 idle and 1,000 slow clients: what others wait for
+	@sh tests/bench/flood.sh $(HEDGED) $(BUILD)/tests/bench/http/paced
 
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)

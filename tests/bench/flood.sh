@@ -1,0 +1,73 @@
+#!/bin/sh
+# Clients within their rate, beside one that floods: what they wait for, and what it is answered.
+#
+#   flood.sh HEDGED PACED [SECONDS]
+#
+# A calm token asks for a vertex 500 times a second over 8 connections; its rate allows that. A second
+# token may ask 500 times a second and asks 5,000 times over 64 connections: the rest is refused 429
+# with the seconds after which to come again. Then the same beside 10,000 connections that were used
+# once and rest, and last beside 1,000 clients as well who read what needs no token, the OpenAPI
+# document, at 6 bytes a second (slowhttptest -X). The first row is of the calm client alone. Allowed is twice the quiet 99th
+# percentile, or 2 ms more than it, whichever is more; the exit status is 1 where a row has more.
+set -eu
+hedged=$1 paced=$2 seconds=${3:-8}
+for program in slowhttptest curl ss; do
+    command -v $program >/dev/null || { echo "flood.sh: $program is not installed" >&2; exit 1; }
+done
+. "$(dirname "$0")/daemon.sh"
+
+# new NAME ROLE LIMITS: a line of the file of tokens; the token itself in $work/NAME
+new() {
+    "$hedged" --new-token "$1" "$2" >"$work/said"
+    sed -n 1p "$work/said" >"$work/$1"
+    sed -n "2s/\$/ $3/p" "$work/said" >>"$work/tokens"
+}
+new calm write requests=100000
+new flood read requests=500
+calm=$(cat "$work/calm")
+ulimit -n "$(ulimit -H -n)"
+daemon_start "$hedged" --log off --tokens "$work/tokens" --limit-burst 1 --max-connections 15000 \
+    --idle-timeout 600
+curl -s -o "$work/made" -X PUT -H 'Content-Type: application/json' -H "Authorization: Bearer $calm" \
+    -d '{"shape":"grid","columns":200,"rows":200}' "$base/v1/meshes/m"
+port=${base##*:}
+path=/v1/meshes/m/vertices/0
+
+# row NAME IDLE FLOODS
+row() {
+    if [ "$3" = yes ]; then
+        "$paced" "$port" $path "$(cat "$work/flood")" 5000 64 "$seconds" 0 >"$work/flooded" 4<&- &
+        flood=$!
+        others="$others $flood"
+    fi
+    "$paced" "$port" $path "$calm" 500 8 "$((seconds - 1))" "$2" >"$work/waited" 4<&-
+    [ "$3" != yes ] || wait "$flood"
+    [ "$3" = yes ] || echo 0 0 0 0 0 0 >"$work/flooded"
+    cat "$work/waited" "$work/flooded" | tr '\n' ' ' |
+        awk -v name="$1" -v rows="$work/rows" '{
+            quiet = $5
+            while ((getline line < rows) > 0) { quiet = line; break }
+            print $5 >>rows
+            allowed = quiet + 2 > 2 * quiet ? quiet + 2 : 2 * quiet
+            verdict = $5 > allowed ? "MORE THAN ALLOWED" : "ok"
+            if ($2 + $3 > 0) verdict = "CALM CLIENT REFUSED"
+            if ($8 != $12 || $9 > 0) verdict = "FLOOD NOT REFUSED AS IT SHOULD BE"
+            printf "%-24s %6d %8.2f %8.2f %8.2f %7.1f %7d %7d  %s\n", name, $1, $4, $5, allowed,
+                $5 / quiet, $7, $8, verdict
+        }' | tee -a "$work/table"
+}
+
+printf '%-24s %6s %8s %8s %8s %7s %7s %7s\n' beside answers 'p50 ms' 'p99 ms' allowed 'x quiet' \
+    flood:200 429
+row nobody 0 no
+row 'a flood' 0 yes
+"$paced" "$port" $path "$calm" 1 1 600 10000 >"$work/idlers" 4<&- &
+others="$others $!"
+until [ "$(ss -tnH state established "( sport = :$port )" | wc -l)" -ge 10000 ]; do :; done
+row '... and 10,000 idle' 0 yes
+slowhttptest -X -c 1000 -r 1000 -w 512 -y 1024 -n 5 -z 32 -l 60 -p 3 \
+    -u "$base/v1/openapi.json" >"$work/slowly" 2>&1 4<&- &
+others="$others $!"
+until [ "$(ss -tnH state established "( sport = :$port )" | wc -l)" -ge 10900 ]; do :; done
+row '... and 1,000 slow' 0 yes
+! grep -q '[A-Z][A-Z][A-Z]' "$work/table"
