@@ -182,13 +182,16 @@ static bool is_stream(const api_route *route)
     return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
 }
 
-/* Headers of every answer with a body, except events. */
-static void write_coding_headers(api_out *out)
+/* Headers that are described once, in the components. */
+static const char *const rate_headers[] = {"RateLimit-Policy", "RateLimit", NULL};
+static const char *const coding_headers[] = {"Content-Encoding", "Vary", NULL};
+
+static void refer_to_headers(api_out *out, const char *const *names)
 {
-    api_out_key(out, "Content-Encoding");
-    api_schema_ref(out, "headers", "Content-Encoding");
-    api_out_key(out, "Vary");
-    api_schema_ref(out, "headers", "Vary");
+    for (; *names != NULL; names++) {
+        api_out_key(out, *names);
+        api_schema_ref(out, "headers", *names);
+    }
 }
 
 static bool answers(const api_route *route, int status)
@@ -206,7 +209,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     bool tagged = answers(route, 304) || (writes && answers(route, status == 204 ? 200 : status));
     tagged = tagged && status != 202;
     bool coded = status != 204 && !is_stream(route);
-    if (!tagged && status != 202 && route->headers[0] == NULL && !coded) {
+    bool limited = (route->flags & API_UNLIMITED) == 0;
+    if (!tagged && status != 202 && route->headers[0] == NULL && !coded && !limited) {
         return;
     }
     api_out_key(out, "headers");
@@ -233,7 +237,10 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
     }
     if (coded) {
-        write_coding_headers(out);
+        refer_to_headers(out, coding_headers);
+    }
+    if (limited) {
+        refer_to_headers(out, rate_headers);
     }
     api_out_object_end(out);
 }
@@ -523,7 +530,8 @@ static void write_problem(api_out *out, const char *name, const char *header, co
     if (header != NULL) {
         write_header(out, header, doc, required);
     }
-    write_coding_headers(out);
+    refer_to_headers(out, coding_headers);
+    refer_to_headers(out, rate_headers);
     api_out_object_end(out);
     write_content(out, problem, "problem", NULL, example_problem, NULL);
     api_out_object_end(out);
@@ -545,6 +553,12 @@ static void write_shared_headers(api_out *out)
     api_out_object_end(out);
     api_out_object_end(out);
     write_header(out, "Vary", "What of the request the answer depends on.", false);
+    write_header(out, "RateLimit-Policy",
+                 "Where the client has a limit of requests or bytes a second: how many it may have "
+                 "at once (q), over how many seconds (w).",
+                 false);
+    write_header(out, "RateLimit",
+                 "What is left of each (r), and the seconds until it is whole (t).", false);
     api_out_object_end(out);
 }
 

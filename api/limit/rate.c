@@ -2,6 +2,7 @@
 
 #include "base/mem.h"
 #include "base/siphash.h"
+#include "format/text/number.h"
 #include "system/random.h"
 
 #include <pthread.h>
@@ -243,17 +244,7 @@ static char *add_text(char *to, const char *text)
 static char *add_number(char *to, uint64_t number)
 {
     const uint64_t most = UINT64_C(999999999999999);
-    char digits[16];
-    size_t count = 0;
-    number = number < most ? number : most;
-    do {
-        digits[count++] = (char)('0' + number % 10);
-        number /= 10;
-    } while (number > 0);
-    while (count > 0) {
-        *to++ = digits[--count];
-    }
-    return to;
+    return to + he_u64_print(number < most ? number : most, to);
 }
 
 static char *add_pair(char *to, const char *first, uint64_t a, const char *second, uint64_t b)

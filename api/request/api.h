@@ -173,6 +173,12 @@ const api_answer *api_answer_of(const api_exchange *exchange);
 /* Counts bytes that were transferred, of a body that was not passed to api_body or of the answer,
  * against the limit of the client. */
 void api_charge(api_exchange *exchange, uint64_t bytes);
+/* The fields RateLimit-Policy and RateLimit of a request, for an answer that the server gives in
+ * place of the exchange's. Both are "" if the client has no limit. */
+typedef struct api_rate_fields {
+    char policy[API_RATE_FIELD], left[API_RATE_FIELD];
+} api_rate_fields;
+void api_rate_fields_of(const api_exchange *exchange, api_rate_fields *out);
 /* Sets the quotas of all tokens in the store, after the file of tokens was read. Returns false when
  * memory is out; the old quotas then stay. */
 bool api_service_apply_quotas(api_service *service);

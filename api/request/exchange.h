@@ -131,7 +131,8 @@ struct api_exchange {
     /* --- the answer --- */
     int published; /* see api_publish; 0: nothing was published */
     char location[API_LOCATION];
-    char retry[API_RETRY], rate_policy[API_RATE_FIELD], rate_field[API_RATE_FIELD];
+    char retry[API_RETRY];
+    api_rate_fields rate_fields;
     api_problem problem;
     api_text text;
     api_out out; /* writes x->text */

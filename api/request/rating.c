@@ -64,10 +64,11 @@ void api_rating_charge(api_exchange *x, uint64_t bytes)
     }
 }
 
-void api_rating_fields(api_exchange *x)
+void api_rate_fields_of(const api_exchange *x, api_rate_fields *out)
 {
+    out->policy[0] = out->left[0] = '\0';
     if (x->rates != NULL) {
-        api_rate_policy(&x->rate, x->rate_policy);
-        api_rate_field(&x->rate, &x->rate_state, x->rate_field);
+        api_rate_policy(&x->rate, out->policy);
+        api_rate_field(&x->rate, &x->rate_state, out->left);
     }
 }

@@ -12,7 +12,5 @@
 bool api_rating_enter(api_exchange *x);
 /* Takes bytes of a body or of an answer. */
 void api_rating_charge(api_exchange *x, uint64_t bytes);
-/* Writes x->rate_policy and x->rate_field, "" if the client has no limit. */
-void api_rating_fields(api_exchange *x);
 
 #endif

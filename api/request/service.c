@@ -237,9 +237,9 @@ static api_step finish(api_exchange *x)
     /* An answer with a tag may be cached and revalidated; others may not be stored. */
     put_header(x, "Cache-Control", has_header(x, "ETag") ? "no-cache" : "no-store");
     if (x->rates != NULL) {
-        api_rating_fields(x);
-        put_header(x, "RateLimit-Policy", x->rate_policy);
-        put_header(x, "RateLimit", x->rate_field);
+        api_rate_fields_of(x, &x->rate_fields);
+        put_header(x, "RateLimit-Policy", x->rate_fields.policy);
+        put_header(x, "RateLimit", x->rate_fields.left);
     }
     if (api_coded_varies(x)) {
         put_header(x, "Vary", varies(x) ? "Accept, Accept-Encoding" : "Accept-Encoding");

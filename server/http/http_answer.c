@@ -132,6 +132,9 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
 
 void srv_answer_refuse(srv_request *r, int code, const char *text)
 {
+    if (r->exchange != NULL) {
+        api_rate_fields_of(r->exchange, &r->rate_fields);
+    }
     api_free(r->exchange);
     r->exchange = NULL;
     r->refusal = (api_problem){0};
@@ -151,6 +154,10 @@ static void describe(srv_request *r, srv_wire *wire)
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
+        if (r->rate_fields.policy[0] != '\0') {
+            srv_wire_add(wire, "RateLimit-Policy", r->rate_fields.policy);
+            srv_wire_add(wire, "RateLimit", r->rate_fields.left);
+        }
     }
     if (r->client.told_name) {
         srv_wire_add(wire, "Strict-Transport-Security", "max-age=31536000");

@@ -84,7 +84,8 @@ typedef struct srv_request {
     api_exchange *exchange; /* NULL: the answer is `refusal` */
     api_step step;
     api_problem refusal;
-    api_text text; /* the refusal as JSON */
+    api_text text;               /* the refusal as JSON */
+    api_rate_fields rate_fields; /* of the exchange that the refusal took the place of */
     bool preflight;
     st_wait hold;
     uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: as long as it takes */

@@ -22,7 +22,7 @@ typedef struct listener {
 /* Ask for `target` and read the head of the answer. `last` is the Last-Event-ID, or NULL; `buffer`
  * the size of the receive buffer, 0 for the system's. */
 listener *listener_open(const daemon_process *d, const char *target, const char *last, int buffer);
-/* The same with a token. */
+/* Asks as the client who has this token. */
 listener *listener_open_as(const daemon_process *d, const char *target, const char *token);
 void listener_close(listener *l);
 

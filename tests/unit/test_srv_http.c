@@ -49,7 +49,11 @@ static int start(void **state)
     table = api_job_table_new(&(api_job_table_options){
         .store = store, .submit = submit_job, .pool = jobs, .keep = API_JOB_SECONDS});
     service = api_service_new(store, api_routes(),
-                              &(api_options){.version = "test", .pool = jobs, .jobs = table});
+                              &(api_options){.version = "test",
+                                             .pool = jobs,
+                                             .jobs = table,
+                                             .address_limits.most[API_LIMIT_REQUESTS] = 1000000,
+                                             .limit_burst = 10});
     srv_http_options options = {
         .service = service,
         .store = store,
@@ -510,6 +514,8 @@ static void test_full_queue_is_503(void **state)
     assert_int_equal(answer(fd, text, sizeof text), 503);
     assert_non_null(strstr(text, "Retry-After: "));
     assert_non_null(strstr(text, "\"code\":\"overloaded\""));
+    assert_non_null(strstr(text, "RateLimit-Policy: \"requests\";q=10000000;w=10\r\n"));
+    assert_non_null(strstr(text, "RateLimit: \"requests\";r=9999"));
 
     open_gate();
     /* Refused, not broken: the connection serves on. The queue may still be emptying. */
