@@ -80,6 +80,20 @@ static void what_is_counted_is_what_is_taken(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+/* Reads one answer to /livez, which may come in parts. */
+static void take_answer(int fd)
+{
+    char text[4096];
+    size_t length = 0;
+    do {
+        ssize_t got = recv(fd, text + length, sizeof text - 1 - length, 0);
+        assert_true(got > 0);
+        length += (size_t)got;
+        text[length] = '\0';
+    } while (strstr(text, "\r\n\r\n{\"status\":\"alive\"}") == NULL);
+    assert_memory_equal(text, "HTTP/1.1 200", 12);
+}
+
 /* A session of TLS has keys and buffers of its own beside the connection. */
 enum { CONNECTIONS = 1000, LOOKS = 200000, IDLE_BYTES = 10 * 1024, IDLE_TLS_BYTES = 16 * 1024 };
 
@@ -90,7 +104,6 @@ static void a_connection_at_rest_holds_little(void **state)
     (void)state;
     static const char request[] = "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n";
     static int sockets[CONNECTIONS];
-    char answer[4096];
     daemon_process *d =
         daemon_start((const char *const[]){"--log", "off", "--idle-timeout", "3600", NULL});
     client *c = client_new(d);
@@ -99,7 +112,7 @@ static void a_connection_at_rest_holds_little(void **state)
         sockets[i] = client_connect(d, 0);
         assert_int_equal(send(sockets[i], request, sizeof request - 1, MSG_NOSIGNAL),
                          sizeof request - 1);
-        assert_true(recv(sockets[i], answer, sizeof answer, 0) > 0);
+        take_answer(sockets[i]);
     }
     double used = counted(c, "memory_bytes") - start[0];
     int looks = 0;
@@ -116,8 +129,7 @@ static void a_connection_at_rest_holds_little(void **state)
     for (int i = 0; i < CONNECTIONS; i++) {
         assert_int_equal(send(sockets[i], request, sizeof request - 1, MSG_NOSIGNAL),
                          sizeof request - 1);
-        assert_true(recv(sockets[i], answer, sizeof answer, 0) > 0);
-        assert_memory_equal(answer, "HTTP/1.1 200", 12);
+        take_answer(sockets[i]);
         close(sockets[i]);
     }
     client_free(c);
