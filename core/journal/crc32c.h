@@ -1,11 +1,11 @@
-/* crc32c.h - the checksum of what is kept: CRC-32C (Castagnoli), as in RFC 3720, appendix B.4. */
+/* crc32c.h - the checksum of stored bytes: CRC-32C (Castagnoli), as in RFC 3720, appendix B.4. */
 #ifndef HE_JOURNAL_CRC32C_H
 #define HE_JOURNAL_CRC32C_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* The checksum of these bytes after those that `before` is the checksum of; 0: of none. */
+/* Continues a checksum: `before` is the checksum of the bytes before these, 0 if there are none. */
 uint32_t st_crc32c(uint32_t before, const void *bytes, size_t size);
 /* st_crc32c on processors without an instruction for it. */
 uint32_t st_crc32c_by_table(uint32_t before, const void *bytes, size_t size);

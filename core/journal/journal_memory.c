@@ -4,7 +4,7 @@
 
 #include <stdatomic.h>
 
-/* Positions of all memory journals of the process, which need no order among each other. */
+/* Positions are shared by all memory journals of the process; different journals need no order. */
 static _Atomic uint64_t newest;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)

@@ -4,15 +4,16 @@
 #include "stored/stored.h"
 
 #include <string.h>
-/* Contexts take their memory from base/mem.h, by functions that the header keeps for those who link
- * the library statically; the shared one has them too. */
+/* zstd contexts allocate by base/mem.h through functions that the header declares for static
+ * linking only; the shared library exports them too. */
 #define ZSTD_STATIC_LINKING_ONLY
 #include <zstd.h>
 #include <zstd_errors.h>
 
 enum { LEVEL = 1 };
 
-/* What is saved is to be worth the unpacking: at least a thirty-second. */
+/* A part is stored compressed only if that saves at least a thirty-second, to be worth the time of
+ * decompressing it. */
 enum { LEAST_SHARE = 32 };
 
 struct st_packer {
@@ -98,8 +99,8 @@ void st_unpacker_free(st_unpacker *unpacker)
     }
 }
 
-/* The frame is unpacked straight into the room of a part: neither its window nor the size it names
- * takes memory, and what is longer than it says, or than a part, is refused. */
+/* The frame is decompressed directly into the room of a part, so neither its window nor its claimed
+ * size makes zstd allocate; a frame longer than it claims, or than a part, is refused. */
 st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,
                          const unsigned char **out, size_t *out_size, const char **why)
 {

@@ -1,8 +1,8 @@
-/* part_packing.h - parts of contents, compressed by zstd (HE_CODING_PACKED of stored.h).
+/* part_packing.h - compresses the parts of contents by zstd (HE_CODING_PACKED of stored.h).
  *
- * Each part is packed by itself, after its links were coded, and says how long it is unpacked: as
- * one zstd frame with its content size, at level 1. So a part is read without those before it, and
- * none takes more memory than the longest part there is. */
+ * Each part is compressed by itself, after its links were coded, as one zstd frame with its content
+ * size, at level 1. So a part can be read without those before it, and none takes more memory than
+ * the longest part there is. */
 #ifndef HE_JOURNAL_PART_PACKING_H
 #define HE_JOURNAL_PART_PACKING_H
 
@@ -11,19 +11,20 @@
 typedef struct st_packer st_packer;
 typedef struct st_unpacker st_unpacker;
 
-/* NULL when memory is out: parts may stay as they are. */
+/* Returns NULL if memory is out: parts may stay uncompressed. */
 st_packer *st_packer_new(void);
 void st_packer_free(st_packer *packer); /* takes NULL */
-/* Packs the part of `size` bytes where it stands, which is at most HE_STORED_PART_ROOM; adds
- * HE_CODING_PACKED to *coding and returns the new size. A part that hardly gets shorter stays as it
- * is, and so does every one where `packer` is NULL or memory is out. */
+/* Compresses a part of `size` bytes, at most HE_STORED_PART_ROOM, in place; adds HE_CODING_PACKED
+ * to *coding and returns the new size. A part that hardly gets shorter stays as it is, and so does
+ * every part if `packer` is NULL or memory is out. */
 size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding);
 
-/* NULL when memory is out. */
+/* Returns NULL if memory is out. */
 st_unpacker *st_unpacker_new(void);
 void st_unpacker_free(st_unpacker *unpacker); /* takes NULL */
-/* Unpacks a part; *out is good until the next one, and *out_size at most HE_STORED_PART_ROOM.
- * ST_NO_MEMORY; ST_DAMAGED, and *why says what is wrong: a literal. */
+/* Decompresses a part. *out is valid until the next one; *out_size is at most HE_STORED_PART_ROOM.
+ * Returns ST_NO_MEMORY if memory is out.
+ * Returns ST_DAMAGED if the part is not valid; *why, a literal, says what is wrong. */
 st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,
                          const unsigned char **out, size_t *out_size, const char **why);
 

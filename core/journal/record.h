@@ -1,11 +1,11 @@
-/* record.h - what the journal is given, and what it gives back.
+/* record.h - the data that the store gives to the journal, and gets back.
  *
- * A RECORD is one change of one mesh: a revision, a rename or the removal. A CARD is what is known
- * of a mesh without its content. A PIECE is one step of loading a mesh: first its base, a whole
- * content in parts, then the records after it in their order. A NOTE is kept beside the records: a
- * job, or the key of a request that changed nothing.
+ * A RECORD is one change of one mesh: a revision, a rename or the removal. A CARD has the facts of
+ * a mesh without its content. A PIECE is one step of loading a mesh: first its base, a whole
+ * content in parts, then the records after it in order. A NOTE is stored beside the records: a job,
+ * or the key of a request that changed nothing.
  *
- * Bodies and contents are bytes as core/stored writes them; the journal looks into neither. */
+ * Bodies and contents are bytes as core/stored writes them; the journal never reads them. */
 #ifndef HE_JOURNAL_RECORD_H
 #define HE_JOURNAL_RECORD_H
 
@@ -19,10 +19,10 @@ enum {
     ST_MESH_NAME = 256,
     ST_JOB_ID = 22,
     ST_DAMAGE = 160,
-    ST_HOLDER = 64 /* of the name of whose a mesh is */
+    ST_HOLDER = 64 /* most bytes of a holder's name */
 };
 
-/* What a revision did; kept in the history. */
+/* What a revision did; the history shows it. */
 typedef enum st_action { ST_EDIT, ST_UNDO, ST_REDO, ST_REPLACE } st_action;
 
 /* How many elements a revision created, deleted and modified: vertices, edges, faces. */
@@ -31,57 +31,60 @@ typedef struct st_tally {
     uint32_t created[3], deleted[3], modified[3];
 } st_tally;
 
-/* A large content, or a large coded edit, that was brought to the disk before it is published; what
- * else it is belongs to the journal. */
+/* A large content, or a large coded edit, that was written to the disk before it is published. Each
+ * journal defines its own. */
 typedef struct st_stage st_stage;
 
-/* What a record is. The numbers are written down and keep their meaning for ever. */
+/* The kind of a record. The numbers are stored and never change their meaning. */
 typedef enum st_record_kind {
-    ST_RECORD_EDIT = 1,    /* the body is the coded edit; or a stage, that or the content after */
-    ST_RECORD_UNDO = 2,    /* of the newest step on the undo stack, with no body */
-    ST_RECORD_REDO = 3,    /* of the newest step on the redo stack, with no body */
-    ST_RECORD_CONTENT = 4, /* creation or PUT: the body is the coded content; or a stage */
+    ST_RECORD_EDIT =
+        1, /* the body is the coded edit; with a stage, that edit or the content after it */
+    ST_RECORD_UNDO = 2,    /* undoes the newest step of the undo stack; no body */
+    ST_RECORD_REDO = 3,    /* redoes the newest step of the redo stack; no body */
+    ST_RECORD_CONTENT = 4, /* creation or PUT: the body, or the stage, is the coded content */
     ST_RECORD_RENAME = 5,
     ST_RECORD_REMOVE = 6
 } st_record_kind;
 
-/* The Idempotency-Key of the request that made a change. The answer is written after the change is
- * published, so that a journal which brings a key back answers 201 or 204 without a body, with the
- * tag of the record's revision. */
+/* The Idempotency-Key of the request that made a change. The answer does not exist yet when the
+ * change is published, so a request whose key was read back from the journal is answered 201 or 204
+ * without a body, with the tag of the record's revision. */
 typedef struct st_record_key {
     const char *text;
-    uint64_t digest[2]; /* of the request; good with the store's secret only */
+    uint64_t digest[2]; /* hash of the request, keyed with the store's secret */
     double time;        /* when the request came, seconds since 1970 */
-    bool of_store;      /* the key is the store's: the change made the mesh */
-    const char *holder; /* whose key it is: another one's of the same text is another. "" or NULL
-                           for that of nobody in particular */
+    bool of_store;      /* the key belongs to the store: the change made the mesh */
+    /* the client that sent it: equal keys of different clients are different keys. "" or NULL:
+     * clients without a name */
+    const char *holder;
 } st_record_key;
 
-/* How long a key is kept, and how many of a mesh or of the store: the oldest go first. */
+/* How long a key is kept, and how many keys of a mesh or of the store: the oldest are deleted
+ * first. */
 enum { ST_KEPT_SECONDS = 24 * 3600, ST_KEPT_KEYS = 16384 };
 
-/* A key that is kept, and the state that the answer to its request had. */
+/* A stored key, and the state that the answer to its request had. */
 typedef struct st_kept_key {
     st_record_key key;
-    const char *id; /* of the mesh */
+    const char *id; /* the mesh that the answer shows */
     uint64_t incarnation, revision, metadata;
-    bool is_damaged; /* what was kept is not what it was: of all this only `text` and `holder` are
-                        to be believed, and they may be other ones */
+    /* the row is damaged: only `text` and `holder` may be used, and even they may be wrong */
+    bool is_damaged;
 } st_kept_key;
 
-/* How a job is kept. The numbers are written down and keep their meaning for ever. */
+/* The stored state of a job. The numbers are stored and never change their meaning. */
 typedef enum st_job_state {
     ST_JOB_ACCEPTED =
-        1, /* it waits or runs; after a restart: it never ended, and changed nothing */
+        1, /* it waits or runs; found at a start: it never ended, and changed nothing */
     ST_JOB_DONE = 2,
     ST_JOB_FAILED = 3,
     ST_JOB_CANCELLED = 4
 } st_job_state;
 
 enum { ST_JOB_TYPE, ST_JOB_DISPOSITION, ST_JOB_TAG, ST_JOB_WARNINGS, ST_JOB_HEADERS };
-enum { ST_JOB_SECONDS = 3600 }; /* that one which has ended is kept */
+enum { ST_JOB_SECONDS = 3600 }; /* how long a job is kept after it has ended */
 
-/* A job: a request that outlives its connection. Texts are never NULL, "" where there is none. */
+/* A job: a request that outlives its connection. Texts are never NULL, but may be "". */
 typedef struct st_job {
     char id[ST_JOB_ID + 1];
     uint64_t number; /* in the order of submission, from 1 */
@@ -90,82 +93,86 @@ typedef struct st_job {
     const char *holder;                  /* name of the token that it belongs to */
     double progress;                     /* 0 to 1 */
     double created, started, finished;   /* seconds since 1970 UTC; 0: not yet */
-    int status;                          /* HTTP, of its answer; 0: there is none */
-    bool shown;                          /* the body is told with the job */
-    const char *headers[ST_JOB_HEADERS]; /* of the answer */
-    const void *body;                    /* NULL: none is kept */
+    int status;                          /* HTTP status of its answer; 0: there is none */
+    bool shown;                          /* the job's representation contains the body */
+    const char *headers[ST_JOB_HEADERS]; /* headers of the answer */
+    const void *body;                    /* body of the answer; NULL: none is kept */
     size_t length;
 } st_job;
 
-/* Live elements and boundary half-edges. */
+/* Numbers of live elements and of boundary half-edges. */
 typedef struct st_counts {
     uint32_t vertices, edges, faces, boundary;
 } st_counts;
 
-/* One change. Texts and what is pointed to are borrowed for the call. */
+/* One change. Texts and pointers are borrowed for the call. */
 typedef struct st_record {
     st_record_kind kind;
-    /* The history ends with it: nothing before can be undone, or read as a revision. Always with
-     * ST_RECORD_CONTENT; of an edit where ids changed their meaning or the edit is larger than the
-     * undo budget. */
+    /* The history ends with it: nothing before can be undone, or read as a revision. Set for every
+     * ST_RECORD_CONTENT, and for an edit that changes the meaning of ids or is larger than the undo
+     * budget. */
     bool barrier;
-    const char *id, *name;          /* the name after it */
-    const char *holder;             /* whose the mesh is; "" or NULL: nobody's in particular */
-    uint64_t incarnation;           /* of the mesh: random, new for each creation of an id */
-    uint64_t number;                /* of the record, from 1 for each incarnation */
-    uint64_t revision;              /* of the content after it, from 1 */
-    uint64_t metadata;              /* counts changes of the name, from 1; after it */
-    uint64_t inverts;               /* the revision that an undo or redo inverts; of a base the one
-                                       whose content it has again, where it is another; else 0 */
-    uint64_t reach;                 /* the history after it begins behind this revision: what was
-                                       before is dropped, to stay within the undo budget */
-    double created, time;           /* of the mesh; of the change: seconds since 1970 UTC */
-    const char *ops;                /* of an edit, for the history; never NULL */
-    st_tally tally;                 /* of an edit */
-    uint32_t issued[HE_KIND_COUNT]; /* high-water marks after it */
-    st_counts counts;               /* after its group */
-    uint64_t bytes;                 /* that the content takes in memory then */
-    const st_record_key *key;       /* NULL without one */
-    const char *job;                /* whose work it is, NULL for none: the job is done with it */
-    const unsigned char *body;      /* within the room's bytes; NULL where nothing is kept */
-    size_t body_size;               /* of a staged edit its bytes, without a body */
-    st_stage *stage;                /* instead of a body, taken with the record; else NULL */
-    bool staged_edit;               /* the stage is the coded edit, not the content after it */
+    const char *id, *name; /* id of the mesh; its name after the change */
+    const char *holder;    /* holder of the mesh; "" or NULL: none */
+    uint64_t incarnation;  /* random, new for each creation of a mesh with this id */
+    uint64_t number;       /* counts the records of this incarnation, from 1 */
+    uint64_t revision;     /* revision after the change, from 1 */
+    uint64_t metadata;     /* counts changes of the name, from 1; after the change */
+    /* the revision that an undo or redo inverts; for a base, the earlier revision with an equal
+     * content, if there is one; else 0 */
+    uint64_t inverts;
+    /* revisions up to this one are dropped from the history after the change, to stay within the
+     * undo budget */
+    uint64_t reach;
+    double created, time; /* when the mesh was made, and changed; seconds since 1970 UTC */
+    const char *ops;      /* operations of an edit, for the history; never NULL */
+    st_tally tally;       /* elements that an edit changed */
+    uint32_t issued[HE_KIND_COUNT]; /* high-water marks after the change */
+    st_counts counts;               /* elements after the whole group of records */
+    uint64_t bytes;                 /* memory of the content after the change */
+    const st_record_key *key;       /* NULL: the request had no key */
+    const char *job; /* the job that made the change, which is done with this record; NULL: none */
+    const unsigned char *body; /* inside the room's bytes; NULL in a journal that stores nothing */
+    size_t body_size; /* bytes of the body; of a staged edit, which has no body, the bytes of the
+                         edit */
+    st_stage *stage;  /* replaces the body; taken with the record; else NULL */
+    bool staged_edit; /* the stage is the coded edit, not the content after it */
 } st_record;
 
-/* What is known of a mesh without its content: as its newest record left it. */
+/* The facts of a mesh without its content, after its newest record. */
 typedef struct st_card {
     char id[ST_MESH_ID + 1], name[ST_MESH_NAME + 1];
     uint64_t incarnation, metadata, revision, record;
     double created, modified;
     st_counts counts;
-    uint64_t bytes;             /* that the content takes in memory */
-    char holder[ST_HOLDER + 1]; /* whose it is; "": nobody's in particular */
-    char damage[ST_DAMAGE];     /* "", or a sentence: what is wrong with what is kept of it */
+    uint64_t bytes;             /* memory of the content */
+    char holder[ST_HOLDER + 1]; /* its holder; "": none */
+    char damage[ST_DAMAGE];     /* "", or a sentence that says how the stored mesh is damaged */
 } st_card;
 
-/* Copies a text, cut after `most` bytes. */
+/* Copies a text, cut to `most` bytes. */
 void st_copy_text(char *to, const char *from, size_t most);
-/* What the mesh is after the record; `damage` is left alone. */
+/* Fills the card of the mesh after a record; `damage` stays as it is. */
 void st_card_of_record(const st_record *record, st_card *card);
 
 typedef enum st_piece_kind {
-    ST_PIECE_BASE,   /* facts of the mesh at the base, which its parts follow */
-    ST_PIECE_PART,   /* of the base's content, or of what the record before had staged */
-    ST_PIECE_RECORD, /* one with `stage` not NULL has no body: what it staged follows in parts */
+    ST_PIECE_BASE,   /* facts of the mesh at the base, whose parts follow */
+    ST_PIECE_PART,   /* a part of the base's content, or of the stage of the record before */
+    ST_PIECE_RECORD, /* a record; if it has a stage it has no body: the parts of the stage follow */
     ST_PIECE_END
 } st_piece_kind;
 
-/* What a reader gives; borrowed until the next is read. */
+/* A step of reading a mesh; borrowed until the next step. */
 typedef struct st_piece {
     st_piece_kind kind;
-    st_record record; /* of BASE and RECORD */
-    uint64_t parts;   /* of BASE, and of RECORD with a stage: how many follow */
-    unsigned coding;  /* of PART, as he_stored_reader_part wants it: packing is taken off. Parts of
-                         a coded edit are HE_CODING_PLAIN */
+    st_record record; /* for BASE and RECORD */
+    uint64_t parts;   /* for BASE, and for RECORD with a stage: how many parts follow */
+    /* for PART, as he_stored_reader_part takes it: parts are decompressed already. Parts of a coded
+     * edit are HE_CODING_PLAIN */
+    unsigned coding;
     const unsigned char *bytes;
     size_t size;
-    const char *why; /* where there is none: a sentence */
+    const char *why; /* if there is no piece, a sentence that says why */
 } st_piece;
 
 #endif

@@ -147,7 +147,7 @@ static bool take_numbers(he_cursor *c, st_record *r)
            he_take_varint(c, UINT64_MAX, &r->bytes);
 }
 
-/* Up to the texts. */
+/* Reads a frame up to its texts. */
 static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_error *err)
 {
     st_record *r = &out->record;
@@ -217,7 +217,7 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
                                 "the record is of version %u, this release reads version %d", *c.at,
                                 ST_FRAME_VERSION);
     }
-    /* Filled in elsewhere, so that a failure leaves *out as it was. */
+    /* Decoded into a local first, so that a failure leaves *out as it was. */
     st_frame frame = {.record = {.ops = ""}};
     unsigned flags = 0;
     he_status status = read_head(&c, &frame, &flags, err);
