@@ -6,13 +6,13 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* Copies beyond this many cost memory, and save little: threads that count are about as many as
- * cores, and a cache line that two of them share is not yet slow. */
+/* More copies than this cost memory and save little: there are about as many counting threads as
+ * cores, and a cache line that two of them share is still fast enough. */
 enum { MOST_COPIES = 8, LINE = 64 / sizeof(uint64_t) };
 
 struct st_counters {
-    size_t count;  /* counters of a copy, */
-    size_t stride; /* and where the next copy begins */
+    size_t count;  /* counters of a copy */
+    size_t stride; /* distance between copies */
     size_t copies; /* a power of two */
     _Atomic uint64_t values[];
 };

@@ -1,4 +1,4 @@
-/* counters.h - a table of counters that many threads add to at once and one sums up now and then.
+/* counters.h - a table of counters that many threads add to and one thread sums up now and then.
  *
  * There are several copies of the table. A thread adds to one of them, mostly its own, so that
  * threads on different cores seldom write to one cache line; a sum adds up the copies. Nothing is
@@ -11,11 +11,11 @@
 
 typedef struct st_counters st_counters;
 
-/* `count` counters at zero. NULL when memory is out. */
+/* Makes `count` counters at zero. Returns NULL if memory is out. */
 st_counters *st_counters_new(size_t count);
 void st_counters_free(st_counters *counters); /* takes NULL */
 
-/* `at` is below the count. */
+/* Adds `amount` to the counter at `at`, which must be below the count. */
 void st_counters_add(st_counters *counters, size_t at, uint64_t amount);
 /* Adds 1 to the counter at `at`, and `amount` to the one at `other`. */
 void st_counters_add_pair(st_counters *counters, size_t at, size_t other, uint64_t amount);

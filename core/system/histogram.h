@@ -1,8 +1,8 @@
-/* histogram.h - how often values fell below each of a few bounds, counted without a lock.
+/* histogram.h - histograms that threads add to without a lock.
  *
  * All histograms have the same number of buckets: one for each bound of their scale, which counts
- * values up to it and above the one before, and one for what is larger. Threads add at any time; a
- * copy that is taken meanwhile may lack what is added while it is taken, and no more. */
+ * values up to it and above the one before, and one for larger values. Threads add at any time; a
+ * copy made meanwhile may lack values that are added while it is made, and no others. */
 #ifndef HE_SYSTEM_HISTOGRAM_H
 #define HE_SYSTEM_HISTOGRAM_H
 
@@ -12,11 +12,11 @@
 
 enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
 
-/* A scale: ST_BOUNDS bounds, rising. */
+/* A scale has ST_BOUNDS rising bounds. */
 extern const uint64_t st_scale_micros[ST_BOUNDS]; /* 100 microseconds to 300 seconds */
 extern const uint64_t st_scale_counts[ST_BOUNDS]; /* 1 to 8192, doubling */
 
-/* The bucket of a value, 0 to ST_BOUNDS. */
+/* Returns the bucket of a value, 0 to ST_BOUNDS. */
 static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t value)
 {
     size_t bucket = 0;
@@ -26,15 +26,15 @@ static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t valu
     return bucket;
 }
 
-/* Zeroed memory is an empty one. */
+/* Zeroed memory is an empty histogram. */
 typedef struct st_histogram {
     _Atomic uint64_t buckets[ST_BUCKETS];
-    _Atomic uint64_t sum; /* of the values */
+    _Atomic uint64_t sum; /* sum of the values */
 } st_histogram;
 
 void st_histogram_add(st_histogram *histogram, const uint64_t scale[ST_BOUNDS], uint64_t value);
 
-/* What a histogram held. */
+/* A copy of a histogram. */
 typedef struct st_distribution {
     uint64_t buckets[ST_BUCKETS];
     uint64_t sum;

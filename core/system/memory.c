@@ -9,12 +9,12 @@
 enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 
 static _Atomic uint64_t used;
-static _Atomic uint64_t outside; /* of it, what others hold for us */
+static _Atomic uint64_t outside; /* bytes of `used` that are counted by st_memory_count */
 static _Atomic uint64_t budget_bytes;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
-/* Count `size` more, unless that leaves the budget. Counting first and taking back on failure
+/* Counts `size` more, unless that exceeds the budget. Counting first and subtracting on failure
  * keeps two threads from passing the limit together. */
 static bool try_take(size_t size)
 {
@@ -31,7 +31,7 @@ static bool try_take(size_t size)
     return false;
 }
 
-/* What the giver itself asks for is refused without asking. */
+/* The giver is not called for allocations that it makes itself. */
 static bool take(size_t size)
 {
     const st_memory_giver *giver = asked;
@@ -54,14 +54,14 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
-/* With the word that the C library has before each block. */
+/* Includes the word that the C library has before each block. */
 static size_t block_bytes(void *memory)
 {
     return malloc_usable_size(memory) + sizeof(size_t);
 }
 
-/* The block's true size is known only once it is there: the request is taken from the budget
- * first, the difference is settled after. */
+/* The block's true size is known only after it is allocated: the requested size is taken from the
+ * budget first, and the difference is settled afterwards. */
 static void *resize(void *context, void *memory, size_t size)
 {
     (void)context;
@@ -81,14 +81,15 @@ static void *resize(void *context, void *memory, size_t size)
         return NULL;
     }
     size_t after = block_bytes(resized);
-    /* Modular arithmetic: the sum is right whichever is larger. */
+    /* Unsigned subtraction wraps around, so the sum is right even if the block has become
+     * smaller. */
     atomic_fetch_add_explicit(&used, (uint64_t)after - before - growth, memory_order_relaxed);
     return resized;
 }
 
-/* From here on a block is a mapping of its own: growing it moves page tables and not bytes, so that
- * the first edit of a large mesh does not copy it, and freeing it gives it back to the system. Left
- * alone, glibc raises the threshold to 32 MB as blocks are freed. */
+/* A block of this size or more is a mapping of its own: growing it moves page tables and not bytes,
+ * so the first edit of a large mesh does not copy it, and freeing it returns it to the system. By
+ * default glibc would raise the threshold to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
 void st_memory_install(uint64_t budget)
@@ -105,7 +106,7 @@ void st_memory_set_budget(uint64_t budget)
 
 void st_memory_count(int64_t bytes)
 {
-    /* Modular arithmetic: adding a negative number subtracts. */
+    /* Unsigned addition wraps around, so adding a negative number subtracts. */
     atomic_fetch_add_explicit(&used, (uint64_t)bytes, memory_order_relaxed);
     atomic_fetch_add_explicit(&outside, (uint64_t)bytes, memory_order_relaxed);
 }
@@ -145,8 +146,8 @@ bool st_memory_is_full(void)
     return budget != 0 && st_memory_used() >= budget - budget / RESERVE_SHARE;
 }
 
-/* Every thread has a heap of its own, and glibc gives back only what is free at the end of one.
- * Pages in between stay: after minutes of mixed requests more than all that is in use. */
+/* Every thread has a heap of its own, and glibc returns only what is free at the end of one. Pages
+ * in between stay: after minutes of mixed requests they are more than all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

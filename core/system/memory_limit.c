@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A longer line of /proc/self/mountinfo is that of an overlay with many layers. */
+/* Only an overlay with many layers has a longer line in /proc/self/mountinfo. */
 enum { LINE = 8192, DIGITS = 19 };
 
 /* The two versions of control groups, and the files that limit memory in each. Above memory.high
@@ -24,12 +24,12 @@ static const version versions[] = {
 
 enum { VERSION_1, VERSION_2, VERSIONS };
 
-/* Where the process is in each hierarchy; empty where it is in none. */
+/* The path of the process's group in each hierarchy; empty if it is in none. */
 typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
 
-/* "max" and whatever else is no number are no limit. */
+/* "max" and any other text that is no number mean no limit. */
 static uint64_t read_limit(const char *path)
 {
     char text[32];
@@ -56,8 +56,8 @@ static void keep_smallest(st_memory_limit *limit, uint64_t bytes, const char *so
     }
 }
 
-/* The next line without its end, false after the last. Of a line that is too long only the
- * beginning comes. */
+/* Reads the next line without its end; a line that is too long is cut. Returns false after the
+ * last. */
 static bool next_line(FILE *file, char line[LINE])
 {
     if (fgets(line, LINE, file) == NULL) {
@@ -75,7 +75,7 @@ static bool next_line(FILE *file, char line[LINE])
     return true;
 }
 
-/* Is `word` one of a list with commas? */
+/* Is `word` in a list with commas? */
 static bool has_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -119,7 +119,7 @@ static void read_membership(const char *root, membership *m)
     }
 }
 
-/* Blanks and the like are written as \040. */
+/* Blanks and similar characters are written as \040. */
 static void unescape(char *text)
 {
     char *to = text;
@@ -134,10 +134,10 @@ static void unescape(char *text)
 }
 
 typedef struct mount {
-    char *root;  /* of what is mounted: the group that is seen at `point` */
-    char *point; /* where */
+    char *root;  /* root of the mount: the group that is visible at `point` */
+    char *point; /* where it is mounted */
     char *filesystem;
-    char *options; /* of the file system: in version 1 its controllers are among them */
+    char *options; /* options of the file system: in version 1 they include its controllers */
 } mount;
 
 /* NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM SOURCE OPTIONS */
@@ -164,7 +164,7 @@ static bool parse_mount(char *line, mount *m)
     return true;
 }
 
-/* The part of `path` below `above`, NULL when it is not below it or the same. */
+/* Returns the part of `path` below `above`; NULL if it is not below it, "" if they are equal. */
 static const char *below(const char *path, const char *above)
 {
     size_t length = strlen(above);
@@ -177,9 +177,9 @@ static const char *below(const char *path, const char *above)
     return path + length;
 }
 
-/* Look at the process's group and at all above it, as far as this mount shows them. Where it does
- * not show the process's own, its root is above the process ("/.." is what a namespace calls that)
- * or the only group that can be seen: its limit is taken. */
+/* Reads the limits of the process's group and of all above it, as far as this mount shows them. If
+ * it does not show the process's own group, the mount's root either is above the process ("/.." is
+ * the name of that in a namespace) or is the only visible group: then its limit is taken. */
 static void look_through(const char *root, const mount *m, const version *v, const char *path,
                          st_memory_limit *limit)
 {

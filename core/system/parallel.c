@@ -5,16 +5,16 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 
-/* Work in parts, on the stack of its owner. */
+/* Work in parts, on the stack of the thread that has it. */
 typedef struct work {
     he_part part;
     void *context;
     uint32_t parts, begun, running;
-    bool stopped;    /* no more are begun */
-    uint32_t failed; /* the first part that did, or as many as there are */
+    bool stopped;    /* no more parts are begun */
+    uint32_t failed; /* the first part that failed, or the number of parts */
     he_status status;
     he_error err;
-    pthread_cond_t ended; /* nothing is running */
+    pthread_cond_t ended; /* signalled when no part runs */
     struct work *next;
 } work;
 
@@ -23,12 +23,12 @@ struct st_parallel {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    work *first; /* with parts that nobody has begun */
+    work *first; /* list of work with parts that no thread has begun */
     size_t thread_count;
     pthread_t *threads;
 };
 
-/* All below with the lock held, but for the part itself. */
+/* Everything below runs with the lock held, except a part itself. */
 
 static bool has_parts(const work *w)
 {
@@ -55,7 +55,8 @@ static void take_out(st_parallel *h, const work *w)
     }
 }
 
-/* Run the next part of `w`; nobody touches it again once nothing of it runs. */
+/* Runs the next part of `w`. After the last running part has ended, no pool thread uses `w`
+ * again. */
 static void run_next(st_parallel *h, work *w)
 {
     he_error err = {0};

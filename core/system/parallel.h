@@ -1,12 +1,12 @@
-/* parallel.h - threads that take parts of other threads' work: fills in core/base/exec.h.
+/* parallel.h - threads that help other threads with parallel loops: a host for core/base/exec.h.
  *
- * A thread that has work in parts goes through them itself, and idle threads of this pool take some
- * of them. The owner never waits for one to come: with all of them busy, or none, it does the work
- * alone, and work inside a part may be cut into parts again. Only parts that another thread has
- * begun are waited for, and none takes long.
+ * A thread that has work in parts does them itself, and idle threads of this pool take some of
+ * them. The thread never waits for help: if all pool threads are busy, or there are none, it does
+ * the work alone. Work inside a part may be cut into parts again. The thread only waits for parts
+ * that another thread has begun, and each part is short.
  *
- * Idle threads take a part of each work in turn, so that a large import does not keep them from
- * another. One lock, held for as long as it takes to give out a part. */
+ * Idle threads take one part of each work in turn, so that a large import cannot keep them from
+ * other work. There is one lock, held for as long as it takes to hand out a part. */
 #ifndef HE_SYSTEM_PARALLEL_H
 #define HE_SYSTEM_PARALLEL_H
 
@@ -16,11 +16,11 @@
 
 typedef struct st_parallel st_parallel;
 
-/* NULL when memory or threads are out. `threads` may be 0. */
+/* Returns NULL if memory or threads are out. `threads` may be 0. */
 st_parallel *st_parallel_new(size_t threads);
-/* Nobody may have work in parts any more. */
+/* No thread may have work in parts any more. */
 void st_parallel_free(st_parallel *parallel);
-/* Lives as long as `parallel`. */
+/* Returns the host, which lives as long as `parallel`. */
 const he_exec *st_parallel_exec(const st_parallel *parallel);
 
 #endif

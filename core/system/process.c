@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Descriptors are used rather than FILE, which would allocate beside the memory budget. */
+/* Descriptors are used rather than FILE, which would allocate memory that is not counted. */
 static void read_text(const char *path, char *out, size_t size)
 {
     ssize_t got = -1;
@@ -24,7 +24,7 @@ static void read_text(const char *path, char *out, size_t size)
     out[got > 0 ? got : 0] = '\0';
 }
 
-/* Reads a number after blanks, and returns what follows it; NULL where none is there. */
+/* Reads a number after blanks. Returns the text after it, NULL if there is no number. */
 static const char *read_number(const char *text, uint64_t *out)
 {
     size_t used = 0;
@@ -46,8 +46,8 @@ static void read_memory(st_process *out)
     }
 }
 
-/* The start is told in ticks since the machine was booted, as the 22nd word, the 20th after the
- * name, which is in parentheses and may hold anything. */
+/* The start time is in ticks since the machine was booted. It is word 22, the 20th after the name,
+ * which is in parentheses and may contain anything. */
 static void read_start(st_process *out)
 {
     char text[1024];
@@ -66,8 +66,8 @@ static void read_start(st_process *out)
     }
 }
 
-/* Since Linux 6.2 the size of the folder is how many it holds; before, they are counted. The
- * descriptor of the folder itself is one of them. */
+/* Since Linux 6.2 the size of the folder is the number of descriptors; before, they are counted,
+ * the descriptor of the folder itself included. */
 static uint64_t count_descriptors(void)
 {
     static const char folder[] = "/proc/self/fd";

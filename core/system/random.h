@@ -6,7 +6,8 @@
 #include <stdint.h>
 
 uint64_t st_random(void);
-/* `length` characters of A-Z a-z 0-9, each equally likely, and a final null: 10 hold 59 bits. */
+/* Writes `length` characters of A-Z a-z 0-9, each equally likely, and a NUL: 10 characters hold 59
+ * bits. */
 void st_random_id(char *out, size_t length);
 
 #endif

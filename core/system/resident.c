@@ -12,17 +12,17 @@
 
 enum { MEASURE_MICROS = 100 * 1000 };
 
-/* Shares of the budget: how near resident bytes may come to it, and how much more there must be
- * before that is told again. Holes do not fall at once when meshes leave, so that the second
- * question would empty memory where it were asked without that. */
+/* Shares of the budget: how near resident bytes may come to it, and how much they must grow before
+ * it is reported again. Resident memory does not fall at once after an eviction, so without the
+ * growth every call would evict more, until memory is empty. */
 enum { NEAR_SHARE = 32, GROWTH_SHARE = 192 };
 
 static bool watched;
 static _Atomic uint64_t beside;
-static _Atomic uint64_t measured; /* when */
-static _Atomic uint64_t told;     /* resident bytes that were beyond */
+static _Atomic uint64_t measured; /* when it was last measured */
+static _Atomic uint64_t told;     /* resident bytes when st_resident_is_beyond last returned true */
 
-/* 0 where the system does not say. */
+/* Returns 0 if the system does not tell. */
 static uint64_t resident(void)
 {
     char text[64];
@@ -33,7 +33,7 @@ static uint64_t resident(void)
     const ssize_t length = read(fd, text, sizeof text - 1);
     close(fd);
     text[length < 0 ? 0 : length] = '\0';
-    /* Pages of address space, then those that are resident. */
+    /* The first number is pages of address space, the second resident pages. */
     const char *second = strchr(text, ' ');
     return second == NULL ? 0 : strtoull(second, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
 }

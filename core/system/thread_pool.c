@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/prctl.h>
 
-/* Flows whose hashes agree in the low bits share a stamp, and so a turn. */
+/* Flows whose hashes have equal low bits share a stamp, and so take turns as one. */
 enum { FLOWS = 256 };
 
 enum { NAME = 16 /* with its NUL, as prctl(2) has it */ };
@@ -17,7 +17,7 @@ typedef struct waiting {
     uint64_t number; /* in the order of submission */
 } waiting;
 
-/* A heap: none comes before its parent, which is at (i - 1) / 2. */
+/* A heap: no task comes before its parent, which is at (i - 1) / 2. */
 typedef struct queue {
     waiting *heap;
     size_t count, room;
@@ -29,11 +29,11 @@ struct st_pool {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
-    size_t capacity; /* of each queue */
+    size_t capacity; /* capacity of each queue */
     queue queues[ST_SHARES];
-    size_t most_long;     /* reads and jobs that may run at once */
+    size_t most_long;     /* most tasks of LONG and JOB that may run at once */
     double clock;         /* stamp of the task that was begun last */
-    double stamps[FLOWS]; /* of the last task of each */
+    double stamps[FLOWS]; /* stamp of the last task of each flow */
     uint64_t submitted;
     char name[NAME];
     pthread_t *threads;
@@ -47,7 +47,7 @@ static bool is_before(const waiting *a, const waiting *b)
     return a->stamp != b->stamp ? a->stamp < b->stamp : a->number < b->number;
 }
 
-/* Returns false when memory is out. */
+/* Returns false if memory is out. */
 static bool make_room(queue *q)
 {
     if (q->count < q->room) {
@@ -62,7 +62,7 @@ static bool make_room(queue *q)
     return heap != NULL;
 }
 
-/* There must be room. */
+/* The queue must have room. */
 static void push(queue *q, const waiting *w)
 {
     size_t at = q->count++;
@@ -103,7 +103,7 @@ static bool may_begin(const st_pool *pool, st_share share)
            (share == ST_SHARE_BRIEF || long_running < pool->most_long);
 }
 
-/* The share whose first task is next; ST_SHARES when none may begin. */
+/* Returns the share whose first task is next; ST_SHARES if none may begin. */
 static st_share next_share(const st_pool *pool)
 {
     st_share next = ST_SHARES;
@@ -136,7 +136,8 @@ static void run_next(st_pool *pool, st_share share)
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
-    /* One more of the long ones may begin, on another thread if this one finds something else. */
+    /* Another LONG task or JOB may begin now. The signal wakes a thread for it, because this one may
+     * take a task of another share. */
     pthread_cond_signal(&pool->wake);
 }
 
@@ -153,7 +154,7 @@ static void *run(void *context)
             run_next(pool, share);
         }
     }
-    /* Others may wait for a share's turn that will not come any more. */
+    /* Threads may be waiting for a task of a share that will not come any more. */
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -243,7 +244,7 @@ void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* FNV-1a, 64 bits; texts end in their NUL, so that no two pairs read alike. */
+/* FNV-1a, 64 bits. Each text is added with its NUL, so no two pairs of texts give one sequence. */
 static uint64_t add_text(uint64_t hash, const char *text)
 {
     do {
