@@ -16,10 +16,10 @@ static bool exists(const char *path)
     return stat(path, &status) == 0;
 }
 
-/* --- files that nobody writes to --- */
+/* --- files that no process writes to --- */
 
-/* A URI that opens the file as immutable, so that SQLite makes neither a lock nor a -shm for it;
- * unless it has a -wal, which SQLite then reads with it. */
+/* Makes a URI that opens the file as immutable, so that SQLite makes neither a lock nor a -shm for
+ * it; unless there is a -wal, which SQLite then has to read too. */
 static bool uri_of(const char *file, char *out, size_t size)
 {
     static const char hex[] = "0123456789ABCDEF";
@@ -57,7 +57,7 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
 }
 
-/* The first thing that SQLite finds wrong. */
+/* Reports the first fault that SQLite finds. */
 static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     sqlite3_stmt *s = NULL;
@@ -127,7 +127,7 @@ bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_
     return true;
 }
 
-/* What may lie in the folder of a store. */
+/* Names of files that a store's folder may contain. */
 static const char *const own_names[] = {
     "hedge.db",         "hedge.db-wal",    "hedge.db-shm",
     "hedge.db-journal", "hedge.mark",      "lock",
@@ -144,8 +144,8 @@ static bool names_file_of(const char *folder, const char *own, const struct stat
            there.st_dev == status->st_dev && there.st_ino == status->st_ino;
 }
 
-/* Would it take the place of a file of a store: the one that is copied, by whatever path, or any
- * other in whose folder it lies? */
+/* Would the backup replace a file of a store: the one that is copied, by whatever path, or any
+ * other whose folder contains the file? */
 static bool may_be_backup(const char *store, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     char folder[PATH_MAX], database[PATH_MAX];
@@ -166,7 +166,7 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         file, "it would be replayed onto the backup; remove it, or name another file", message);
 }
 
-/* Space that is left to the store: the daemon beside goes on writing. */
+/* Free space that a backup leaves to the store, because the daemon goes on writing. */
 enum { SPARE_BYTES = 64 << 20 };
 
 static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESSAGE])
@@ -177,7 +177,7 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     st_folder_above(file, folder);
     if (st_db_number(from, "PRAGMA page_count", 0, &pages) != ST_SQL_DONE ||
         statvfs(folder, &system) != 0) {
-        return true; /* writing will tell */
+        return true; /* if there is too little space, the write will fail */
     }
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
     const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;
@@ -190,8 +190,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
 {
     st_db to;
     st_sql outcome = st_db_open(&to, part, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, 0);
-    /* An unfinished copy is deleted, so it needs no rollback journal and only one sync at its end.
-     */
+    /* An incomplete copy is deleted, so it needs no rollback journal and only one sync at its
+     * end. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(&to, "PRAGMA journal_mode = OFF");
     }
@@ -200,7 +200,7 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
     }
     if (outcome == ST_SQL_DONE) {
         sqlite3_backup *backup = sqlite3_backup_init(to.handle, "main", from->handle, "main");
-        /* In one go: the state of one moment, while others write on. */
+        /* Copies all pages in one step: the state of one moment, while other connections write. */
         (void)(backup != NULL && sqlite3_backup_step(backup, -1));
         outcome = st_db_outcome(&to, backup == NULL ? sqlite3_extended_errcode(to.handle)
                                                     : sqlite3_backup_finish(backup));
@@ -232,7 +232,7 @@ static bool finish(const char *part, const char *file, char message[ST_SQLITE_ME
     return sync_path(folder, O_DIRECTORY, message);
 }
 
-/* Makes an empty file that its owner alone may read. */
+/* Makes an empty file that only its owner may read. */
 static bool begin_part(const char *part, char message[ST_SQLITE_MESSAGE])
 {
     int file = open(part, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -273,7 +273,7 @@ bool st_sqlite_backup(const char *folder, const char *file, char message[ST_SQLI
     return good;
 }
 
-/* --- looking --- */
+/* --- journals that only read --- */
 
 static bool open_readers(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {

@@ -1,11 +1,10 @@
 /* The commit thread.
  *
- *     WRITES   what is queued is taken as one group (take_group) and committed (commit_group); a
- *              slice of background work goes with it. commit_group leads to the states below
- *     FULL     what is queued is lost (lose); removals are admitted, the ballast given up for them;
+ *     WRITES   everything queued is taken as one group (take_group) and committed (commit_group),
+ *              with a slice of background work. commit_group leads to the states below
+ *     FULL     what is queued is lost (lose); removals are accepted, the ballast is freed for them;
  *              each second seek_space tries to lead back to WRITES
- *     FAILED   all that comes is lost; nothing leads out of it
- */
+ *     FAILED   everything appended is lost; the state never ends */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
@@ -16,29 +15,29 @@
 enum {
     GROUP_RECORDS = 4096,
     GROUP_BYTES = 8 << 20,
-    SLICE_BESIDE = 64 << 10, /* bytes of background work while others wait */
-    SLICE_ALONE = 256 << 10, /* who comes meanwhile waits for it */
-    /* A checkpoint keeps others waiting, the longer the more pages it writes. It comes more often
-     * while slices fill the log, so that it is as short as a slice. */
+    SLICE_BESIDE = 64 << 10, /* bytes of background work while records wait */
+    SLICE_ALONE = 256 << 10, /* bytes otherwise: records that come meanwhile wait for it */
+    /* Records wait for a checkpoint, the longer the more pages it writes. While slices fill the
+     * log, checkpoints come more often, so that one is as short as a slice. */
     CHECKPOINT_PAGES = 1000,
     CHECKPOINT_PAGES_BESIDE = 256,
-    LONG_LOG = 64 << 20, /* bytes of the -wal from which on loads wait for a checkpoint */
+    LONG_LOG = 64 << 20, /* bytes of the -wal from which loads wait for a checkpoint */
     SECOND = 1000000,
     RETRY_MICROS = 20000,
     CLOSING_TRIES = 50
 };
 
-/* What one transaction takes. */
+/* The content of one transaction. */
 typedef struct group {
     st_item *first, *last;
-    uint64_t records /* and notes */, position, made, removed;
+    uint64_t records /* records and notes */, position, made, removed;
     bool freeing;
-    st_stage *stage; /* whose slice is written beside; NULL: something is purged */
+    st_stage *stage; /* the stage whose slice is written too; NULL: something is purged */
     size_t slice;    /* bytes of background work; 0: none */
-    bool purged;     /* with this transaction nothing is left to be purged */
+    bool purged;     /* after this transaction nothing is left to be purged */
 } group;
 
-/* --- taking from the queue; under the lock --- */
+/* --- taking from the queue; the caller holds the lock --- */
 
 static void count_room(group *g, const st_sqlite_room *room)
 {
@@ -87,7 +86,7 @@ static void put_back(st_sqlite *self, const group *g)
     }
 }
 
-/* --- telling --- */
+/* --- reporting to the listener --- */
 
 static void tell(st_sqlite *self, const st_loss *loss, uint64_t position)
 {
@@ -140,7 +139,7 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Its slice was written, or will not be. Under the lock. */
+/* Ends the slice of a stage, which was written or never will be. The caller holds the lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -153,7 +152,7 @@ static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
     pthread_cond_broadcast(&self->moved);
 }
 
-/* Up to `position` all is durable or told. Under the lock. */
+/* Sets the position up to which everything is durable or reported. The caller holds the lock. */
 static void move(st_sqlite *self, uint64_t position)
 {
     self->told = position;
@@ -162,7 +161,7 @@ static void move(st_sqlite *self, uint64_t position)
     }
 }
 
-/* --- when the disk says no --- */
+/* --- faults of the disk --- */
 
 static void stop_writing(st_sqlite *self, st_write_mode mode)
 {
@@ -182,7 +181,8 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Takes from the queue what is lost: the rooms, and in FAILED the rest too. Under the lock. */
+/* Takes the lost items from the queue: the rooms, and in FAILED all others too. The caller holds
+ * the lock. */
 static st_item *take_lost(st_sqlite *self)
 {
     st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
@@ -211,7 +211,7 @@ static bool has_room(const st_sqlite *self)
     return false;
 }
 
-/* Deletes the staged contents of lost records. Under the lock. */
+/* Deletes the staged contents of lost records. The caller holds the lock. */
 static void unstage(st_sqlite *self, st_sqlite_room *room)
 {
     for (size_t i = 0; i < room->count; i++) {
@@ -224,8 +224,8 @@ static void unstage(st_sqlite *self, st_sqlite_room *room)
     }
 }
 
-/* What is queued is lost, and so are the rooms that are still out when they come. Under the lock,
- * which is given up meanwhile. */
+/* Loses everything queued; rooms that are still reserved are lost when they come. The caller holds
+ * the lock, which is released meanwhile. */
 static void lose(st_sqlite *self)
 {
     st_item *lost = take_lost(self);
@@ -290,7 +290,7 @@ static st_sql put_progress(st_sqlite *self, const st_progress *progress)
                     progress->meshes, (uint64_t)st_progress_sum(progress));
 }
 
-/* What SQLite says of it now, it forgets with the next statement. */
+/* Copies SQLite's message now, because the next statement replaces it. */
 static void note_refusal(st_sqlite *self, st_sql outcome)
 {
     if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
@@ -336,7 +336,7 @@ static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
     return outcome;
 }
 
-/* Memory that others give back, a lock of another program: both come to an end. */
+/* Waits a moment, until other threads free memory or another program releases its lock. */
 static void rest(st_sqlite *self)
 {
     sqlite3_db_release_memory(self->db.handle);
@@ -355,8 +355,8 @@ static bool is_closing(st_sqlite *self)
     return closing;
 }
 
-/* Tries until the disk has said yes or no. Without background work where that does not fit; a purge
- * alone is not tried again so: it would be due again at once. */
+/* Tries until the disk has accepted or refused. A group that does not fit is tried without
+ * background work; a purge alone is not, because it would be due again at once. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
@@ -364,7 +364,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
         if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
         } else if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
-            /* Damage in what is deleted is no reason to stop: once more without that. */
+            /* Damage in rows that are being deleted must not stop the journal: the group is tried
+             * without that slice. */
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
             rest(self);
@@ -376,7 +377,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* A mark that is behind tells less, but nothing wrong. */
+    /* If the mark is not written it names an older commit, which reveals less but is never
+     * wrong. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }
@@ -403,7 +405,7 @@ static void end_group(st_sqlite *self, group *g, size_t slice_wanted)
 
 static void count_commit(st_sqlite *self, const group *g, uint64_t micros)
 {
-    if (g->records > 0) { /* else it is background work alone, which no client waits for */
+    if (g->records > 0) { /* otherwise it is background work alone, which no client waits for */
         st_histogram_add(&self->commits, st_scale_micros, micros);
         st_histogram_add(&self->groups, st_scale_counts, g->records);
     }
@@ -436,7 +438,8 @@ static bool log_is_long(const st_sqlite *self)
     return self->log_pages * ST_LOG_PAGE_BYTES > LONG_LOG;
 }
 
-/* Writes the log back into the database, as far as readers let it. False when the disk failed. */
+/* Writes the log back into the database, as far as readers allow. Returns false if the disk
+ * failed. */
 static bool checkpoint(st_sqlite *self, int how)
 {
     const uint64_t begun = st_clock_micros();
@@ -445,15 +448,16 @@ static bool checkpoint(st_sqlite *self, int how)
     st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
-    /* Loads wait for one checkpoint that no load kept from writing all back: those that begin after
-     * it read nothing from the log, and the next commit begins it anew. */
+    /* Loads go on waiting if loads under way may have kept this checkpoint from writing everything
+     * back. After a complete one, new loads read nothing from the log, and the next commit starts
+     * the log anew. */
     self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
     note_refusal(self, outcome);
-    /* The disk being full is no failure here: the log is whole. */
+    /* A full disk is no failure here, because the log is intact. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
@@ -462,7 +466,7 @@ static void checkpoint_when_due(st_sqlite *self, const group *g)
 {
     const uint64_t pages = g->slice > 0 ? CHECKPOINT_PAGES_BESIDE : CHECKPOINT_PAGES;
     if (self->log_pages < self->log_tried) {
-        self->log_tried = 0; /* it was begun anew */
+        self->log_tried = 0; /* the next commit starts the log anew */
     }
     if (self->log_pages >= self->log_tried + pages) {
         (void)checkpoint(self, SQLITE_CHECKPOINT_PASSIVE);
@@ -480,8 +484,8 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
 
 /* --- the disk is full --- */
 
-/* Does what can be done with little space, purges and gives pages back. Under the lock, which is
- * given up meanwhile. */
+/* Makes what can be done with little space: purges, and returns pages. The caller holds the lock,
+ * which is released meanwhile. */
 static bool make_space(st_sqlite *self)
 {
     bool good, closing;
@@ -505,7 +509,8 @@ static bool make_space(st_sqlite *self)
             if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
                 good = true;
             } else if (outcome == ST_SQL_FAILED || outcome == ST_SQL_DAMAGED) {
-                /* What a sync that failed has left on the disk is not known: no more is written. */
+                /* After a failed sync the state of the disk is unknown, so nothing more is
+                 * written. */
                 pthread_mutex_unlock(&self->lock);
                 stop_writing(self, ST_WRITES_FAILED);
                 pthread_mutex_lock(&self->lock);
@@ -516,7 +521,7 @@ static bool make_space(st_sqlite *self)
     return good;
 }
 
-/* The log is cut where nobody reads: the space that it kept for itself is free like any other. */
+/* Truncates the log if no connection reads it, so that its space is free for other files. */
 static bool cut_log(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -525,8 +530,9 @@ static bool cut_log(st_sqlite *self)
     return is_read || checkpoint(self, SQLITE_CHECKPOINT_TRUNCATE);
 }
 
-/* Ends the state of a full disk if the ballast can be made again and there is space beside it: with
- * less the next few changes would fill it again. Under the lock, which is released meanwhile. */
+/* Ends the FULL state if the ballast can be made again and there is space beside it: with less, the
+ * next few changes would fill the disk again. The caller holds the lock, which is released
+ * meanwhile. */
 static void seek_space(st_sqlite *self)
 {
     pthread_mutex_unlock(&self->lock);
@@ -545,7 +551,7 @@ static void seek_space(st_sqlite *self)
 
 /* --- the thread --- */
 
-/* Is there something to be done now? Under the lock. */
+/* Has the thread something to do now? The caller holds the lock. */
 static bool has_work(const st_sqlite *self)
 {
     switch (self->mode) {
@@ -560,7 +566,7 @@ static bool has_work(const st_sqlite *self)
     return self->first != NULL || (self->losing && self->old_rooms == 0);
 }
 
-/* Under the lock, which is given up meanwhile. */
+/* The caller holds the lock, which is released meanwhile. */
 static void work_once(st_sqlite *self)
 {
     if (self->mode == ST_WRITES_FAILED || self->losing) {
@@ -606,7 +612,7 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
-    /* On a full disk what was to be deleted is still queued. */
+    /* On a full disk some deletions are still queued. */
     free_items(self->first);
     self->first = NULL;
     self->end = &self->first;

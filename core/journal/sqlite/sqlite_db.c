@@ -12,7 +12,8 @@
 
 /* --- memory --- */
 
-/* SQLite asks for the size of its blocks, which base/mem.h does not tell: it lies before each. */
+/* SQLite asks for the size of its blocks, which base/mem.h does not know, so it is stored before
+ * each. */
 enum { HEADER = 16, ROUND = 8 };
 
 static void *block_resize(void *memory, int size)
@@ -88,7 +89,7 @@ bool st_db_prepare(void)
 
 /* --- connections --- */
 
-/* How long another program may hold a lock before a statement gives up. */
+/* How long a statement waits for another program's lock. */
 enum { BUSY_MILLIS = 5000 };
 
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count)
@@ -101,15 +102,16 @@ st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *tex
     }
     sqlite3_extended_result_codes(db->handle, 1);
     sqlite3_busy_timeout(db->handle, BUSY_MILLIS);
-    /* SQLite does not report errors of the checkpoint that closing a connection makes: so it is
-     * made before, and looked at. */
+    /* SQLite does not report errors of the checkpoint that it makes while closing, so that is
+     * switched off and the checkpoint is made before. */
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     return st_db_outcome(db, code);
 }
 
-/* 16 pages, so that the path from the root of a tree to a row stays in memory. */
+/* The cache has at least 16 pages, so that the path from the root of a tree to a row stays in
+ * it. */
 enum { LEAST_CACHE_KIB = 64, FULL_CACHE_BUDGET = 256 << 20 };
 
 st_sql st_db_set_cache(st_db *db, unsigned kib)
@@ -161,8 +163,8 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite tells apart only ENOSPC, and not where it makes the -shm longer. A sync that fails
-         * so has failed as any other. */
+        /* SQLite distinguishes only ENOSPC, and not while it extends the -shm. A sync that fails
+         * with ENOSPC counts as failed like any other. */
         if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
             const int reason = sqlite3_system_errno(db->handle);
             return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;

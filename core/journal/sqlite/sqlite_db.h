@@ -1,5 +1,5 @@
-/* sqlite_db.h - one connection to the database, and what its statements come to. This header alone
- * includes SQLite's.
+/* sqlite_db.h - one connection to the database, and the outcomes of its statements. Only this
+ * header includes SQLite's.
  *
  * A connection has a table of statements, each prepared at its first use. It is used by one thread
  * at a time. */
@@ -11,51 +11,55 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How a statement went. After anything below ST_SQL_ROW the transaction is to be rolled back. */
+/* The outcome of a statement. After anything from ST_SQL_FULL on, the caller must roll the
+ * transaction back. */
 typedef enum st_sql {
     ST_SQL_DONE,
-    ST_SQL_ROW,       /* there is a row to be read */
-    ST_SQL_FULL,      /* the disk, or its user's share of it, is full */
+    ST_SQL_ROW,       /* a row can be read */
+    ST_SQL_FULL,      /* the disk, or the user's quota, is full */
     ST_SQL_BUSY,      /* another program has locked the database */
-    ST_SQL_NO_MEMORY, /* the same may succeed later */
-    ST_SQL_DAMAGED,   /* what was read cannot be */
-    ST_SQL_FAILED     /* a write, a sync, a read failed, or the database lacks what must be there */
+    ST_SQL_NO_MEMORY, /* a retry may succeed */
+    ST_SQL_DAMAGED,   /* stored bytes are damaged */
+    ST_SQL_FAILED     /* a write, sync or read failed, or the database lacks something that must be
+                         there */
 } st_sql;
 
 enum { ST_DB_STATEMENTS = 40 };
 
 typedef struct st_db {
     sqlite3 *handle;
-    const char *const *texts; /* of the statements; NULL: a statement that is not there */
+    const char *const *texts; /* texts of the statements; NULL: no such statement */
     sqlite3_stmt *statements[ST_DB_STATEMENTS];
 } st_db;
 
-/* Has SQLite take its memory from base/mem.h, counted but not refused by the budget. Called by
- * every opener; only the first call does something. False when SQLite cannot start. */
+/* Makes SQLite allocate by base/mem.h, counted but never refused by the budget. Every function that
+ * opens a database calls it; only the first call has an effect. Returns false if SQLite cannot
+ * start. */
 bool st_db_prepare(void);
 
-/* `flags` are SQLite's; `texts` has `count` statements and outlives the connection. The caller
- * closes the connection after a failure too. */
+/* Opens a connection. `flags` are SQLite's; `texts` has `count` statements and must outlive the
+ * connection. The caller closes the connection after a failure too. */
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count);
-/* Bounds the pages that the connection keeps in memory: `kib` where the memory budget is 256 MiB or
- * more, in proportion below, because SQLite is never refused memory. */
+/* Limits the pages that the connection caches: `kib` if the memory budget is 256 MiB or more, in
+ * proportion below, because SQLite is never refused memory. */
 st_sql st_db_set_cache(st_db *db, unsigned kib);
-/* False where SQLite refuses. */
+/* Returns false if SQLite fails to close. */
 bool st_db_close(st_db *db);
-/* What SQLite last said about the connection. */
+/* Returns SQLite's last message about the connection. */
 const char *st_db_message(const st_db *db);
 
-/* Statements without parameters and rows, such as a pragma: rows are passed over. */
+/* Runs a text without parameters, such as a pragma, and ignores its rows. */
 st_sql st_db_run(st_db *db, const char *text);
-/* The first number of the first row; `otherwise` where there is none. */
+/* Reads the first number of the first row; `otherwise` if there is none. */
 st_sql st_db_number(st_db *db, const char *text, int64_t otherwise, int64_t *out);
 
 /* Binds the parameters of statement `which` as `format` says, a letter each, and takes the first
  * step:
  *     i  int64_t or uint64_t        d  double
  *     t  const char *               b  const void *, size_t
- * Texts and bytes are borrowed until the statement is reset. With ST_SQL_ROW *out is the statement,
- * to be read, stepped on with st_db_step, and reset with st_db_reset; else it is reset already. */
+ * Texts and bytes are borrowed until the statement is reset. With ST_SQL_ROW *out is the statement:
+ * the caller reads it, steps on with st_db_step, and resets it with st_db_reset. With any other
+ * outcome it is reset already. */
 st_sql st_db_find(st_db *db, unsigned which, sqlite3_stmt **out, const char *format, ...);
 st_sql st_db_step(st_db *db, sqlite3_stmt *statement);
 void st_db_reset(sqlite3_stmt *statement); /* takes NULL */
@@ -68,9 +72,9 @@ static inline uint64_t st_db_word(sqlite3_stmt *statement, int column)
 {
     return (uint64_t)sqlite3_column_int64(statement, column);
 }
-/* Copies a text, cut to `size` bytes with its end. */
+/* Copies a text, cut to `size` bytes with its NUL. */
 void st_db_text(sqlite3_stmt *statement, int column, char *out, size_t size);
-/* The bytes of a column; NULL where there are none. */
+/* Returns the bytes of a column; NULL if it is empty. */
 const unsigned char *st_db_bytes(sqlite3_stmt *statement, int column, size_t *size);
 
 #endif

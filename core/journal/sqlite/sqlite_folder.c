@@ -22,7 +22,7 @@ bool st_folder_fail(st_folder *folder, const char *what, const char *name)
 
 /* --- the lock --- */
 
-/* The first line of the lock's file: the process and host that have it. */
+/* Reads the first line of the lock file: the process and host that have the lock. */
 static void read_owner(int lock, char out[WHO])
 {
     ssize_t got = pread(lock, out, WHO - 1, 0);
@@ -37,7 +37,7 @@ static bool write_owner(st_folder *folder)
     int length = snprintf(who, sizeof who, "process %ld on %s\n", (long)getpid(), host);
     return (ftruncate(folder->lock, 0) == 0 &&
             pwrite(folder->lock, who, (size_t)length, 0) == length) ||
-           /* The lock is held even if this fails; other processes then cannot name its owner. */
+           /* The lock is held even if writing fails; other processes then cannot name its owner. */
            errno == ENOSPC || errno == EDQUOT || st_folder_fail(folder, "cannot write", "lock");
 }
 
@@ -82,7 +82,7 @@ void st_folder_above(const char *path, char out[PATH_MAX])
     out[length == 0 ? 1 : length] = '\0';
 }
 
-/* The folder above it has the name of a folder that is new. */
+/* A new folder is durable when the folder above it is synced. */
 static bool sync_above(const char *path)
 {
     char above[PATH_MAX];
@@ -103,7 +103,7 @@ bool st_folder_open(st_folder *folder, const char *path)
     }
     if (made && !sync_above(path)) {
         (void)st_folder_fail(folder, "cannot sync the folder above", "");
-        (void)rmdir(path); /* the next start is to try it again */
+        (void)rmdir(path); /* so that the next start tries again */
         return false;
     }
     folder->folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -123,7 +123,7 @@ void st_folder_close(st_folder *folder)
 
 const char *st_folder_doubt(const st_folder *folder)
 {
-    /* From linux/magic.h, and fs/nfs, fs/fuse, fs/9p, fs/smb of the kernel. */
+    /* Magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p, fs/smb of the kernel. */
     enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
     const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
     struct statfs system;
@@ -249,7 +249,8 @@ bool st_ballast_make(st_folder *folder)
     return made;
 }
 
-/* Does the file system say so, and give them? A quota shows only there. */
+/* Does the file system report free blocks, and can they be allocated? Only allocation shows a
+ * quota. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;

@@ -1,10 +1,10 @@
-/* Do the indexes of the table of meshes say what the table says? A mesh whose entry is damaged
- * would seem not to be there, and another could be made under its id.
+/* Compares the table of meshes with its indexes. A mesh whose index entry is damaged would seem not
+ * to exist, and another could be made under its id.
  *
  * SQLite's integrity_check looks up each row in each index, at random places of the file: half a
- * minute for a million meshes. Here table and indexes are read from one end to the other: their
- * structure is whole (quick_check), the entries of an index are in order, so that what is there is
- * found, and the sums of hashes of all entries are those of the rows. */
+ * minute for a million meshes. Here table and indexes are read sequentially. They are equal if
+ * their structure is intact (quick_check), the entries of each index are in order, so that lookups
+ * find what is there, and the sums of hashes of all entries equal those of the rows. */
 #include "base/siphash.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -18,7 +18,7 @@ static const char *const texts[STATEMENTS] = {
                      "ORDER BY incarnation",
 };
 
-/* Of the ids and of the incarnations, each with its key. */
+/* Sums over the ids and over the incarnations, each hashed with its key. */
 typedef struct sums {
     uint64_t ids, incarnations;
 } sums;

@@ -1,15 +1,16 @@
-/* sqlite_journal.h - the journal that keeps meshes in a folder, by SQLite.
+/* sqlite_journal.h - the journal that stores meshes in a folder, by SQLite.
  *
- * One thread and one connection write and checkpoint. It commits all that is queued as one group,
- * waits for the disk once, tells the listener, and takes the next: a group forms while the sync
- * before it runs. Other connections only read. (SQLite 3.7.0 to 3.51.2 can lose pages when one
- * connection commits beside a checkpoint on another; so there is no other.)
+ * One thread and one connection write and checkpoint. The thread commits everything queued as one
+ * group, waits for the disk once, calls the listener, and takes the next group: a group collects
+ * while the sync of the one before runs. Other connections only read. (SQLite 3.7.0 to 3.51.2 can
+ * lose pages when one connection commits while another checkpoints; so there is no other that
+ * does.)
  *
- * WHEN THE DISK SAYS NO. A group that finds the disk full is tried again without background work;
- * then it is lost, with all that is queued, and the journal is FULL: it admits only removals, gives
- * up its ballast for them, and looks each second whether there is space again, beside the ballast.
- * After any other failure of a write or a sync it is FAILED until a restart: what the kernel said
- * about the pages can no longer be believed. Reads go on in both. */
+ * FAULTS OF THE DISK. A group that finds the disk full is tried again without background work; then
+ * it is lost, with everything queued, and the journal is FULL: it accepts only removals, frees its
+ * ballast for them, and checks each second whether there is space again for the ballast and some
+ * more. After any other failed write or sync it is FAILED until a restart, because the state of the
+ * pages on the disk is then unknown. Reads go on in both states. */
 #ifndef HE_JOURNAL_SQLITE_JOURNAL_H
 #define HE_JOURNAL_SQLITE_JOURNAL_H
 
@@ -17,26 +18,28 @@
 #include "journal/sqlite/sqlite_message.h"
 
 typedef struct st_sqlite_options {
-    const char *folder;   /* made where it is missing */
-    const char *release;  /* the name of this one, for messages */
-    uint64_t queue_bytes; /* that may be queued or reserved; 0: ST_SQLITE_QUEUE */
-    uint64_t keys;        /* that are kept of all meshes together; 0: ST_SQLITE_KEYS */
+    const char *folder;   /* made if it is missing */
+    const char *release;  /* name of this release, for messages */
+    uint64_t queue_bytes; /* most bytes queued or reserved; 0: ST_SQLITE_QUEUE */
+    uint64_t keys;        /* most keys of all meshes together; 0: ST_SQLITE_KEYS */
 } st_sqlite_options;
 
 enum { ST_SQLITE_QUEUE = 64 << 20, ST_SQLITE_KEYS = 1 << 20 };
 
 typedef struct st_sqlite_opened {
     st_journal journal;
-    bool made; /* the start that made the store is not over: at this one, or as it was killed at an
-                  earlier one. It holds nothing but what that start put in */
-    char message[ST_SQLITE_MESSAGE]; /* a doubt, "" for none; after a refusal the reason */
+    /* the store is new: the start that made it, this one or an earlier one that was killed, is not
+     * over. It contains only what that start has put in */
+    bool made;
+    char message[ST_SQLITE_MESSAGE]; /* a warning, "" for none; after a failure the reason */
 } st_sqlite_opened;
 
-/* False with the reason in `message`: another daemon has the folder, the file is a newer release's
- * or no store, what was acknowledged is not all there, the system refuses. */
+/* Opens the store. Returns false with the reason in `message` if another daemon has the folder, if
+ * the file is no store or one of a newer release, if commits that were acknowledged are missing, or
+ * if the system refuses. */
 bool st_sqlite_open(const st_sqlite_options *options, st_sqlite_opened *out);
 
-/* The version of SQLite that the process was given; static. */
+/* Returns the version of the SQLite library in use; static. */
 const char *st_sqlite_library(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* sqlite_message.h - sentences that say why something was refused. */
+/* sqlite_message.h - writes sentences that say why something was refused. */
 #ifndef HE_JOURNAL_SQLITE_MESSAGE_H
 #define HE_JOURNAL_SQLITE_MESSAGE_H
 
@@ -6,7 +6,7 @@
 
 enum { ST_SQLITE_MESSAGE = 768 };
 
-/* Writes the sentence, cut where it is too long; false. */
+/* Writes a sentence, cut if it is too long. Returns false. */
 __attribute__((format(printf, 2, 3))) bool st_refuse(char message[ST_SQLITE_MESSAGE],
                                                      const char *format, ...);
 

@@ -1,18 +1,18 @@
-/* Notes: how jobs are, and keys of requests that changed nothing. A note is a room without records,
- * so that it takes its place among them: what is lost of it is lost with those that came after.
+/* Notes: the state of jobs, and keys of requests that changed nothing. A note is a room without
+ * records, so that it has a position among them: if it is lost, so is everything after it.
  *
  *     accepted ----> done             by the room of the record that is the job's work: both or
  *         |            |              neither
- *         +------------+---> as it ended, with its answer ---> forgotten, by its owner or by age */
+ *         +------------+---> its end, with its answer ---> deleted, by its owner or by age */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
 
-/* --- into the queue --- */
+/* --- writing to the queue --- */
 
 enum { JOB_TEXTS = 5 + ST_JOB_HEADERS };
 
-/* The places of the texts of a job. */
+/* Lists the text members of a job. */
 static void texts_of(st_job *job, const char **out[JOB_TEXTS])
 {
     out[0] = &job->operation;
@@ -25,7 +25,7 @@ static void texts_of(st_job *job, const char **out[JOB_TEXTS])
     }
 }
 
-/* What a copy of the job points to takes so many bytes. */
+/* Returns the bytes of a copy of all that the job points to. */
 static size_t bytes_of(const st_job *job)
 {
     st_job copy = *job;
@@ -77,7 +77,7 @@ st_status st_sqlite_note(void *context, const st_note *note, uint64_t *position)
     return ST_OK;
 }
 
-/* --- into the table --- */
+/* --- writing to the table --- */
 
 static st_sql make_row(st_sqlite *self, const st_job *job)
 {
@@ -89,12 +89,13 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                  (int64_t)job->status, (uint64_t)job->shown, job->headers[ST_JOB_TYPE],
                  job->headers[ST_JOB_DISPOSITION], job->headers[ST_JOB_TAG],
                  job->headers[ST_JOB_WARNINGS], job->body, job->length, (uint64_t)st_job_sum(job));
-    /* Two that nobody forgot go for each that comes. */
+    /* For each new job, up to two expired ones are deleted. */
     return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_JOBS_TRIM, "d", now - ST_JOB_SECONDS)
                                   : outcome;
 }
 
-/* The records of this transaction are its work. One that is not kept, or is damaged, is left. */
+/* Marks the job as done, because the records of this transaction are its work. A job that is not
+ * stored, or is damaged, is skipped. */
 static st_sql end_row(st_sqlite *self, const st_job *work)
 {
     sqlite3_stmt *s;
@@ -131,9 +132,9 @@ st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room)
     return ST_SQL_DONE;
 }
 
-/* --- out of it --- */
+/* --- reading the table --- */
 
-/* A row whose sum is wrong is as good as none. */
+/* A row with a wrong checksum is skipped. */
 st_status st_sqlite_jobs(void *context, st_take_job *take, void *to)
 {
     st_sqlite *self = context;

@@ -1,4 +1,4 @@
-/* The start: folder, lock, database, what it says of itself, the mark. The end. */
+/* Opens and closes the store: folder, lock, database, checks, mark. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_journal.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* SQLite has no error of its own where a sum or a value of a row is what is wrong. */
+/* Returns SQLite's message; a wrong checksum or value of a row has none, so it gets one here. */
 static const char *damage_of(const st_db *db)
 {
     const int code = db->handle == NULL ? SQLITE_OK : sqlite3_errcode(db->handle);
@@ -50,10 +50,14 @@ static st_sql set_up(st_db *db)
 {
     static const char *const pragmas[] = {
         /* These two pragmas take effect only before the first table is made. */
-        "PRAGMA page_size = 4096",       "PRAGMA auto_vacuum = INCREMENTAL",
-        "PRAGMA journal_mode = WAL",     "PRAGMA synchronous = FULL",
-        "PRAGMA wal_autocheckpoint = 0", "PRAGMA journal_size_limit = 67108864",
-        "PRAGMA cell_size_check = ON",   "PRAGMA mmap_size = 0", /* a bad sector would be SIGBUS */
+        "PRAGMA page_size = 4096",
+        "PRAGMA auto_vacuum = INCREMENTAL",
+        "PRAGMA journal_mode = WAL",
+        "PRAGMA synchronous = FULL",
+        "PRAGMA wal_autocheckpoint = 0",
+        "PRAGMA journal_size_limit = 67108864",
+        "PRAGMA cell_size_check = ON",
+        "PRAGMA mmap_size = 0", /* with a mapping a bad sector would raise SIGBUS */
     };
     st_sql outcome = st_db_set_cache(db, CACHE_KIB);
     for (size_t i = 0; i < sizeof pragmas / sizeof *pragmas && outcome == ST_SQL_DONE; i++) {
@@ -91,7 +95,7 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
 static bool make_store(st_sqlite *self, const char *path, const char *release,
                        st_sqlite_opened *out)
 {
-    /* Before the database, so that no start finds that and takes the store for an old one. */
+    /* Made before the database, so that no start takes a half-made store for an existing one. */
     if (!st_folder_make(&self->folder, "fresh") || !st_folder_sync(&self->folder)) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -104,7 +108,7 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Is all there that was committed? */
+/* Does the database have every commit that the mark names? */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;
@@ -134,9 +138,10 @@ static bool check_meshes(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* A mesh whose entry in an index is damaged would seem not to be there, and most tables are written
- * to on behalf of all meshes: the first change would be the last. Records and parts are only a
- * mesh's own. Where a table has more rows than this the check takes too long for a start. */
+/* Tables that all meshes share are checked at the start: a mesh whose index entry is damaged would
+ * seem not to exist, and damage in the others would make the first change fail. Records and parts
+ * concern one mesh each and are checked when it is loaded. A table with more rows than this takes
+ * too long to check at a start. */
 enum { CHECKED_ROWS = 200000 };
 
 static bool check_table(st_sqlite *self, const char *table, const char *path, st_sqlite_opened *out)
@@ -178,14 +183,14 @@ static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return good;
 }
 
-/* A request whose key is damaged may be done again when it is sent again, which is said. */
+/* If its key is damaged a repeated request may be executed again, so the start warns about it. */
 static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     const st_sql outcome = st_kept_count_damaged(&self->db, &self->damaged_keys);
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* The key that was given last to a row; a lower one than a row has would be given twice. */
+/* Finds the last key given to a row; a lower one would be given again. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
     char text[96];
@@ -199,7 +204,7 @@ static st_sql last_key(st_db *db, const char *table, int64_t *out)
     return outcome == ST_SQL_DONE && *out < most ? ST_SQL_DAMAGED : outcome;
 }
 
-/* What the commit thread counts on from. */
+/* Reads the numbers from which the commit thread counts on. */
 static st_sql read_counts(st_sqlite *self)
 {
     int64_t keys = 0;
@@ -226,7 +231,8 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
             "`hedged --restore`; to begin an empty store remove hedge.mark",
             self->folder.path);
     }
-    /* SQLite gives -wal and -shm the rights of the database, and that those it finds. */
+    /* SQLite gives the -wal and -shm that it makes the permissions of the database, so that is made
+     * first. */
     if (!st_folder_has(&self->folder, "hedge.db") && !st_folder_make(&self->folder, "hedge.db")) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -263,7 +269,7 @@ static bool open_database(st_sqlite *self, const char *release, const char *path
            check_tables(self, path, out) && check_keys(self, path, out);
 }
 
-/* What the last process left behind: its log is written back, what it staged is forgotten. */
+/* Cleans up after the last process: writes its log back and deletes what it was staging. */
 static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     int code =
@@ -282,7 +288,7 @@ static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
         return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     const st_mark mark = {self->identity.store, self->progress.commits, self->progress.position};
-    /* The folder may have been made anew, and files in it. */
+    /* The folder, and files in it, may be new. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
            st_refuse(out->message, "%s", self->folder.message);
@@ -375,8 +381,8 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
-    /* Without space for it the store works all the same; but where it was needed to start, the disk
-     * is full and goes on being so: the room that it left is for removals. */
+    /* The store works without a ballast too. But if the ballast was freed to be able to start, the
+     * disk counts as full, and the space is for removals. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
         self->fulls = 1;

@@ -1,7 +1,7 @@
-/* What is no longer needed: noted in the table `purge` by the group that makes it so, deleted by
- * the slice when there is time. A row whose sum is wrong is passed over: better to keep what could
- * go than to delete what could not. What lies in pages that are damaged stays for ever: the mesh is
- * gone, and its key is never used again. */
+/* Deletes what is no longer needed: the group that makes it so writes a row to the table `purge`,
+ * and the deletion follows in slices when there is time. A row whose checksum is wrong is skipped:
+ * keeping too much is safe, deleting too much is not. What lies in damaged pages stays for ever:
+ * the mesh is removed, and its key is never used again. */
 #include "journal/sqlite/sqlite_state.h"
 
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before)
@@ -12,8 +12,8 @@ st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t b
                     (uint64_t)st_purge_row_sum(&row));
 }
 
-/* Deletes the snapshots of a mesh from before record `before`: one statement each, as the table
- * changes in between. */
+/* Deletes the snapshots of a mesh from before record `before`, with a new statement for each,
+ * because the table changes in between. */
 static st_sql drop_snapshots(st_sqlite *self, int64_t mesh, uint64_t before)
 {
     for (;;) {
@@ -61,9 +61,9 @@ st_sql st_purge_dead_stages(st_sqlite *self)
     return drop_snapshots(self, 0, INT64_MAX);
 }
 
-/* --- by the slice --- */
+/* --- in slices --- */
 
-/* The last of the first records that make up so many bytes; 0 where there are none. */
+/* Finds the last of the first records that make up so many bytes; 0 if there are none. */
 static st_sql end_of_slice(st_sqlite *self, const st_purge_row *row, size_t bytes, uint64_t *last)
 {
     sqlite3_stmt *s;
@@ -116,8 +116,8 @@ static st_sql next_row(st_sqlite *self, st_purge_row *out, bool *found)
     return outcome;
 }
 
-/* Returns free pages to the file system if there are many; a few are left to be used again. While
- * the disk is full all are returned. */
+/* Returns free pages to the file system if there are many; some stay for new rows. While the disk
+ * is full all are returned. */
 enum { SPARE_PAGES = 4096, SPARE_SHARE = 4 };
 
 static st_sql shrink(st_sqlite *self, bool *done)
@@ -133,8 +133,8 @@ static st_sql shrink(st_sqlite *self, bool *done)
                                             : outcome;
 }
 
-/* The row that is purged next; it goes itself when nothing is left of what it names, or when that
- * cannot be deleted. */
+/* Works on the next row of `purge`, which is deleted when nothing is left of what it names, or when
+ * that cannot be deleted. */
 static st_sql purge_row(st_sqlite *self, const st_purge_row *row, size_t bytes)
 {
     bool gone = row->kind == self->stuck.kind && row->key == self->stuck.key;

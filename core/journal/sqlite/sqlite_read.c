@@ -1,4 +1,4 @@
-/* Meshes are read again: cards by one connection, loads by ST_LOADS others. */
+/* Reads meshes: cards by one connection, loads by ST_LOADS others. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -21,13 +21,13 @@ static const char *const texts[STATEMENTS] = {
     [COMMIT] = "COMMIT",
 };
 
-/* Where a load stands. */
+/* The present state of a load. */
 typedef enum stage_of_load {
     AT_BASE,
-    AT_BASE_PARTS,   /* in rows of their own */
-    AT_INLINE_PARTS, /* in the record that is the base */
+    AT_BASE_PARTS,   /* parts of a base in rows of their own */
+    AT_INLINE_PARTS, /* parts inside the record that is the base */
     AT_RECORDS,
-    AT_RECORD_PARTS /* of the record that was read last */
+    AT_RECORD_PARTS /* parts of the stage of the last record */
 } stage_of_load;
 
 struct st_reader {
@@ -36,13 +36,13 @@ struct st_reader {
     st_mesh_row row;
     stage_of_load at;
     st_frame frame;
-    uint64_t number, chain; /* of the record that was read last; of the next */
+    uint64_t number, chain; /* number of the last record read; chain of the next one */
     sqlite3_stmt *records, *parts, *base;
     int64_t snapshot;
     uint64_t part, parts_left;
     he_cursor inline_parts;
-    st_unpacker *unpacker; /* NULL before the first packed part */
-    char why[ST_DAMAGE];   /* there is no next piece */
+    st_unpacker *unpacker; /* NULL before the first compressed part */
+    char why[ST_DAMAGE];   /* why there is no next piece */
 };
 
 static st_status status_of(st_sql outcome)
@@ -57,7 +57,7 @@ enum { CACHE_KIB = 2 << 10 };
 static st_sql open_one(st_db *db, const char *path)
 {
     st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
-    /* Without a mapping: a bad sector would be SIGBUS. */
+    /* Without a mapping: with one, a bad sector would raise SIGBUS. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(db, "PRAGMA mmap_size = 0");
     }
@@ -85,7 +85,7 @@ bool st_readers_close(st_sqlite *self)
     return closed;
 }
 
-/* Waits for a connection, and while the log is too long. */
+/* Waits until a connection is free and the log is short enough. */
 static st_load_slot *take_slot(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -127,7 +127,7 @@ st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
 
-/* Who only looks is given a mesh that is damaged like any other. */
+/* A journal that only reads gives damaged meshes too. */
 static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_row *row)
 {
     sqlite3_stmt *s;
@@ -176,7 +176,7 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
     sqlite3_stmt *s;
     bool taken = true;
     if (self->only_reads) {
-        return ST_OK; /* nothing is made, so that nobody asks how much there is */
+        return ST_OK; /* a journal that only reads makes no mesh, so the number is not needed */
     }
     pthread_mutex_lock(&self->cards_lock);
     st_sql outcome = st_db_find(&self->cards, HOLDINGS, &s, "");
@@ -196,7 +196,7 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
 
 /* --- damage --- */
 
-/* Under the lock; NULL where nothing was found. */
+/* Finds the damage of a mesh. Returns NULL if none was found. The caller holds the lock. */
 static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
@@ -218,7 +218,7 @@ static void note_finding(st_sqlite *self, const st_finding *noted)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* What was found since the row was written. */
+/* Adds the damage that was found after the row was written. */
 static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
     st_card *card = &row->card;
@@ -239,7 +239,7 @@ void st_sqlite_condemn(st_reader *reader, const char *damage)
     note_finding(self, &finding);
     st_condemned *condemned = self->only_reads ? NULL : he_mem_zero(1, sizeof *condemned);
     if (condemned == NULL) {
-        return; /* it is found again at the next load */
+        return; /* the next load finds it again */
     }
     condemned->item.kind = ST_ITEM_CONDEMN;
     condemned->finding = finding;
@@ -258,7 +258,7 @@ __attribute__((format(printf, 2, 3))) static st_status damaged(st_reader *reader
     return ST_DAMAGED;
 }
 
-/* What a statement came to that had no row, or what could not be read. */
+/* Turns the outcome of a statement that gave no row, or an unreadable one, into a status. */
 static st_status failed(st_reader *reader, st_sql outcome, const char *what)
 {
     return outcome == ST_SQL_DAMAGED
@@ -367,7 +367,8 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
     return ST_OK;
 }
 
-/* The snapshot of that record, to be read part by part. ST_ABSENT. */
+/* Finds the snapshot of that record, to read it part by part.
+ * Returns ST_ABSENT if there is none. */
 static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 {
     st_db *db = &reader->slot->db;
@@ -395,7 +396,7 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
     return ST_OK;
 }
 
-/* A part that a newer release has coded in another way is left to core/stored, which says so. */
+/* A coding that this release does not know is left for core/stored, which reports it. */
 static st_status unpack(st_reader *reader, st_piece *piece)
 {
     const char *why = "";
@@ -416,7 +417,7 @@ static st_status unpack(st_reader *reader, st_piece *piece)
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
-/* The next part of the snapshot; *out is left alone after the last. */
+/* Reads the next part of the snapshot; after the last, *out stays as it is. */
 static st_status read_part(st_reader *reader, bool *got, st_piece *out)
 {
     st_db *db = &reader->slot->db;
@@ -460,7 +461,8 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
     return status;
 }
 
-/* A content in one block: each part with its coding and length before it (stored.h). */
+/* Reads the next part of a content in one block: each part is after its coding and length
+ * (stored.h). */
 static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
 {
     he_cursor *c = &reader->inline_parts;
@@ -493,7 +495,7 @@ static uint64_t parts_in(he_cursor c)
     return parts;
 }
 
-/* The base is a record that holds its content in its own row. */
+/* Reads a base that is a record with the content in its own row. */
 static st_status read_inline_base(st_reader *reader)
 {
     const uint64_t number = reader->row.base;
@@ -528,7 +530,7 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    /* Where the table of snapshots cannot be read there may be no need to. */
+    /* If the table of snapshots cannot be read, the record may have its content inline. */
     if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
@@ -543,7 +545,7 @@ static st_status read_base(st_reader *reader, st_piece *out)
     return status;
 }
 
-/* After the last record: was it the last that there should be? */
+/* After the last record: is it the one that the card names as the last? */
 static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
@@ -595,7 +597,7 @@ static st_status read_record(st_reader *reader, st_piece *out)
                            (unsigned long long)number);
         }
         reader->at = AT_RECORD_PARTS;
-        /* Whom it belongs to is nobody's concern: that there is one is all it says. */
+        /* Only tells the store that there is a stage; the pointer is never used. */
         out->record.stage = (st_stage *)reader;
         out->parts = reader->parts_left;
         out->record.body = NULL;

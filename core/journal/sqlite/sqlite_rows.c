@@ -1,4 +1,4 @@
-/* What a record changes in the tables. All within the commit thread's transaction. */
+/* Applies records to the tables, within the commit thread's transaction. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
 };
 
-/* --- heads: rows of meshes that are written to --- */
+/* --- heads: the cache of mesh rows --- */
 
 static st_sql make_row(st_sqlite *self, const st_mesh_row *row)
 {
@@ -95,14 +95,15 @@ static bool holds(const st_head *head, uint64_t incarnation)
     return head->row.key != 0 && head->row.card.incarnation == incarnation;
 }
 
-/* The place of a mesh's head; another one's is written first. */
+/* Finds the slot of a mesh's head; a dirty head of another mesh in it is written first. */
 static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
 {
     *out = &self->heads.slots[incarnation % ST_HEADS];
     return holds(*out, incarnation) ? ST_SQL_DONE : flush(self, *out);
 }
 
-/* ST_SQL_DONE where there is no such mesh. */
+/* Reads the row of a mesh.
+ * Returns ST_SQL_DONE if there is no such mesh. */
 static st_sql read_row(st_sqlite *self, uint64_t incarnation, st_mesh_row *out, bool *good)
 {
     sqlite3_stmt *s;
@@ -172,7 +173,7 @@ st_sql st_heads_flush(st_sqlite *self)
 
 /* --- records --- */
 
-/* Also where the row is damaged: its key is what the index says. */
+/* Works also if the row is damaged: the index has its key. */
 static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
 {
     st_head *head;
@@ -185,7 +186,7 @@ static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
     if (outcome == ST_SQL_DONE) {
         head->row.key = 0;
         outcome = read_row(self, incarnation, &row, &good);
-        /* A removal follows the records of its mesh. */
+        /* A removal must follow other records of its mesh, so a missing row is a failure. */
         outcome = outcome == ST_SQL_DONE ? ST_SQL_FAILED : outcome;
     }
     if (outcome == ST_SQL_ROW) {
@@ -215,13 +216,13 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* The record itself: its row, and what it has in parts. */
+/* Writes the record's own row, and the row of its stage. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
     const bool is_base = entry->barrier && !entry->staged_edit &&
                          (entry->stage != NULL || entry->kind == ST_RECORD_CONTENT);
     st_sql outcome = ST_SQL_DONE;
-    /* A snapshot has the facts of its record too, which is deleted. */
+    /* The row of a snapshot repeats the facts of its record, because the record may be purged. */
     if (!is_base || entry->stage == NULL) {
         outcome = st_db_do(&self->db, ST_SQL_RECORD_MAKE, "iib", head->row.key, entry->number,
                            entry->frame, entry->size);
@@ -239,7 +240,7 @@ static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, 
     }
     if (outcome == ST_SQL_DONE && is_base && entry->number > 1) {
         head->row.base = entry->number;
-        head->row.card.damage[0] = '\0'; /* it was of what is forgotten now */
+        head->row.card.damage[0] = '\0'; /* it was about records that are purged now */
         outcome = st_purge_before(self, head->row.key, entry->number, entry->stage == NULL);
     }
     return outcome;
@@ -257,7 +258,7 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
         return outcome;
     }
     if (head == NULL || head->row.card.record + 1 != entry->number) {
-        return ST_SQL_FAILED; /* the store above counts otherwise than the disk */
+        return ST_SQL_FAILED; /* the store has counted differently from the disk */
     }
     uint64_t chain = st_frame_seal(entry->frame, entry->size, head->row.chain);
     outcome = add_frame(self, head, entry, chain);
@@ -267,8 +268,8 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
-/* Two old ones go for each that comes. Those of one mesh are counted only now and then: at about
- * one key of CUT_EVERY, by chance. */
+/* For each new key, up to two expired ones are deleted. The keys of one mesh are counted only at
+ * about one of CUT_EVERY new keys, by chance. */
 enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
 
 static st_sql trim_keys(st_sqlite *self, const st_kept_row *row, uint32_t sum)
@@ -291,7 +292,7 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
 {
     st_kept_row row = room->key;
     if (row.mesh != 0 && head == NULL) {
-        return ST_SQL_DONE; /* keys of a mesh go with it */
+        return ST_SQL_DONE; /* keys of a mesh are deleted with it */
     }
     row.mesh = row.mesh == 0 ? 0 : head->row.key;
     const uint32_t sum = st_kept_row_sum(&row);
@@ -299,11 +300,11 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
         st_db_do(&self->db, ST_SQL_KEPT_MAKE, "itbdtiiiiiit", row.mesh, row.text, row.digest,
                  sizeof row.digest, row.time, row.id, row.incarnation, row.revision, row.metadata,
                  row.position, (uint64_t)row.made, (uint64_t)sum, row.holder);
-    self->keys++; /* one that takes the place of another counts twice until the next start */
+    self->keys++; /* a key that replaces another is counted twice until the next start */
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
-/* The key of a request that changed nothing; its mesh may be gone by now. */
+/* Stores the key of a request that changed nothing; its mesh may have been removed meanwhile. */
 static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
 {
     st_head *head = NULL;
@@ -312,7 +313,7 @@ static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
         outcome = st_head_find(self, room->key.incarnation, &head);
     }
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* what is damaged stays with its mesh */
+        return ST_SQL_DONE; /* a damaged row is deleted with its mesh */
     }
     return outcome == ST_SQL_DONE && room->has_key ? keep_key(self, room, head) : outcome;
 }
@@ -351,7 +352,7 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned)
     st_head *head;
     st_sql outcome = st_head_find(self, finding->incarnation, &head);
     if (outcome == ST_SQL_DAMAGED) {
-        return ST_SQL_DONE; /* its row says so by itself */
+        return ST_SQL_DONE; /* the row shows the damage already */
     }
     if (outcome == ST_SQL_DONE && head != NULL && head->row.base == finding->base &&
         head->row.card.damage[0] == '\0') {

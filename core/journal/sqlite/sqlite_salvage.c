@@ -1,6 +1,6 @@
-/* Files whose structure is damaged: what is wrong with them is told, and the meshes in them are
- * reached without indexes. The table of meshes is walked by its keys; where a page of it cannot be
- * read, key after key is tried until one is in a page that can. */
+/* Reads files whose structure is damaged: reports the faults, and finds meshes without indexes. The
+ * table of meshes is searched by its keys; if a page of it cannot be read, each following key is
+ * tried until one is in a page that can. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -16,7 +16,7 @@ static const char *const texts[STATEMENTS] = {
 
 /* --- what is wrong --- */
 
-/* Each line of what SQLite found. */
+/* Passes on each line of what SQLite found. */
 static unsigned tell_lines(const char *text, st_say *say, void *context)
 {
     unsigned told = 0;
@@ -97,7 +97,7 @@ static st_sql find_row(st_db *db, unsigned which, int64_t key, st_mesh_row *out)
     return outcome;
 }
 
-/* The largest key there may be; the counter of keys and the end of the table both tell. */
+/* Returns the largest key that may exist, from the counter of keys and the end of the table. */
 static int64_t last_key(st_db *db)
 {
     int64_t counted = 0, found = 0;
@@ -110,7 +110,8 @@ static int64_t last_key(st_db *db)
     return found > counted ? found : counted;
 }
 
-/* The next row that can be read. ST_SQL_DONE after the last. */
+/* Reads the next row that can be read.
+ * Returns ST_SQL_DONE after the last. */
 static st_sql next_row(st_db *db, int64_t after, st_mesh_row *out)
 {
     st_sql outcome = find_row(db, NEXT, after, out);

@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* A key is one incarnation's and is never used again. `fence` and `node` have no other values
-     * than these. */
+    /* A key belongs to one incarnation and is never used again. `fence` and `node` are always the
+     * values given here. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -18,7 +18,7 @@ static const char *const tables[] = {
     "boundary INTEGER NOT NULL, bytes INTEGER NOT NULL, base INTEGER NOT NULL, "
     "damage TEXT NOT NULL, fence INTEGER NOT NULL DEFAULT 0, node TEXT NOT NULL DEFAULT '', "
     "holder TEXT NOT NULL DEFAULT '', sum INTEGER NOT NULL)",
-    /* One tree for all meshes: small records lie in its pages. */
+    /* One tree for all meshes, so that small records share pages. */
     "CREATE TABLE record(mesh INTEGER, number INTEGER, bytes BLOB NOT NULL, "
     "PRIMARY KEY(mesh, number)) WITHOUT ROWID",
     "CREATE TABLE snapshot(key INTEGER PRIMARY KEY AUTOINCREMENT, mesh INTEGER NOT NULL, "
@@ -45,11 +45,11 @@ static const char *const tables[] = {
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 
-/* How many of the tables each version has. */
+/* How many of the tables above each version has. */
 static const size_t tables_of[ST_SCHEMA_VERSION + 1] = {
     [1] = TABLES - 2, [2] = TABLES, [3] = TABLES};
 
-/* --- sums --- */
+/* --- checksums --- */
 
 static uint32_t begin(const char *table)
 {
@@ -66,7 +66,7 @@ static uint32_t add_time(uint32_t sum, double time)
     return st_crc32c(sum, &time, sizeof time);
 }
 
-/* With its end, so that texts do not run together. */
+/* Adds the NUL too, so that two texts never give the same bytes as another two. */
 static uint32_t add_text(uint32_t sum, const char *text)
 {
     return st_crc32c(sum, text, strlen(text) + 1);
@@ -90,7 +90,7 @@ uint32_t st_mesh_row_sum(const st_mesh_row *row)
     sum = add_word(add_word(sum, card->counts.faces), card->counts.boundary);
     sum = add_word(add_word(sum, card->bytes), row->base);
     sum = add_text(sum, card->damage);
-    /* Meshes of before version 3 are nobody's and have the sums of rows without a holder. */
+    /* Meshes from before version 3 have no holder, and checksums of rows without that column. */
     return card->holder[0] == '\0' ? sum : add_text(sum, card->holder);
 }
 
@@ -111,7 +111,7 @@ uint32_t st_purge_row_sum(const st_purge_row *row)
 uint32_t st_kept_row_sum(const st_kept_row *row)
 {
     uint32_t sum = add_text(add_word(begin("kept"), (uint64_t)row->mesh), row->text);
-    /* Stores that were written before keys had holders have the sums of rows without one. */
+    /* Stores from before keys had holders have checksums of rows without that column. */
     sum = row->holder[0] == '\0' ? sum : add_text(sum, row->holder);
     sum = add_time(add_word(add_word(sum, row->digest[0]), row->digest[1]), row->time);
     sum = add_word(add_text(sum, row->id), row->incarnation);
@@ -195,7 +195,7 @@ bool st_purge_row_read(sqlite3_stmt *s, st_purge_row *out)
     return sum_is(s, 3, st_purge_row_sum(out));
 }
 
-/* Never NULL. */
+/* Never returns NULL. */
 static const char *text_of(sqlite3_stmt *s, int column)
 {
     const unsigned char *text = sqlite3_column_text(s, column);
@@ -243,7 +243,7 @@ static const char *const texts[STATEMENTS] = {
     [STATE_GET] = "SELECT commits, position, meshes, sum FROM state",
 };
 
-/* The connection with this file's table of statements in place of its own. */
+/* Returns the connection with this file's statements in place of its own. */
 static st_db borrowed(const st_db *db)
 {
     return (st_db){.handle = db->handle, .texts = texts};
@@ -307,7 +307,8 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }
 
-/* ST_SQL_DAMAGED for a version that never was. */
+/* Reads the version.
+ * Returns ST_SQL_DAMAGED if there never was such a version. */
 static st_sql read_version(st_db *db, int64_t *out)
 {
     st_sql outcome = st_db_number(db, "PRAGMA user_version", 0, out);
@@ -351,7 +352,7 @@ st_sql st_schema_check(st_db *db)
     return outcome;
 }
 
-/* The word, or with `text` the text, of that name. */
+/* Reads the number of that name, or with `text` the text. */
 static st_sql get_meta(st_db *db, const char *name, uint64_t *word, char *text)
 {
     sqlite3_stmt *s;

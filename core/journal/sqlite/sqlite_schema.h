@@ -1,8 +1,8 @@
-/* sqlite_schema.h - the tables of hedge.db, version 3, and the sums of their rows.
+/* sqlite_schema.h - the tables of hedge.db, version 3, and the checksums of their rows.
  *
- * Every row but those of record and part, whose bytes carry sums of their own, has a column `sum`:
- * CRC-32C over its table's name and its values, keys included. A flipped bit in a number would
- * otherwise load or delete the wrong thing without a word. */
+ * Every row has a column `sum`: CRC-32C over its table's name and its values, keys included. Rows
+ * of record and part have none, because their bytes contain checksums. Without them a flipped bit
+ * in a number would silently load or delete the wrong thing. */
 #ifndef HE_JOURNAL_SQLITE_SCHEMA_H
 #define HE_JOURNAL_SQLITE_SCHEMA_H
 
@@ -10,35 +10,35 @@
 #include "journal/sqlite/sqlite_db.h"
 
 enum {
-    ST_SCHEMA_VERSION = 3,              /* 1 had no jobs, 2 no holders of meshes */
+    ST_SCHEMA_VERSION = 3,              /* version 1 had no jobs, version 2 no holders */
     ST_SCHEMA_APPLICATION = 0x68656467, /* "hedg" */
     ST_RELEASE = 32,                    /* bytes of a release's name */
-    ST_KEY_TEXT = 255,                  /* of an Idempotency-Key, at most */
-    ST_KEY_HOLDER = 64                  /* of the name of whose it is */
+    ST_KEY_TEXT = 255,                  /* most bytes of an Idempotency-Key */
+    ST_KEY_HOLDER = 64                  /* most bytes of the name of its client */
 };
 
-/* What the store is: never changed once it was made. */
+/* The identity of the store, which never changes. */
 typedef struct st_identity {
     uint64_t store, secret[2];
     char made_by[ST_RELEASE];
 } st_identity;
 
-/* The commit and position that the database is at; written with each commit. */
+/* The last commit and position of the database, written with each commit. */
 typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;
 
 /* A mesh's row. The card has its facts; `origin` is the number that its chain began with, `chain`
- * that of the record to come, `base` the number of the record that it is loaded from. */
+ * the chain of the next record, `base` the number of the record that the mesh is loaded from. */
 typedef struct st_mesh_row {
     int64_t key;
     st_card card;
     uint64_t origin, chain, base;
 } st_mesh_row;
 
-/* A snapshot's row: a whole content in parts, of the mesh after record `number`. One of no mesh is
- * being staged by `process`. `facts` is a frame (record_bytes.h), `chain` that of the record after
- * it. */
+/* A snapshot's row: a whole content in parts, of the mesh after record `number`. If it belongs to
+ * no mesh, `process` is staging it. `facts` is a frame (record_bytes.h), `chain` the chain of the
+ * record after it. */
 typedef struct st_snapshot_row {
     int64_t key, mesh;
     uint64_t number, revision, parts, process, chain;
@@ -46,10 +46,10 @@ typedef struct st_snapshot_row {
     size_t facts_size;
 } st_snapshot_row;
 
-/* What is left to be deleted. */
+/* The kinds of work in the table `purge`. */
 typedef enum st_purge_kind {
     ST_PURGE_MESH = 1,    /* the records of a mesh that was removed */
-    ST_PURGE_RECORDS = 2, /* those of a mesh that come before `before` */
+    ST_PURGE_RECORDS = 2, /* the records of a mesh before number `before` */
     ST_PURGE_PARTS = 3    /* the parts of a snapshot */
 } st_purge_kind;
 
@@ -59,22 +59,22 @@ typedef struct st_purge_row {
     uint64_t before;
 } st_purge_row;
 
-/* A kept key's row; the mesh is 0 for keys of the store. */
+/* A stored key's row; the mesh is 0 for keys of the store. */
 typedef struct st_kept_row {
     int64_t mesh;
     const char *holder, *text, *id;
     uint64_t digest[2];
     double time;
     uint64_t incarnation, revision, metadata, position;
-    bool made; /* the mesh: the answer was 201 */
+    bool made; /* the request made the mesh: its answer was 201 */
 } st_kept_row;
 
-/* What the texts of a row that was read point into. */
+/* Memory for the texts of a row that was read. */
 typedef struct st_kept_texts {
     char id[ST_MESH_ID + 1], text[ST_KEY_TEXT + 1], holder[ST_KEY_HOLDER + 1];
 } st_kept_texts;
 
-/* --- sums --- */
+/* --- checksums --- */
 
 uint32_t st_progress_sum(const st_progress *progress);
 uint32_t st_mesh_row_sum(const st_mesh_row *row);
@@ -83,11 +83,12 @@ uint32_t st_purge_row_sum(const st_purge_row *row);
 uint32_t st_kept_row_sum(const st_kept_row *row);
 uint32_t st_job_sum(const st_job *job);
 
-/* A part as its row's bytes: sum (4), coding (1), bytes. The sum covers snapshot and part too. */
+/* Bytes of a part's row before the part: checksum (4), coding (1). The checksum covers the numbers
+ * of snapshot and part too. */
 enum { ST_PART_HEAD = 5 };
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
 
-/* --- rows that are read: the columns in the order that the functions want --- */
+/* --- rows that are read: the columns in the order that the functions expect --- */
 
 #define ST_MESH_COLUMNS                                                                          \
     "key, id, name, incarnation, origin, metadata, revision, record, chain, created, modified, " \
@@ -96,12 +97,12 @@ uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes
 #define ST_PURGE_COLUMNS    "kind, key, before, sum"
 #define ST_KEPT_COLUMNS \
     "mesh, text, digest, time, id, incarnation, revision, metadata, position, made, sum, holder"
-enum { ST_KEPT_COUNT = 12 }; /* of these columns */
+enum { ST_KEPT_COUNT = 12 }; /* columns above */
 #define ST_JOB_COLUMNS                                                                          \
     "id, number, state, operation, phase, mesh, location, holder, progress, created, started, " \
     "finished, status, shown, type, disposition, tag, warnings, body, sum"
 
-/* False where the sum is wrong; the row is filled in then too. */
+/* Reads a mesh's row. Returns false if the checksum is wrong; the row is filled in then too. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
 /* `facts` is borrowed from the statement. */
 bool st_snapshot_row_read(sqlite3_stmt *statement, st_snapshot_row *out);
@@ -111,13 +112,15 @@ bool st_job_read(sqlite3_stmt *statement, st_job *out);
 
 /* --- the whole database --- */
 
-/* Makes the tables in one transaction. */
+/* Makes the tables, in one transaction. */
 st_sql st_schema_make(st_db *db, const st_identity *identity);
-/* Brings an older version's tables to this one in one transaction. */
+/* Upgrades the tables of an older version, in one transaction. */
 st_sql st_schema_raise(st_db *db);
-/* Are the tables those of the version, to the letter? ST_SQL_DAMAGED. */
+/* Compares the texts of the tables with those of the version.
+ * Returns ST_SQL_DAMAGED if they differ. */
 st_sql st_schema_check(st_db *db);
-/* ST_SQL_DAMAGED also where rows are missing or their sums are wrong. */
+/* Reads the identity.
+ * Returns ST_SQL_DAMAGED if rows are missing or their checksums are wrong. */
 st_sql st_identity_read(st_db *db, st_identity *out);
 st_sql st_progress_read(st_db *db, st_progress *out);
 

@@ -1,5 +1,5 @@
-/* Contents and large edits in parts. The thread that stages codes them, a slice at a time, and
- * waits while the commit thread writes the slice beside what others commit. */
+/* Stages contents and large edits, in parts. The thread that stages codes one slice at a time, and
+ * waits while the commit thread writes the slice beside the records of other threads. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -9,14 +9,14 @@
 
 /* --- the thread that stages --- */
 
-/* What is staged: a content, or a coded edit of which so much is left. */
+/* What is staged: a content, or what is left of a coded edit. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
     size_t left;
 } source;
 
-/* Returns its bytes, 0 after the last. */
+/* Codes the next part. Returns its bytes, 0 after the last. */
 static size_t next_part(source *from, unsigned char *to, unsigned *coding)
 {
     if (from->content != NULL) {
@@ -30,7 +30,7 @@ static size_t next_part(source *from, unsigned char *to, unsigned *coding)
     return size;
 }
 
-/* False after the last part. */
+/* Returns false after the last part. */
 static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
@@ -48,7 +48,7 @@ static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
     return true;
 }
 
-/* Under the lock. */
+/* The caller holds the lock. */
 static st_status refusal(const st_sqlite *self)
 {
     return self->mode == ST_WRITES ? ST_OK : self->mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED;
@@ -88,7 +88,7 @@ static st_status stage_parts(st_sqlite *self, source *from, uint64_t parts, st_s
         he_mem_free(slice);
         return ST_NO_MEMORY;
     }
-    /* An edit is read as it was coded, without unpacking. */
+    /* An edit is not compressed, because it is read back as it was coded. */
     st_packer *packer = from->content == NULL ? NULL : st_packer_new();
     stage->slice = slice;
     stage->parts = parts;
@@ -133,7 +133,7 @@ static void queue(st_sqlite *self, st_stage *stage, st_item_kind kind)
 void st_sqlite_unstage(void *context, st_stage *stage)
 {
     if (stage != NULL && stage->key == 0) {
-        he_mem_free(stage); /* nothing of it was written */
+        he_mem_free(stage); /* nothing of it is on the disk */
     } else if (stage != NULL) {
         queue(context, stage, ST_ITEM_UNSTAGE);
     }
@@ -184,7 +184,7 @@ st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
         (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
         outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
     }
-    /* Believed once the transaction was committed: st_stage_written. */
+    /* Counted only after the transaction was committed: st_stage_written. */
     stage->writing = outcome == ST_SQL_DONE ? count : 0;
     stage->new_key = key;
     return outcome;
@@ -212,8 +212,9 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
     return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
 }
 
-/* Reads the record that the stage is the content after. It may be another one of that number: where
- * the one meant was lost. `chain` is the record's own, `next` that of the record after it. */
+/* Reads the record after which the stage is the content. If the one meant was lost, another record
+ * may have its number; *same tells. `chain` is the record's own, `next` that of the record after
+ * it. */
 static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head, bool *same,
                           uint64_t *chain, uint64_t *next)
 {
@@ -236,7 +237,7 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
-/* A large edit has its row among the snapshots, too. */
+/* A large edit also has a row among the snapshots, which is no content. */
 static bool is_content(const st_snapshot_row *row)
 {
     st_frame frame;
@@ -244,7 +245,7 @@ static bool is_content(const st_snapshot_row *row)
            !frame.record.staged_edit;
 }
 
-/* The newest base whose revision is not after `needed`. 0: the one there is. */
+/* Finds the newest base whose revision is not after `needed`; 0 if that is the present one. */
 static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
 {
     sqlite3_stmt *s;
@@ -274,7 +275,7 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    /* Before the base there is nothing to be loaded. */
+    /* Nothing before the base can be loaded. */
     if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &same, &chain, &next);
     }
@@ -297,7 +298,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        head->row.card.damage[0] = '\0'; /* what lies after it is read, and looked at, again */
+        head->row.card.damage[0] =
+            '\0'; /* the records that were damaged are read and checked again */
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);
     }
