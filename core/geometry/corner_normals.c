@@ -3,17 +3,17 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* One corner about a vertex. */
+/* One corner around a vertex. */
 typedef struct corner {
     uint32_t halfedge;
     uint32_t group; /* HE_NONE on a boundary half-edge */
-    he_vec3 normal; /* of its face; then, in the first corners, the sums of the groups */
+    he_vec3 normal; /* normal of its face; then, in the first corners, the sums of the groups */
     bool degenerate;
 } corner;
 
 typedef struct fan {
-    corner *corners; /* counter-clockwise about the vertex */
-    he_vec3 *sums;   /* one a group */
+    corner *corners; /* counter-clockwise around the vertex */
+    he_vec3 *sums;   /* one for each group */
     size_t count, capacity;
     double crease;
 } fan;
@@ -42,7 +42,7 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* `normals` of all faces, or NULL. */
+/* `normals` are those of all faces, or NULL. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -76,11 +76,12 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     return HE_OK;
 }
 
-/* Number the groups. A boundary half-edge comes before the corners of its fan, and a vertex on the
- * boundary stores one, so that only a closed fan runs on from its last corner to the first. */
+/* Numbers the groups. A boundary half-edge comes before the corners of its fan, and a vertex on the
+ * boundary stores one, so only a closed fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
-    const corner *last = NULL, *leader = NULL; /* with a normal: latest, and first of all */
+    const corner *last = NULL,
+                 *leader = NULL; /* corners with a normal: the latest, and the first of all */
     uint32_t group = 0;
     bool closed = true;
     for (size_t i = 0; i < f->count; i++) {
@@ -104,7 +105,8 @@ static uint32_t find_groups(fan *f)
     bool merged = he_vec3_angle(last->normal, leader->normal) <= f->crease;
     for (size_t i = 0; i < f->count; i++) {
         corner *c = &f->corners[i];
-        bool leads = c < leader; /* degenerate, and clockwise of them is the last one */
+        bool leads = c < leader; /* corners before the first that has a normal: clockwise of them is
+                                    the last one */
         c->group = leads || (merged && c->group == group) ? (merged ? 0 : group) : c->group;
     }
     return group + 1;
@@ -128,7 +130,8 @@ static void sum_groups(fan *f, const he_mesh *m)
 he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_vec3 *out,
                            he_error *err)
 {
-    /* From the half-edge that the vertex stores, so that the sums are those of the whole mesh. */
+    /* Starts from the half-edge that the vertex stores, so the sums equal those of the whole
+     * mesh. */
     fan f = {.crease = crease};
     he_status status = gather(&f, m, m->c.vertex_halfedge[m->c.origin[h.i]], NULL, err);
     if (status == HE_OK) {
@@ -148,7 +151,7 @@ he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_ve
 typedef struct corners {
     const he_mesh *m;
     double crease;
-    const he_vec3 *normals; /* of all faces */
+    const he_vec3 *normals; /* normals of all faces */
     he_vec3 *out;
 } corners;
 
@@ -163,7 +166,7 @@ static he_status clear_range(void *context, uint32_t part, size_t from, size_t t
     return HE_OK;
 }
 
-/* Each vertex writes the corners at it, and no others. */
+/* Each vertex writes its own corners and no others. */
 static he_status vertex_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const corners *all = context;

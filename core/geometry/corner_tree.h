@@ -1,4 +1,4 @@
-/* corner_tree.h - corners of a flat loop in a tree of boxes: does one of them lie in a triangle?
+/* corner_tree.h - a tree of boxes over the corners of a flat loop: is a corner inside a triangle?
  *
  * The corners are sorted along the Z curve (G. M. Morton, 1966) and cut into leaves of
  * HE_CORNER_LEAF. The tree is complete, so it is one array without links:
@@ -7,15 +7,15 @@
  *            2       3             leaf l is node `leaves` + l and holds the corners
  *          4   5   6   7           count * l / leaves up to count * (l + 1) / leaves
  *
- * Corners can be removed, never added; boxes shrink with them. Making the tree is linear, removing
- * a corner logarithmic. A search enters the boxes that the triangle touches: few in practice, all
- * of them at worst. What it entered is counted, so that the caller can limit it.
+ * Corners can be removed, never added; boxes shrink with them. Building the tree takes linear time,
+ * removing a corner logarithmic time. A search visits the boxes that the triangle touches: few in
+ * practice, all of them at worst. It counts what it visits, so that the caller can limit it.
  *
- * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: to look
- * at all of them takes less time than to make and search the tree (`make bench-space` measures
- * short polygons). A search of the list finds the first corner along the curve, which a search of
- * the tree would find. Only where at most HE_CORNER_UNSORTED corners were given it is the first of
- * the list. */
+ * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: testing
+ * all of them takes less time than building and searching the tree (`make bench-space` measures
+ * short polygons). A search of the list finds the first corner along the curve, as a search of the
+ * tree would. Only a list made of at most HE_CORNER_UNSORTED corners finds the first of the list
+ * instead. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -23,11 +23,11 @@
 
 enum {
     HE_CORNER_LEAF = 6,
-    HE_CORNER_FEW = 128,    /* up to so many corners are a list, searched from end to end */
-    HE_CORNER_UNSORTED = 16 /* a list made of up to so many finds the first of the list */
+    HE_CORNER_FEW = 128,    /* up to this many corners are a list */
+    HE_CORNER_UNSORTED = 16 /* a list made of up to this many is not ordered */
 };
 
-/* Empty when the minimum is larger than the maximum. */
+/* Empty if the minimum is larger than the maximum. */
 typedef struct he_corner_box {
     double min[2], max[2];
 } he_corner_box;
@@ -35,19 +35,21 @@ typedef struct he_corner_box {
 /* {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_flat *flat;
-    void *memory;         /* of the arrays below */
-    he_corner_box *boxes; /* of a tree */
-    double *x, *y;   /* of a list, in its order: coordinates, and infinity up to a whole batch */
-    uint32_t *place; /* of each corner of the loop in `order`, HE_NONE when it is not in the tree */
-    uint32_t *order; /* the corners along the curve, HE_NONE where one was removed. Of a list: in no
-                        order and without gaps */
-    uint32_t count;  /* places in `order` */
-    uint32_t made;   /* corners at the beginning */
-    uint32_t leaves; /* 0 for a list */
+    void *memory;         /* one block that contains the arrays below */
+    he_corner_box *boxes; /* only in a tree */
+    double *x, *y; /* only in a list, in its order: coordinates, and infinity up to a whole batch */
+    uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
+    /* the corners along the curve, HE_NONE for each that was removed; in a list, unordered and
+     * without gaps */
+    uint32_t *order;
+    uint32_t count;  /* entries of `order` */
+    uint32_t made;   /* corners that the tree was made of */
+    uint32_t leaves; /* number of leaves; 0 for a list */
 } he_corner_tree;
 
-/* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. Returns HE_NO_MEMORY if
- * memory is out. he_corner_tree_clear frees. */
+/* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. he_corner_tree_clear
+ * frees.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat,
                                            const uint32_t *corners, uint32_t count, he_error *err);
 void he_corner_tree_clear(he_corner_tree *tree);
@@ -60,11 +62,11 @@ static inline bool he_corner_tree_has(const he_corner_tree *tree, uint32_t corne
 /* The corner must be in the tree. */
 void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 
-/* Returns a corner in the closed triangle a, b, c, which turns left, or HE_NONE. A corner lies in
- * it unless it is to the right of a side by more than rounding (flat.h), so that corners on a
- * straight side are in the way of it. Corners at the place of a, b or c do not count. Adds the
- * boxes and corners looked at to `steps`; HE_CORNER_LEAF corners of a list, which cost about as
- * much as a box, count as one. */
+/* Returns a corner in the closed triangle a, b, c, which turns left, or HE_NONE. A corner is in it
+ * unless it is to the right of a side by more than rounding (flat.h), so corners on a straight side
+ * count as inside. Corners at the position of a, b or c do not count. Adds the boxes and corners
+ * visited to `steps`; HE_CORNER_LEAF corners of a list, which cost about as much as a box, count as
+ * one. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

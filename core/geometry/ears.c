@@ -2,13 +2,13 @@
 
 #include "geometry/corner_tree.h"
 
-/* --- rings: corners in lists that each begin and end at a node of their own --- */
+/* --- rings: lists of corners; each list begins and ends at a node of its own --- */
 
 typedef struct ring {
     uint32_t *next, *prev;
 } ring;
 
-/* Alone, as nodes that begin a list are at first and corners that are in none. */
+/* Makes a node an empty list, or takes a corner out of all lists. */
 static void isolate(ring r, uint32_t i)
 {
     r.next[i] = r.prev[i] = i;
@@ -32,7 +32,7 @@ static void take_out(ring r, uint32_t i)
 /* --- ears --- */
 
 typedef enum state {
-    CANDIDATE, /* turns left; whether it is an ear must be found out */
+    CANDIDATE, /* turns left; not known yet whether it is an ear */
     PIERCED,   /* turns left, with a corner in its triangle */
     FLAT,      /* does not turn left */
     TAKEN      /* would be an ear, but its diagonal is an edge */
@@ -41,16 +41,18 @@ typedef enum state {
 typedef struct ears {
     const he_mesh *m;
     const he_flat *f;
-    bool avoid; /* diagonals that exist as edges */
-    ring loop;  /* what is left of it, without a node of its own */
-    ring kinds; /* CANDIDATE, PIERCED and FLAT: lists that begin at n + state */
-    ring watch; /* PIERCED, by the corner in the way: lists that begin at n + that one,
-                   and at 2n for those whose corner no longer is in the way */
+    bool avoid; /* avoid diagonals that exist as edges */
+    ring loop;  /* the loop that is left, without a node of its own */
+    ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; they begin at n + state */
+    /* lists of PIERCED corners by the corner in their triangle; each begins at n + that corner, and
+     * one at 2n has those whose corner is no longer there */
+    ring watch;
     uint8_t *state;
-    he_corner_tree tree;     /* corners that never turned left yet */
-    uint32_t left, at, last; /* corners; the candidate to try next; where the last triangle is */
-    uint32_t taken;          /* corners in that state */
-    uint64_t most;           /* steps of `work` up to which what is in the way is looked for */
+    he_corner_tree tree; /* corners that have never turned left */
+    uint32_t left, at,
+        last;       /* corners left; the candidate to try next; where the last triangle is */
+    uint32_t taken; /* number of corners in state TAKEN */
+    uint64_t most;  /* number of steps after which triangles are no longer tested for being empty */
     he_triangulation_work *work;
 } ears;
 
@@ -64,7 +66,7 @@ static uint32_t list_of(const ears *e, state s)
     return e->f->n + (uint32_t)s;
 }
 
-/* The corner is no longer in anybody's way. */
+/* The corner is no longer inside any triangle. */
 static void leave_tree(ears *e, uint32_t corner)
 {
     uint32_t list = e->f->n + corner, waiting = 2 * e->f->n, i;
@@ -75,7 +77,8 @@ static void leave_tree(ears *e, uint32_t corner)
     }
 }
 
-/* A neighbour of the corner has changed. A candidate is put behind `before` among them. */
+/* Updates the state of a corner whose neighbour has changed. A candidate is inserted behind
+ * `before`. */
 static void look_at(ears *e, uint32_t i, uint32_t before)
 {
     take_out(e->kinds, i);
@@ -89,7 +92,7 @@ static void look_at(ears *e, uint32_t i, uint32_t before)
     insert_after(e->kinds, convex ? before : e->kinds.prev[list_of(e, FLAT)], i);
 }
 
-/* Looking for edges does not count: with it or without, the same ears are found. */
+/* Searching for edges does not count, so the flag does not change which ears are found. */
 static bool is_exhausted(const ears *e)
 {
     return e->work->steps - e->work->searched >= e->most;
@@ -119,7 +122,7 @@ static bool is_ear(ears *e, uint32_t i)
     return true;
 }
 
-/* HE_NONE when there is none, save such as are taken. */
+/* Returns HE_NONE if there is none, or only ears in state TAKEN. */
 static uint32_t find_ear(ears *e)
 {
     uint32_t list = list_of(e, CANDIDATE), waiting = 2 * e->f->n, i;
@@ -144,8 +147,8 @@ static uint32_t find_ear(ears *e)
     }
 }
 
-/* Any corner whose diagonal is free, those that turn left first; HE_NONE when there is none. What
- * is taken need not be looked at again before it changes. */
+/* Returns any corner whose diagonal is no edge, one that turns left if there is one; HE_NONE if
+ * there is none. A corner in state TAKEN is not tested again before it changes. */
 static uint32_t find_corner(ears *e)
 {
     for (state s = PIERCED; s <= FLAT; s++) {
@@ -183,7 +186,7 @@ static void cut_off(ears *e, uint32_t i, uint32_t *corners)
         insert_after(e->kinds, list_of(e, CANDIDATE), i);
     }
     e->left--;
-    /* a and c stand where i stood. */
+    /* a and c take the place of i in the list. */
     look_at(e, c, i);
     take_out(e->kinds, a);
     look_at(e, a, e->kinds.prev[i]);
@@ -240,8 +243,8 @@ static void lay_out(ears *e, uint32_t *block)
     }
 }
 
-/* Every corner into its list; those that do not turn left into the tree. The triangulation's
- * corners, which are not written yet, have the room to list them. */
+/* Puts every corner into its list, and those that do not turn left into the tree. `room` is the
+ * array of the triangulation's corners, which is not written yet. */
 static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
 {
     uint32_t n = e->f->n, flat = 0;
@@ -257,7 +260,7 @@ static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
     return he_corner_tree_make(&e->tree, e->f, room, flat, err);
 }
 
-/* So many for a corner are enough for ordinary polygons of any size. */
+/* This many steps for each corner are enough for ordinary polygons of any size. */
 static uint64_t most_steps(uint32_t n)
 {
     uint64_t steps = 0;

@@ -1,22 +1,22 @@
-/* ears.h - cutting a loop ear by ear (G. H. Meisters, "Polygons have ears", 1975).
+/* ears.h - ear clipping (G. H. Meisters, "Polygons have ears", 1975).
  *
  * An EAR is a corner that turns left and whose triangle, with the corners before and after it,
- * holds no other corner of the loop. Cutting it off leaves a loop of one corner less:
+ * contains no other corner of the loop. Cutting it off leaves a loop of one corner less:
  *
  *          i                          The corners that may be ears are kept in a ring, in their
  *         / \                         order, and tried round and round, so that triangles stay
  *    ----a - -c----                   balanced. After a cut only a and c are tried again.
  *
- * Only a corner that does not turn left can be the nearest in the way of a - c: those are kept in a
- * tree of boxes (corner_tree.h). A corner whose triangle is PIERCED by one of them is noted with
- * it, and tried again only when that one has been cut off or turns left.
+ * If the triangle contains corners, the one nearest to a - c does not turn left, so only such
+ * corners are kept in a tree of boxes (corner_tree.h). A corner whose triangle is PIERCED by one of
+ * them is stored with it, and tried again only when that one has been cut off or turns left.
  *
- * A simple polygon has an ear until it is used up, and each corner is tried at most three times. To
- * search the tree takes some logarithm of steps in most polygons, but not in all. After
- * HE_EAR_STEPS times n log2 n steps for n corners the cutting is STUCK, and so it is where there is
- * no ear, as in some loops that meet themselves in the plane. With HE_ANY_CORNER it goes on even
- * so: it no longer looks for what is in the way, or cuts any corner, one that turns left if there
- * is one. */
+ * A simple polygon has an ear until it is used up, and each corner is tried at most three times. A
+ * search of the tree takes logarithmic time in most polygons, but not in all. After HE_EAR_STEPS
+ * times n log2 n steps for n corners the cutting is STUCK, and also if there is no ear, as in some
+ * loops that intersect themselves in the plane. With HE_ANY_CORNER it goes on even then: it no
+ * longer tests whether a triangle is empty, or cuts any corner, one that turns left if there is
+ * one. */
 #ifndef HE_GEOMETRY_EARS_H
 #define HE_GEOMETRY_EARS_H
 
@@ -28,11 +28,10 @@ enum {
 };
 
 /* Fills triangulation->corners and `degenerate` from triangulation->flat, unless it gets `stuck`.
- * Returns
- * HE_DOUBLED_EDGE with HE_AVOID_EDGES in `flags` if only ears are left whose diagonal is an edge,
- * or no corner at all whose diagonal is not,
- * HE_NO_MEMORY if memory is out,
- * HE_CANCELLED if the watch of `work` says so. */
+ * Returns HE_DOUBLED_EDGE with HE_AVOID_EDGES in `flags` if every ear that is left, or every
+ * corner, has a diagonal that is an edge.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch of `work` gave up. */
 HE_NODISCARD he_status he_ears_cut(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                                    he_triangulation *triangulation, bool *stuck, he_error *err);
 

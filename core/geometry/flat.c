@@ -25,7 +25,7 @@ static double largest(double size, he_vec3 p)
     return z > size ? z : size;
 }
 
-/* A power of two, which may itself be no double: as two factors. */
+/* A power of two as two factors, since the power itself may exceed a double. */
 typedef struct power {
     double one, other;
 } power;
@@ -35,7 +35,7 @@ static he_vec3 scaled(he_vec3 p, power by)
     return (he_vec3){p.x * by.one * by.other, p.y * by.one * by.other, p.z * by.one * by.other};
 }
 
-/* What brings `size` into [0.5, 1). */
+/* Returns the power that brings `size` into [0.5, 1). */
 static power power_for(double size)
 {
     int exponent = 0;

@@ -12,21 +12,23 @@
 
 typedef struct he_flat {
     uint32_t n;
-    uint32_t *halfedge; /* of corner i, which is its origin */
+    uint32_t *halfedge; /* the half-edge that leaves corner i */
     double *x, *y;
     bool degenerate; /* no area, so no plane: all coordinates are zero */
-    void *memory;    /* of the arrays */
+    void *memory;    /* one block that contains the arrays */
 } he_flat;
 
-/* HE_NO_MEMORY. he_flat_clear frees. */
+/* Projects the loop of `first`. he_flat_clear frees.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_flat_init(he_flat *flat, const he_mesh *m, he_halfedge first,
                                     he_error *err);
 void he_flat_clear(he_flat *flat);
 
-/* Twice the area of a triangle or loop, relative to its squared sides, under which it has none. */
+/* A triangle or loop whose doubled area, relative to its squared sides, is below this has no
+ * area. */
 #define HE_FLAT_THIN 1e-12
 
-/* Does the triangle of corners a, b, c run counter-clockwise, by more than rounding? */
+/* Does the triangle of corners a, b, c turn counter-clockwise, by more than rounding? */
 static inline bool he_flat_turns_left(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
 {
     double abx = f->x[b] - f->x[a], aby = f->y[b] - f->y[a];

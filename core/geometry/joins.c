@@ -11,7 +11,7 @@ void he_joins_clear(he_joins *joins)
     *joins = (he_joins){.rank = NULL};
 }
 
-/* The number of vertices of large degree, which get their ranks. */
+/* Gives ranks to the vertices of large degree, and returns their number. */
 static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
 {
     uint32_t count = 0;
@@ -26,14 +26,14 @@ static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
     return count;
 }
 
-/* Does the half-edge leave for a smaller vertex, both of large degree? */
+/* Does the half-edge lead to a vertex with a smaller id, both ends being of large degree? */
 static bool is_listed(const he_mesh *m, const uint32_t *rank, uint32_t h)
 {
     uint32_t from = m->c.origin[h], to = m->c.origin[h ^ 1u];
     return to < from && rank[from] != HE_NONE && rank[to] != HE_NONE;
 }
 
-/* Lists begin one place further on, which filling them moves back. */
+/* The start of each list is stored one place further on; filling moves it back. */
 static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t count,
                               uint32_t *starts)
 {
@@ -51,7 +51,7 @@ static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t c
     return total;
 }
 
-/* Each vertex is put into the lists of its neighbours, in rising order. */
+/* Puts each vertex into the lists of its neighbours, in rising order. */
 static void fill_lists(const he_mesh *m, const he_joins *j)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -87,15 +87,15 @@ he_status he_joins_make(const he_mesh *m, he_joins *out, he_error *err)
     return HE_OK;
 }
 
-/* --- what was joined later --- */
+/* --- pairs that were joined later --- */
 
-/* Not 0, since the larger id is not. */
+/* Never 0, since the larger id is not 0. */
 static uint64_t key_of(he_vertex a, he_vertex b)
 {
     return a.i < b.i ? (uint64_t)b.i << 32 | a.i : (uint64_t)a.i << 32 | b.i;
 }
 
-/* The slot of a key, or the free one where it belongs. */
+/* Returns the slot of a key, or the free one where it belongs. */
 static size_t slot_of(const he_joins *j, uint64_t key)
 {
     size_t mask = j->noted_slots - 1;

@@ -15,7 +15,7 @@ static void extend(he_box *box, bool *any, he_vec3 p)
                          p.z > high.z ? p.z : high.z};
 }
 
-/* `isolated`: with vertices that have no edge. */
+/* `isolated`: vertices without an edge count too. */
 static bool find_box(const he_mesh *m, bool isolated, he_box *out)
 {
     he_box box = {{0, 0, 0}, {0, 0, 0}};
@@ -40,7 +40,7 @@ bool he_surface_box(const he_mesh *m, he_box *out)
     return find_box(m, false, out);
 }
 
-/* Neumaier's sum: the rounding errors are summed beside it. */
+/* Neumaier's sum: the rounding errors are summed separately. */
 typedef struct total {
     double sum, error;
 } total;
@@ -52,15 +52,15 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
-/* Terms of any size: those whose exponents are in one window of WINDOW share a total. A volume's
- * exponent is within three times that of a double. */
+/* Sums terms of any size: terms whose exponents are in one window of WINDOW share a total. A
+ * volume's exponent is at most three times that of a double. */
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
-    total of[WINDOWS]; /* times 2^-(LEAST + WINDOW i) */
+    total of[WINDOWS]; /* the true total of window i is this times 2^(LEAST + WINDOW i) */
 } sums;
 
-/* x 2^exponent */
+/* Adds x times 2^exponent. */
 static void add_scaled(sums *s, double x, int exponent)
 {
     int own;
@@ -73,7 +73,7 @@ static void add_scaled(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* The sum by `divisor`; what a double cannot hold is the largest that it can. */
+/* Returns the sum divided by `divisor`, or the largest double if that is too large. */
 static double sum_of(sums *s, const total *plain, double divisor)
 {
     add_scaled(s, plain->sum, 0);
@@ -90,9 +90,9 @@ static double sum_of(sums *s, const total *plain, double divisor)
     return he_clamped(ldexp((all.sum + all.error) / divisor, LEAST + top * WINDOW));
 }
 
-/* From where volumes are measured: of the vertices with edges one of the nearest to the
- * coordinates' origin. Far from the mesh the volume would cancel, and so would that of what is
- * small and near if it were measured from a corner that is far. */
+/* Finds the point from which volumes are measured: a vertex with edges nearest to the origin of
+ * coordinates, or nearly so. From a point far from the mesh the volume would cancel, and so would
+ * that of small near parts if it were measured from a far corner. */
 static he_vec3 find_base(const he_mesh *m)
 {
     double least = HUGE_VAL;
@@ -101,7 +101,7 @@ static he_vec3 find_base(const he_mesh *m)
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
             he_vec3 p = m->c.position[v];
-            double square = he_vec3_dot(p, p); /* infinite where all that is near is nearer */
+            double square = he_vec3_dot(p, p); /* may be infinite: any nearer vertex is taken */
             if (square < least || !any) {
                 least = square;
                 base = p;
@@ -112,7 +112,7 @@ static he_vec3 find_base(const he_mesh *m)
     return base;
 }
 
-/* `vector` is in a scale of its own: true ones are that times 4^exponent. */
+/* `vector` is in a scale of its own: the true vector is it times 4^exponent. */
 static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector, int exponent)
 {
     int halved = 0;
@@ -129,7 +129,7 @@ static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector,
 he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
 {
     sums area = {0}, volume = {0};
-    total plain_area = {0, 0}, plain_volume = {0, 0}; /* of terms far from the ends of a double */
+    total plain_area = {0, 0}, plain_volume = {0, 0}; /* sums of terms of ordinary size */
     uint32_t budget = he_ring_budget(m);
     bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
     he_vec3 base = closed ? find_base(m) : (he_vec3){0, 0, 0};
@@ -157,7 +157,7 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
             add_scaled(&area, twice, 2 * exponent);
         }
         /* The tetrahedra over a fan of triangles from p0 add up to p0 . A, whatever the other
-         * corners: p0 . (p0 x q) is nothing. */
+         * corners, because p0 . (p0 x q) is 0. */
         if (!closed) {
             continue;
         }

@@ -2,15 +2,16 @@
 
 #include "geometry/orient.h"
 
-/* --- in the plane of both --- */
+/* --- tests in a plane --- */
 
-/* Drop one axis. Coordinates stay as they are, so nothing is rounded. */
+/* Drops one axis. Coordinates stay as they are, so nothing is rounded. */
 static he_vec2 flat(he_vec3 p, int axis)
 {
     return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
 }
 
-/* The axis along which the triangle seems to be seen with the largest area. */
+/* Returns the axis along which the triangle's projection has the largest area, subject to
+ * rounding. */
 static int likely_axis(const he_vec3 t[3])
 {
     he_vec3 n = he_vec3_cross(he_vec3_sub(t[1], t[0]), he_vec3_sub(t[2], t[0]));
@@ -18,7 +19,7 @@ static int likely_axis(const he_vec3 t[3])
     return x > y && x > z ? 0 : y > z ? 1 : 2;
 }
 
-/* An axis along which the triangle is seen with area, -1 when it has none. */
+/* Returns an axis along which the triangle's projection has area, -1 if it has none. */
 static int open_axis(const he_vec3 t[3])
 {
     int likely = likely_axis(t);
@@ -36,7 +37,7 @@ bool he_triangle_has_area(const he_vec3 t[3])
     return open_axis(t) >= 0;
 }
 
-/* p is on the line of a and b: is it between them? */
+/* Is p, which is on the line of a and b, between them? */
 static bool between(he_vec2 a, he_vec2 b, he_vec2 p)
 {
     return fmin(a.x, b.x) <= p.x && p.x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= p.y &&
@@ -64,7 +65,7 @@ static bool is_inside(he_vec2 p, const he_vec2 t[3])
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* A segment and a triangle in one plane, seen along an axis. */
+/* Do a segment and a triangle in one plane intersect? Both are projected along an axis. */
 static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axis)
 {
     he_vec2 a = flat(p, axis), b = flat(q, axis);
@@ -73,8 +74,8 @@ static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axi
            segments_meet(a, b, c[1], c[2]) || segments_meet(a, b, c[2], c[0]);
 }
 
-/* Two triangles, seen along an axis along which a has area. So has b if it lies in the same plane.
- */
+/* Two triangles, projected along an axis along which a has area. So has b if it is in the same
+ * plane. */
 typedef struct flat_pair {
     he_vec2 a[3], b[3];
 } flat_pair;
@@ -85,7 +86,7 @@ static flat_pair flatten(const he_vec3 a[3], const he_vec3 b[3], int axis)
                        {flat(b[0], axis), flat(b[1], axis), flat(b[2], axis)}};
 }
 
-/* Do all corners of u lie beyond the line of the side of t that begins at corner i? Not if t has no
+/* Are all corners of u beyond the line of the side of t that begins at corner i? False if t has no
  * area. */
 static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
 {
@@ -95,8 +96,8 @@ static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
            he_orient2(p, q, u[2]) == beyond;
 }
 
-/* Triangles in one plane share no point exactly where one lies beyond some side of the other: the
- * differences of their points fill a convex polygon, whose sides are sides of theirs. */
+/* Triangles in one plane are disjoint exactly if one lies beyond some side of the other: the
+ * differences of their points fill a convex polygon, whose sides are parallel to theirs. */
 static bool flat_meet(const flat_pair *f)
 {
     for (int i = 0; i < 3; i++) {
@@ -107,9 +108,9 @@ static bool flat_meet(const flat_pair *f)
     return true;
 }
 
-/* The sector of t at its corner `at` lies on one side of the line through its ray to corner `to`.
- * Does the sector of u at its corner `of`, which is in the same place, lie on the other side, with
- * none of it on that ray? */
+/* The sector of t at its corner `at` is on one side of the line through its ray to corner `to`. Is
+ * the sector of u at its corner `of`, which is at one position with `at`, on the other side,
+ * without touching that ray? */
 static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3], int of)
 {
     he_vec2 apex = t[at], ray = t[to];
@@ -124,8 +125,8 @@ static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3]
     return true;
 }
 
-/* Triangles in one plane that share a corner share points beyond it exactly where their sectors at
- * it share a ray. Where they share none, the line through one of their four rays parts them. */
+/* Triangles in one plane with a common corner share other points exactly if their sectors at it
+ * share a ray. If they share none, the line through one of their four rays separates them. */
 static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
 {
     for (int k = 1; k < 3; k++) {
@@ -137,23 +138,23 @@ static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
     return true;
 }
 
-/* Triangles in one plane that share the side opposite to corners i and k lie on one another when
- * they are on the same side of it. */
+/* Triangles in one plane that share the side opposite to corners i and k overlap if they are on the
+ * same side of it. */
 static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 {
     he_vec2 p = f->a[(i + 1) % 3], q = f->a[(i + 2) % 3];
     return he_orient2(p, q, f->a[i]) == he_orient2(p, q, f->b[k]);
 }
 
-/* --- in space --- */
+/* --- tests in space --- */
 
-/* Two triangles, and the sides of each one's plane that the other's corners lie on. */
+/* Two triangles, and on which side of each one's plane the corners of the other are. */
 typedef struct meeting {
     const he_vec3 *t[2];
-    int side[2][3]; /* of the corners of t[0], as seen from t[1], and the other way */
+    int side[2][3]; /* for the corners of t[0], as seen from t[1], and the reverse */
 } meeting;
 
-/* Does the side that begins at corner i of one triangle meet the other one? */
+/* Does the side that begins at corner i of one triangle intersect the other triangle? */
 static bool side_meets(const meeting *m, int of, int i)
 {
     const he_vec3 *t = m->t[1 - of];
@@ -173,9 +174,9 @@ static bool side_meets(const meeting *m, int of, int i)
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* The sides of the plane of t[1 - of] that the corners of t[of] lie on; those in the set `shared`
- * lie in it. True when the others all lie on one side, with none in the plane: nearly all
- * neighbours do. */
+/* Computes the sides of the plane of t[1 - of] on which the corners of t[of] are; those in the set
+ * `shared` are in it. Returns true if the others are all on one side and none is in the plane, as
+ * for nearly all neighbours. */
 static bool is_beside(meeting *m, int of, unsigned shared)
 {
     const he_vec3 *plane = m->t[1 - of];
@@ -238,11 +239,12 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
                              : flat_meet_beyond_side(&f, 3 - sum_a, 3 - sum_b);
     }
     if (shared == 1) {
-        /* What leaves a shared corner on both triangles ends on the side opposite to it of one,
-         * which the other then meets. */
+        /* Points other than the shared corner that are in both triangles reach the side opposite to
+         * it of one triangle, which then intersects the other one. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
-    /* What is apart as it is seen along an axis is apart; this takes less than what follows. */
+    /* Triangles whose projections are disjoint are disjoint; this test is cheaper than the
+     * following. */
     const flat_pair seen = flatten(a, b, likely_axis(a));
     if (!flat_meet(&seen)) {
         return false;

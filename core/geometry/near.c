@@ -1,7 +1,7 @@
-/* NEAR is a quarter of a cell, what the tolerance is, and some to spare for the rounding of the
- * division. Coordinates so large that it does not cover that (2^43 cells from 0) look on both
- * sides; those where even the next double is out of reach (2^53 cells) are cells of their own, as
- * all are when the tolerance is 0. */
+/* NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the division. For
+ * coordinates so large that the margin is too small (2^43 cells from 0) both neighbours are
+ * searched; where even the next double is out of reach (2^53 cells) each coordinate is a cell of
+ * its own, as with tolerance 0. */
 #include "geometry/near.h"
 
 #include "geometry/point_hash.h"
@@ -14,7 +14,7 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* Slots that are cleared before the watch is asked: fresh memory takes long to write to. */
+/* How many slots are cleared between two steps of the watch: writing to fresh memory is slow. */
 enum { STRETCH = 16 * HE_WATCH_STRIDE };
 
 he_status he_near_make(he_near *out, const he_vec3 *points, size_t most, double tolerance,
@@ -49,7 +49,7 @@ void he_near_clear(he_near *near)
     near->slots = NULL;
 }
 
-/* The cells along one axis where what is near x may be; the first is that of x. */
+/* Finds the cells along one axis that may have points near x; the first is the cell of x. */
 static size_t cells_of(const he_near *t, double x, double cells[3])
 {
     double at = x / (CELL * t->tolerance), cell = floor(at);

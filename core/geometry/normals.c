@@ -5,14 +5,15 @@
 
 #include <stdlib.h>
 
-/* Areas differ beyond what a double spans only in meshes nobody draws; this keeps their faces from
- * vanishing where there are no larger ones. */
+/* Limits the weights: areas around a vertex differ beyond the range of a double only in meshes
+ * nobody draws, and the limit keeps their faces from vanishing if there are no larger ones. */
 static double area_weight(const he_ring *r, int exponent, int unit)
 {
     return fmax(ldexp(0.5 * he_vec3_length(r->vector), 2 * exponent - unit), DBL_MIN);
 }
 
-/* The binary exponent of the largest area about a vertex, from which the weights are taken. */
+/* Returns the binary exponent of the largest area around a vertex, relative to which weights are
+ * taken. */
 static int area_unit(const he_mesh *m, he_vertex v)
 {
     int unit = INT32_MIN;
@@ -65,24 +66,24 @@ bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *
     return he_vec3_normalise(sum, out);
 }
 
-/* A triangle of ordinary size. Most faces of most meshes are, and whole-mesh loops treat those
- * without a call or a square root more than needed. */
+/* A triangle of ordinary size. Most faces of most meshes are such triangles, and loops over the
+ * whole mesh handle them without a call and with few square roots. */
 typedef struct triangle {
-    uint32_t a, b, c; /* corners from the stored half-edge on */
+    uint32_t a, b, c; /* corners, from the stored half-edge on */
     he_vec3 u, v;     /* a to b, a to c */
     he_vec3 vector;   /* u x v: twice the area vector */
-    double square;    /* its length squared */
+    double square;    /* squared length of `vector` */
 } triangle;
 
-/* Neither degenerate nor of coordinates whose products would overflow or vanish. */
+/* Is it neither degenerate nor of coordinates whose products would overflow or underflow? */
 static inline bool is_plain(double square, double reach)
 {
     return (reach > HE_LEAST_PRODUCT) & (reach < HE_MOST_PRODUCT) &
            (square > HE_RING_NOISE * 3 * reach);
 }
 
-/* False where the face has other than three corners, is degenerate, or has coordinates whose
- * products would overflow or vanish, and where links are broken: the general way decides those. */
+/* Returns false if the face has not three corners, is degenerate, has coordinates whose products
+ * would overflow or underflow, or if links are broken: the general function handles those. */
 static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
 {
     const uint32_t end = 2u * m->c.edges.issued, vertices = m->c.vertices.issued;
@@ -94,7 +95,7 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     if (j >= end || m->c.next[j] != h) {
         return false;
     }
-    /* Targets share a cache line with the origins; the third half-edge is only looked at. */
+    /* Targets share a cache line with the origins; only the third half-edge is read in addition. */
     triangle t = {.a = m->c.origin[h], .b = m->c.origin[h ^ 1u], .c = m->c.origin[i ^ 1u]};
     if (t.a >= vertices || t.b >= vertices || t.c >= vertices) {
         return false;
@@ -109,9 +110,9 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     return is_plain(t.square, reach);
 }
 
-/* Ask for what the triangles some way ahead will need: their links first, and nearer by what those
- * lead to. Where ids are in no order every access misses the caches, and this overlaps the misses.
- */
+/* Prefetches for triangles some way ahead: their links first, and for nearer ones the rows that
+ * those name. Where ids are in no spatial order every access misses the caches, and this overlaps
+ * the misses. */
 static inline void look_ahead(const he_mesh *m, uint32_t f)
 {
     enum { LINKS = 24, CORNERS = 12 };
@@ -134,25 +135,25 @@ static inline void look_ahead(const he_mesh *m, uint32_t f)
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* Faces are taken in blocks: first their corners, which asks for the positions of all of them at
- * once, then their vectors, then the lengths of those, which have no branch between them. */
+/* Faces are handled in blocks: first their corners, which prefetches all positions, then their
+ * vectors, then the lengths of those, without a branch between them. */
 enum { BLOCK = 64 };
 
 typedef struct faces {
     const he_mesh *m;
-    bool triangles; /* all of them, so that none needs to be followed to see that it closes */
+    bool triangles; /* all faces are triangles, so no loop needs to be followed to see that it
+                       closes */
     he_vec3 *out;
 } faces;
 
-/* Every face has three corners at least (I7), so that these are all triangles if they have three
- * corners each in the mean. */
+/* Every face has at least three corners (I7), so all are triangles if the mean is three. */
 static bool are_triangles(const he_content *c)
 {
     return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
 }
 
 typedef struct triple {
-    uint32_t a, b, c; /* vertices; all HE_NONE where the general way is needed */
+    uint32_t a, b, c; /* vertices; all HE_NONE if the general function is needed */
 } triple;
 
 static inline triple find_triple(const he_content *c, uint32_t f, bool triangles)
@@ -169,7 +170,7 @@ static inline triple find_triple(const he_content *c, uint32_t f, bool triangles
             return none;
         }
     }
-    /* Targets share a cache line with the origins; the third half-edge is not looked at. */
+    /* Targets share a cache line with the origins, so the third half-edge is not read. */
     triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
     return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
 }
@@ -268,8 +269,8 @@ static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
     *sum = he_vec3_add(*sum, he_vec3_scale(normal, weight));
 }
 
-/* Add a triangle's share to its corners. `half` is half the unit of area, 0 where a double cannot
- * hold it; false when the share would vanish in that unit. */
+/* Adds a triangle's share to its corners. `half` is half the unit of area, 0 if a double cannot
+ * hold it. Returns false if the share would vanish in that unit. */
 static bool share_triangle(const triangle *t, he_weight weight, double half, he_vec3 *out)
 {
     if (weight == HE_WEIGHT_AREA) {
@@ -284,7 +285,7 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     }
     double root = sqrt(t->square), at_a = 1, at_b = 1, at_c = 1;
     if (weight == HE_WEIGHT_ANGLE) {
-        /* At each corner the cross product of its two sides is as long as `vector`. */
+        /* At each corner the cross product of the two sides has the length of `vector`. */
         he_vec3 w = he_vec3_sub(t->v, t->u);
         at_a = atan2(root, he_vec3_dot(t->u, t->v));
         at_b = atan2(root, -he_vec3_dot(t->u, w));
@@ -297,7 +298,7 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     return true;
 }
 
-/* That of a square about the origin that would hold the mesh. */
+/* Returns the exponent of the area of a square around the origin that contains the mesh. */
 static int area_unit_of_all(const he_mesh *m)
 {
     he_box box;

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* What the rounding of a determinant comes to at most, of the sum of its terms' absolute values;
- * rounded up. */
+/* Upper bounds of the rounding error of a determinant, relative to the sum of its terms' absolute
+ * values. */
 static const double ERROR3 = 8e-16, ERROR2 = 3.4e-16;
 
 static int sign(double x)
@@ -13,7 +13,7 @@ static int sign(double x)
 
 /* --- expansions: components in rising order of size, none of them zero --- */
 
-enum { MOST = 192 }; /* of three-by-three determinants of differences */
+enum { MOST = 192 }; /* the most that a three-by-three determinant of differences needs */
 
 typedef struct expansion {
     size_t count;
@@ -36,7 +36,7 @@ static pair exact_product(double a, double b)
     return (pair){fma(a, b, -x), x};
 }
 
-/* Add one number, going through the components from the smallest. */
+/* Adds one number, going through the components from the smallest. */
 static void grow(expansion *e, double b)
 {
     size_t kept = 0;
@@ -53,8 +53,8 @@ static void grow(expansion *e, double b)
     e->count = kept;
 }
 
-/* Add a product of three differences, each given as two numbers. Most differences are exact: then
- * seven of the eight terms are zero. */
+/* Adds a product of three differences, each given as two numbers. Most differences are exact, and
+ * then seven of the eight terms are zero. */
 static void add_product(expansion *e, pair a, pair b, pair c, double sign_of)
 {
     const double as[2] = {a.low, a.high}, bs[2] = {b.low, b.high}, cs[2] = {c.low, c.high};
@@ -82,11 +82,11 @@ static pair difference(double a, double b)
     return exact_sum(a, -b);
 }
 
-/* --- pairs as numbers of twice the digits (T. J. Dekker, "A floating-point technique for extending
- * the available precision", 1971) --- */
+/* --- pairs of doubles as numbers with twice the digits (T. J. Dekker, "A floating-point technique
+ * for extending the available precision", 1971) --- */
 
-/* What rounding makes of a determinant in pairs, of the sum of its terms' absolute values: each of
- * a dozen operations adds less than 2^-102 of them. */
+/* Upper bound of the rounding error of a determinant in pairs, relative to the sum of its terms'
+ * absolute values: each of a dozen operations adds less than 2^-102. */
 static const double PAIR_ERROR3 = 0x1p-96;
 
 static pair sum_of(pair a, pair b)
@@ -147,7 +147,7 @@ int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
     double size = (fabs(vxwy) + fabs(wxvy)) * fabs(u.z) + (fabs(wxuy) + fabs(uxwy)) * fabs(v.z) +
                   (fabs(uxvy) + fabs(vxuy)) * fabs(w.z);
     if (size == 0) {
-        return 0; /* a difference is 0 between equal numbers only */
+        return 0; /* a difference is 0 only between equal numbers */
     }
     return fabs(determinant) > ERROR3 * size ? sign(determinant) : exact3(a, b, c, d, size);
 }
@@ -159,7 +159,7 @@ int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c)
         return sign(left - right);
     }
     if (left == 0 && right == 0) {
-        return 0; /* a difference is 0 between equal numbers only */
+        return 0; /* a difference is 0 only between equal numbers */
     }
     expansion e = {.count = 0};
     const pair one = {0, 1};

@@ -1,7 +1,7 @@
-/* orient.h - on which side of a line or plane a point lies, exactly.
+/* orient.h - exact orientation tests: on which side of a line or plane is a point?
  *
- * The determinant is first taken in doubles. Where it is smaller than its possible error it is
- * summed up without any, as an expansion: a sum of doubles of which none overlaps another (J. R.
+ * The determinant is first computed in doubles. If it is smaller than its possible error, it is
+ * computed exactly as an expansion: a sum of doubles of which none overlaps another (J. R.
  * Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
  * 1997). Exact as long as no product of three coordinates overflows or falls below 1e-280. */
 #ifndef HE_GEOMETRY_ORIENT_H
@@ -9,15 +9,16 @@
 
 #include "mesh/mesh.h"
 
-/* The sign, -1, 0 or 1, of the volume of the tetrahedron: 1 when a, b, c turn clockwise as seen
- * from d, 0 when all four lie in a plane. */
+/* Returns the sign, -1, 0 or 1, of the volume of the tetrahedron: 1 if a, b, c turn clockwise as
+ * seen from d, 0 if all four lie in a plane. */
 int he_orient3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d);
 
 typedef struct he_vec2 {
     double x, y;
 } he_vec2;
 
-/* The same of a triangle: 1 when it turns counter-clockwise, 0 when its corners lie on a line. */
+/* Returns the sign of the area of the triangle: 1 if it turns counter-clockwise, 0 if its corners
+ * lie on a line. */
 int he_orient2(he_vec2 a, he_vec2 b, he_vec2 c);
 
 #endif

@@ -11,14 +11,14 @@
 static inline uint64_t he_point_hash_add(uint64_t h, double value)
 {
     uint64_t bits;
-    value = value == 0 ? 0 : value; /* -0 too */
+    value = value == 0 ? 0 : value; /* -0 becomes 0 */
     memcpy(&bits, &value, sizeof bits);
     h = (h ^ bits) * 0x9E3779B97F4A7C15;
     return h ^ h >> 32;
 }
 
-/* Equal for equal coordinates, 0 and -0 among them. Nobody who does not know the seed can choose
- * points of one hash. */
+/* Equal for equal coordinates; 0 and -0 are equal. Without the seed nobody can choose many points
+ * with one hash. */
 static inline uint32_t he_point_hash(uint64_t seed, he_vec3 p)
 {
     uint64_t h = he_point_hash_add(he_point_hash_add(he_point_hash_add(seed, p.x), p.y), p.z);

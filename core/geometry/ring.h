@@ -4,34 +4,35 @@
 
 #include "geometry/scale.h"
 
-/* What a walk found, in coordinates times a scale. */
+/* The sums over one walk; coordinates are multiplied by a scale. */
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
-    he_vec3 sum;    /* of the corners */
-    /* The sum of |u|^2 |v|^2 over the fan's triangles: what `vector` was cancelled from. */
+    he_vec3 sum;    /* sum of the corners */
+    /* The sum of |u|^2 |v|^2 over the fan's triangles: the size of the terms of `vector` before
+     * they cancelled. */
     double reach;
-    uint32_t degree; /* 0: the links are broken */
+    uint32_t degree; /* 0 if the links are broken */
 } he_ring;
 
-/* The relative error of a product of differences, squared, with a margin. */
+/* The squared relative error of a product of differences, with a margin. */
 #define HE_RING_NOISE (64 * DBL_EPSILON * DBL_EPSILON)
 
-/* How many half-edges a walk over the whole mesh may visit. */
+/* Returns how many half-edges a walk over the whole mesh may visit. */
 uint32_t he_ring_budget(const he_mesh *m);
-/* Walk the loop of `first`. `budget` is the number of half-edges that may still be visited. */
+/* Walks the loop of `first`. `budget` is the number of half-edges that may still be visited. */
 he_ring he_ring_walk(const he_mesh *m, uint32_t first, double scale, uint32_t *budget);
-/* The same in a scale where nothing overflows or vanishes: true lengths are those of the ring times
- * 2^exponent. */
+/* he_ring_walk in a scale in which nothing overflows or underflows: true lengths are those of the
+ * ring times 2^exponent. */
 he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int *exponent);
 he_ring he_ring_of_face(const he_mesh *m, he_face f, int *exponent);
 
-/* Unit; zero and false when degenerate. */
+/* Finds the unit normal. Returns false, and zero, if the face is degenerate. */
 bool he_ring_normal(const he_ring *r, he_vec3 *out);
 double he_ring_area(const he_ring *r, int exponent);
-/* Of the ring that was found from `first`. */
+/* Returns the centroid of the ring that was found from `first`. */
 he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found, int exponent);
 
-/* HE_CORRUPT: the links of the face do not close. */
+/* Returns HE_CORRUPT, saying that the links of the face do not close. */
 HE_NODISCARD he_status he_ring_corrupt(uint32_t face, he_error *err);
 
 #endif

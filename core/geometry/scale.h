@@ -1,4 +1,4 @@
-/* scale.h - keeping products of coordinates within what a double holds. Powers of two make scaling
+/* scale.h - keeps products of coordinates within the range of a double. Scaling by powers of two is
  * exact. */
 #ifndef HE_GEOMETRY_SCALE_H
 #define HE_GEOMETRY_SCALE_H
@@ -13,8 +13,8 @@
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 
-/* The exponent by which to divide so that `extent` falls into [1/2, 1). The floor keeps the factor
- * itself finite. */
+/* Returns the exponent by which to divide so that `extent` falls into [1/2, 1). It has a minimum,
+ * so that the factor itself stays finite. */
 static inline int he_exponent_of(double extent)
 {
     int exponent = 0;
@@ -34,7 +34,7 @@ static inline double he_clamped(double x)
     return fmax(fmin(x, DBL_MAX), -DBL_MAX);
 }
 
-/* A unit vector, whatever the size of `a`; zero and false when it is zero. */
+/* Finds the unit vector of `a`, whatever its size. Returns false, and zero, if it is zero. */
 static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
 {
     double square = he_vec3_dot(a, a);
@@ -48,11 +48,11 @@ static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
         square = he_vec3_dot(a, a);
     }
     double length = sqrt(square);
-    *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* along an axis exactly 1 */
+    *out = (he_vec3){a.x / length, a.y / length, a.z / length}; /* exactly 1 along an axis */
     return true;
 }
 
-/* The angle between two vectors; exact to rounding at 0 and pi, where acos is not. */
+/* Returns the angle between two vectors; accurate also near 0 and pi, where acos is not. */
 static inline double he_vec3_angle(he_vec3 a, he_vec3 b)
 {
     return atan2(he_vec3_length(he_vec3_cross(a, b)), he_vec3_dot(a, b));

@@ -11,14 +11,15 @@ typedef struct link {
 
 typedef struct interval {
     uint32_t lower, upper;      /* sides, by the corner where they begin in the loop */
-    uint32_t bottom, top, last; /* links: the ends of the chain, the corner that was met last */
-    uint32_t parent, child[2];  /* in the tree: intervals below, above */
+    uint32_t bottom, top, last; /* links: the ends of the chain, and the corner visited last */
+    uint32_t parent, child[2];  /* neighbours in the tree: intervals below, above */
 } interval;
 
 typedef struct sweep {
     const he_flat *f;
-    uint32_t *rank;   /* of each corner in the order in which they are met */
-    uint32_t *within; /* of each side the interval it bounds, HE_NONE when the line is not on it */
+    uint32_t *rank; /* for each corner, its place in the order of visits */
+    uint32_t
+        *within; /* for each side, the interval it bounds; HE_NONE while the line is not on it */
     interval *intervals;
     link *links;
     uint32_t interval_count, link_count, root;
@@ -88,7 +89,7 @@ static int side_of(const sweep *s, uint32_t child)
     return s->intervals[s->intervals[child].parent].child[1] == child;
 }
 
-/* Above its parent, which goes below it on the other side. */
+/* Rotates a node above its parent. */
 static void rotate(sweep *s, uint32_t i)
 {
     interval *of = s->intervals;
@@ -112,7 +113,7 @@ static void splay(sweep *s, uint32_t i)
     }
 }
 
-/* The interval with the highest lower side below a corner, or HE_NONE. */
+/* Returns the interval with the highest lower side below a corner, or HE_NONE. */
 static uint32_t find_below(sweep *s, uint32_t corner)
 {
     uint32_t found = HE_NONE, deepest = HE_NONE;
@@ -123,14 +124,14 @@ static uint32_t find_below(sweep *s, uint32_t corner)
         deepest = i;
         i = s->intervals[i].child[above];
     }
-    /* The way down is paid for by bringing its end up. */
+    /* Splaying the last node of the way down pays for its length. */
     if (deepest != HE_NONE) {
         splay(s, deepest);
     }
     return found;
 }
 
-/* Just above `below`, HE_NONE: below all. */
+/* Inserts an interval just above `below`, or below all if that is HE_NONE. */
 static uint32_t add_interval(sweep *s, uint32_t below)
 {
     interval *of = s->intervals;
@@ -179,7 +180,7 @@ static void join_links(sweep *s, uint32_t lower, uint32_t upper)
     s->links[upper].down = lower;
 }
 
-/* The triangle of a corner that is met and of two links, the upper one first. */
+/* Cuts the triangle of a visited corner and of two links, the upper one first. */
 static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
 {
     uint32_t a = s->links[upper].corner, b = s->links[lower].corner;
@@ -194,7 +195,7 @@ static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
     return true;
 }
 
-/* A corner on, or at the upper end of, the upper side: the new top of the chain. */
+/* Adds the new top of the chain: a corner on the upper side, or at its end. */
 static void add_top(sweep *s, interval *of, uint32_t corner)
 {
     uint32_t top = of->top;
@@ -215,7 +216,7 @@ static void add_bottom(sweep *s, interval *of, uint32_t corner)
     join_links(s, of->bottom, bottom);
 }
 
-/* --- events; false where they cannot be those of a simple polygon --- */
+/* --- events; each returns false if it cannot be one of a simple polygon --- */
 
 static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
 {
@@ -224,7 +225,7 @@ static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
     s->within[lower] = s->within[upper] = which;
 }
 
-/* Both sides go on from the corner, with the inside between them. */
+/* Both sides begin at the corner, with the inside between them. */
 static bool start(sweep *s, uint32_t corner)
 {
     uint32_t made = add_interval(s, find_below(s, corner));
@@ -234,7 +235,7 @@ static bool start(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Both sides go on from the corner, with the outside between them. */
+/* Both sides begin at the corner, with the outside between them. */
 static bool split(sweep *s, uint32_t corner)
 {
     uint32_t below = find_below(s, corner);
@@ -246,7 +247,7 @@ static bool split(sweep *s, uint32_t corner)
     link *last = &s->links[low->last];
     bound(s, above, corner, low->upper);
     bound(s, below, low->lower, before(s, corner));
-    /* Its last corner is in both chains. */
+    /* The corner visited last is in both chains. */
     high->bottom = new_link(s, last->corner);
     high->top = high->bottom;
     if (last->up != HE_NONE) {
@@ -270,7 +271,7 @@ static bool merge(sweep *s, uint32_t corner)
     interval *low = &s->intervals[below], *high = &s->intervals[above];
     add_top(s, low, corner);
     add_bottom(s, high, corner);
-    /* The corner is the end of both chains: one of its links goes. */
+    /* The corner is the end of both chains, so one of its two links is dropped. */
     join_links(s, low->top, s->links[high->bottom].up);
     low->last = low->top;
     low->top = high->top;
@@ -296,7 +297,7 @@ static bool meet(sweep *s, uint32_t corner)
 {
     uint32_t b = before(s, corner), a = after(s, corner);
     bool onward = s->rank[a] > s->rank[corner], back = s->rank[b] > s->rank[corner];
-    /* Sides that end here must have begun, and be what their intervals are bounded by. */
+    /* Sides that end here must have begun, and must be the bounds of their intervals. */
     if ((!onward && s->within[corner] == HE_NONE) || (!back && s->within[b] == HE_NONE)) {
         return false;
     }
@@ -320,9 +321,9 @@ static bool meet(sweep *s, uint32_t corner)
                     : (onward ? split(s, corner) : merge(s, corner));
 }
 
-/* --- the triangles in an order in which each cuts a corner off --- */
+/* --- sorting the triangles so that each cuts a corner off --- */
 
-/* The corner of the three that is neither the least nor the greatest. */
+/* Returns the middle one of three corners. */
 static uint32_t middle_of(const uint32_t t[3])
 {
     uint32_t low = t[0] < t[1] ? t[0] : t[1], high = t[0] < t[1] ? t[1] : t[0];
@@ -339,8 +340,9 @@ static uint32_t span_of(const uint32_t t[3])
     return high - low;
 }
 
-/* Inside the span of corners of a triangle lie the triangles that cut off what is between them, so
- * those of small spans come first. False where they are no triangulation. `room` has n + 2. */
+/* A triangle spans a range of corners, in which lie the triangles that cut off what is between
+ * them; so triangles of small spans come first. Returns false if they are no triangulation. `room`
+ * has n + 2 words. */
 static bool put_in_order(const he_flat *f, const uint32_t *from, uint32_t *to, uint32_t *room)
 {
     uint32_t n = f->n, *next = room;

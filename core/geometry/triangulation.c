@@ -7,12 +7,12 @@
 #include <float.h>
 #include <string.h>
 
-/* --- what loops share --- */
+/* --- state shared by loops --- */
 
-/* Steps between two looks at the watch: below a millisecond. */
+/* How many steps are taken between two steps of the watch: less than a millisecond. */
 enum { STEPS_UNTOLD = 1 << 15 };
 
-/* Edges are looked for around their ends until that has cost about as much as sorting them. */
+/* Edges are searched around their ends until that has cost about as much as making the index. */
 enum { SEARCHED_AT_LEAST = 4096 };
 
 bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
@@ -62,14 +62,16 @@ he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *e
 
 /* --- exact: all sub-loops i..k of corners, smallest first --- */
 
-/* A triangle that does not turn left outweighs all diagonals of a loop, each of which costs at most
- * one: its squared length over the largest there can be in the frame of flat.h. */
+/* The cost of a triangle that does not turn left. It exceeds the cost of all diagonals of a loop,
+ * each of which is at most one: its squared length over the largest possible in the frame of
+ * flat.h. */
 static const double BAD = 4096;
 
 typedef struct table {
-    double *cost;    /* of the best triangulation of sub-loop i..k, under i, k and under k, i;
-                        DBL_MAX when there is none */
-    uint8_t *middle; /* its triangle on the side i, k */
+    /* cost of the best triangulation of sub-loop i..k, under i, k and under k, i; DBL_MAX if there
+     * is none */
+    double *cost;
+    uint8_t *middle; /* the middle corner of its triangle on the side i, k */
     he_triangulation_work *work;
 } table;
 
@@ -79,7 +81,7 @@ static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
     return (x * x + y * y) / 12;
 }
 
-/* What the sub-loop i..k costs, `side` with it. */
+/* Returns the cost of the sub-loop i..k, including `side`. */
 static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, table *t)
 {
     uint32_t n = f->n;
@@ -87,7 +89,7 @@ static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, t
     double best = DBL_MAX;
     for (uint32_t j = i + 1; j < k; j++) {
         double cost = side + from_i[j] + to_k[j];
-        /* Most are no better even if they turn left: do not look. */
+        /* Most triangles cost more even if they turn left, so that is not tested for them. */
         if (cost < best) {
             cost += he_flat_turns_left(f, i, j, k) ? 0 : BAD;
             if (cost < best) {
@@ -122,7 +124,7 @@ static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, tabl
     return HE_OK;
 }
 
-/* Triangles innermost first, so that each has its middle corner to itself when its turn comes.
+/* Lists the triangles innermost first, so that each cuts off its middle corner when its turn comes.
  * The stack holds sub-loops; preorder written backwards is children before parents. */
 static void read_table(const he_flat *f, const table *t, uint32_t *corners)
 {
@@ -158,7 +160,7 @@ static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work 
     status = fill_table(m, f, avoid, &t, err);
     double cost = t.cost[whole];
     if (status == HE_OK && avoid && cost >= BAD) {
-        /* Did avoiding edges make it so? */
+        /* Find out whether avoiding edges caused the flipped triangles. */
         status = fill_table(m, f, false, &t, err);
         if (status == HE_OK && cost >= t.cost[whole] + BAD / 2) {
             status = he_diagonals_refuse(m, f, err);
@@ -178,7 +180,7 @@ out:
     return status;
 }
 
-/* --- both --- */
+/* --- short and long loops --- */
 
 void he_triangulation_clear(he_triangulation *triangulation)
 {
@@ -187,11 +189,12 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
-/* Is a side of the triangles that is none of the loop an edge of the mesh? */
+/* Is a side of the triangles that is no side of the loop an edge of the mesh? */
 static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
                          he_triangulation_work *work)
 {
-    /* The third side of a triangle is the diagonal it is cut off by; the last one has none. */
+    /* The third side of a triangle is the diagonal by which it is cut off; the last triangle has
+     * none. */
     for (uint32_t k = 0; k + 3 < plan->flat.n; k++) {
         const uint32_t *corners = plan->corners + 3 * (size_t)k;
         if (he_diagonal_exists(m, &plan->flat, corners[0], corners[2], work)) {
@@ -201,7 +204,7 @@ static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
     return false;
 }
 
-/* Where the ears of a loop were not enough. */
+/* Triangulates by the sweep if ear clipping got stuck. */
 static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                             he_triangulation *plan, bool *done, he_error *err)
 {
@@ -258,7 +261,8 @@ static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_wo
     return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
 }
 
-/* Where the mesh keeps it. `found` stays false if it does not, or doubles an edge. */
+/* Takes the triangulation from the mesh's cache. `found` is false if it is not there, or doubles an
+ * edge. */
 static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
                            he_triangulation_work *work, he_triangulation *plan, bool *found,
                            he_error *err)

@@ -1,4 +1,4 @@
-/* vec3.h - arithmetic on points and directions, inline. Nothing here guards against overflow; where
+/* vec3.h - arithmetic on points and directions, inline. Nothing here guards against overflow; if
  * the size of the coordinates is not known, geometry.h scales first. */
 #ifndef HE_GEOMETRY_VEC3_H
 #define HE_GEOMETRY_VEC3_H
@@ -31,7 +31,7 @@ static inline double he_vec3_length(he_vec3 a)
 {
     return sqrt(he_vec3_dot(a, a));
 }
-/* The largest absolute value of a component. */
+/* Returns the largest absolute value of a component. */
 static inline double he_vec3_extent(he_vec3 a)
 {
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
