@@ -9,7 +9,7 @@
 
 /* --- the frame --- */
 
-/* Half of the longest side of the box is at most 2^this. */
+/* Returns an exponent for which half of the longest side of the box is at most 2^exponent. */
 static int exponent_of(double half)
 {
     int exponent = 0;
@@ -17,8 +17,8 @@ static int exponent_of(double half)
     return part == 0.5 ? exponent - 1 : exponent; /* a power of two is its own bound */
 }
 
-/* To the nearest multiple of 2^exponent. What is so large that it is one already may not be scaled:
- * it could overflow. */
+/* Rounds to the nearest multiple of 2^exponent. A number so large that it is one already is not
+ * scaled, because that could overflow. */
 static double snapped(double x, int exponent)
 {
     int own = 0;
@@ -26,8 +26,8 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
-/* Isolated vertices are in the frame up to so many times as far from its middle as the surface is.
- */
+/* Isolated vertices count for the frame up to this many times as far from its middle as the
+ * surface. */
 static const double FAR = 4096;
 
 static void include(he_box *box, he_vec3 p)
@@ -36,13 +36,13 @@ static void include(he_box *box, he_vec3 p)
     box->max = (he_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
 }
 
-/* Halves, since the sum or difference of two large doubles may be infinite. */
+/* Halves are taken first, since the sum or difference of two large doubles may be infinite. */
 static he_vec3 half_way(he_vec3 from, he_vec3 to)
 {
     return he_vec3_sub(he_vec3_scale(to, 0.5), he_vec3_scale(from, 0.5));
 }
 
-/* The box of what the frame is to hold. False when there are no vertices. */
+/* Finds the box that the frame must contain. Returns false if there are no vertices. */
 static bool find_box(const he_mesh *m, he_box *out)
 {
     he_box box;
@@ -62,8 +62,8 @@ static bool find_box(const he_mesh *m, he_box *out)
     return true;
 }
 
-/* With half the box at most 2^e and the origin at most 2^(e - 3) from its centre on each axis, what
- * is scaled by 2^-(e + 1) is within 9/16 on each axis and so within the unit ball. */
+/* With half the box at most 2^e and the origin at most 2^(e - 3) from its centre on each axis,
+ * positions scaled by 2^-(e + 1) are within 9/16 on each axis and so within the unit ball. */
 he_frame he_frame_of(const he_mesh *m)
 {
     he_box box;
@@ -84,7 +84,7 @@ he_frame he_frame_of(const he_mesh *m)
     return (he_frame){origin, ldexp(1, -(e + 1))};
 }
 
-/* Each side scaled before the difference, which might overflow. */
+/* Both are scaled before the subtraction, which might overflow. */
 static he_vec3 place(const he_drawing *d, uint32_t halfedge)
 {
     he_vec3 p = he_position(d->mesh, he_origin(d->mesh, (he_halfedge){halfedge}));
@@ -92,13 +92,14 @@ static he_vec3 place(const he_drawing *d, uint32_t halfedge)
                        he_vec3_scale(d->frame.origin, d->frame.scale));
 }
 
-/* --- where a face is a fan --- */
+/* --- faces that are fans --- */
 
-/* Twice the area of a triangle in the plane, relative to its squared sides, under which it has
- * none; as in flat.c, so that both agree on what is degenerate. */
+/* A triangle in the plane whose doubled area, relative to its squared sides, is below this has no
+ * area; as in flat.c, so that both agree on which are degenerate. */
 static const double THIN = 1e-12;
 
-/* Does the triangle of the origin and u, v turn as the normal, whose length is given, says? */
+/* Does the triangle of the origin, u and v turn counter-clockwise as seen from `normal`, whose
+ * length is given? */
 static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
 {
     he_vec3 w = he_vec3_sub(v, u);
@@ -106,7 +107,7 @@ static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
     return he_vec3_dot(he_vec3_cross(u, v), normal) > THIN * sides * length;
 }
 
-/* The Newell normal of the loop, and how many corners it has. */
+/* Returns the Newell normal of the loop, and its number of corners. */
 static he_vec3 normal_of(const he_drawing *d, uint32_t first, uint32_t *degree)
 {
     he_vec3 base = place(d, first), normal = {0, 0, 0}, u = {0, 0, 0};
@@ -135,8 +136,8 @@ static bool is_fan(const he_drawing *d, uint32_t first, he_vec3 normal)
     return true;
 }
 
-/* The corner about which a quadrilateral is a fan of two. Where the diagonals are as good as equal
- * the first corner's, so that a regular mesh is cut in one direction. */
+/* Returns the corner whose fan of two triangles fills a quadrilateral. If the diagonals are about
+ * equal it is the first corner, so that a regular mesh is cut in one direction. */
 static uint32_t apex_of_quad(const he_drawing *d, uint32_t first)
 {
     static const double CLEARLY = 1 - 1e-6;
@@ -152,7 +153,7 @@ static uint32_t apex_of_quad(const he_drawing *d, uint32_t first)
     int bad[2] = {0, 0};
     for (int i = 0; i < 4; i++) {
         int k = (i + 1) % 4, l = (i + 2) % 4;
-        /* The triangles about corners 1 and 3 hang on the diagonal of corner 0. */
+        /* The triangles of corners 1 and 3 belong to the diagonal of corner 0. */
         bad[k % 2 == 0] += !turns(he_vec3_sub(p[k], p[i]), he_vec3_sub(p[l], p[i]), normal, length);
     }
     if (bad[0] != bad[1]) {
@@ -201,7 +202,7 @@ static he_status cut(he_drawing *d, uint32_t face, he_error *err)
     return HE_OK;
 }
 
-/* --- both --- */
+/* --- both kinds of faces --- */
 
 void he_drawing_clear(he_drawing *drawing)
 {
@@ -209,14 +210,14 @@ void he_drawing_clear(he_drawing *drawing)
     *drawing = (he_drawing){.mesh = NULL};
 }
 
-/* Cut the face unless it is a fan, and take what that costs from `*most`. */
+/* Cuts the face unless it is a fan, and subtracts the cost from `*most`. */
 static he_status prepare(he_drawing *d, uint32_t face, uint64_t *most, he_error *err)
 {
     const uint32_t *next = d->mesh->c.next;
     uint32_t first = d->mesh->c.face_halfedge[face], degree;
     uint32_t fourth = next[next[next[first]]];
     if (fourth == first || next[fourth] == first) {
-        return HE_OK; /* triangles and quadrilaterals always are */
+        return HE_OK; /* triangles and quadrilaterals always are fans */
     }
     he_vec3 normal = normal_of(d, first, &degree);
     if (is_fan(d, first, normal)) {
@@ -294,7 +295,7 @@ void he_drawing_vertex(const he_drawing *d, uint32_t id, float out[HE_DRAWN_ROW]
     out[3] = halfedge == HE_NONE ? HE_DRAWN_ISOLATED : HE_DRAWN_USED;
 }
 
-/* The first row of a face among those that were cut, NULL where it is a fan. */
+/* Returns the first row of a face that was cut, NULL if it is a fan. */
 static const uint32_t *find_cut(const he_drawing *d, uint32_t face)
 {
     const uint32_t mask = ((uint32_t)1 << HE_DRAWN_SIDES) - 1;

@@ -8,8 +8,8 @@
 
 /* --- freed runs ---
  *
- * The word of a freed run's first slot leads to the next run of its chain; one in the chain of long
- * runs has its length in the second. All have the bit HE_SLOT_DEAD. */
+ * The word of a freed run's first slot leads to the next run of its chain; a run in the chain of
+ * long runs has its length in the second word. All have the bit HE_SLOT_DEAD. */
 
 enum { LONG_RUN = HE_SLOT_BINS, TRIES = 8 };
 static const uint32_t LAST = HE_SLOT_DEAD - 1; /* ends a chain */
@@ -33,7 +33,7 @@ static void put_run(he_slots *s, uint32_t slot, uint32_t length)
     s->filled |= (uint64_t)1 << bin;
 }
 
-/* Out of its chain, where `*link` leads to it. */
+/* Takes a run out of its chain, in which `*link` leads to it. */
 static uint32_t unlink_run(he_slots *s, uint32_t bin, uint32_t *link)
 {
     uint32_t slot = *link & ~HE_SLOT_DEAD;
@@ -44,7 +44,7 @@ static uint32_t unlink_run(he_slots *s, uint32_t bin, uint32_t *link)
     return slot;
 }
 
-/* A freed run of at least this length, LAST where none is at hand. */
+/* Finds a freed run of at least this length; LAST if there is none. */
 static uint32_t find_run(he_slots *s, uint32_t length, uint32_t *found)
 {
     uint64_t bins = length < LONG_RUN ? s->filled >> length << length : 0;
@@ -84,7 +84,7 @@ static void give_run(he_slots *s, uint32_t face, uint32_t length)
     s->first[face] = slot;
 }
 
-/* How many slots a face has. */
+/* Returns how many slots a face has. */
 static uint32_t run_of(const he_slots *s, uint32_t face)
 {
     uint32_t length = 0;
@@ -193,7 +193,7 @@ he_status he_slots_new(const he_mesh *m, uint64_t layout, uint64_t revision, he_
     return HE_OK;
 }
 
-/* --- what changed when --- */
+/* --- remembering changes --- */
 
 static size_t rows_of(const he_slots *s)
 {
@@ -208,7 +208,7 @@ static void forget_front(he_ids *list, size_t count)
     }
 }
 
-/* Forget the oldest steps, and more than needed, so that it is not done each time. */
+/* Drops the oldest steps, and more than needed, so that it is not done each time. */
 static void forget_steps(he_slots *s, size_t more)
 {
     size_t most = rows_of(s) / 2 + HE_SLOT_CHANGES, gone = 0;
@@ -314,8 +314,8 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* A half-edge whose face changed within the deltas has a record of that, with both faces: for any
- * other record of it the face it has at last will do. */
+/* If the face of a half-edge changed within the deltas, a record names both faces; for any other
+ * record of the half-edge its present face is enough. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -364,7 +364,7 @@ void he_touched_clear(he_touched *touched)
     he_ids_clear(&touched->moved);
 }
 
-/* Steps taken against how many may be. */
+/* Steps taken, and the most allowed. */
 typedef struct budget {
     uint64_t left;
 } budget;
@@ -382,7 +382,7 @@ static bool is_in_ball(const he_frame *frame, he_vec3 p)
 {
     he_vec3 v =
         he_vec3_sub(he_vec3_scale(p, frame->scale), he_vec3_scale(frame->origin, frame->scale));
-    return he_vec3_dot(v, v) <= 1; /* false of what is no number */
+    return he_vec3_dot(v, v) <= 1; /* false for NaN too */
 }
 
 static bool is_triangle(const he_mesh *m, uint32_t face)
@@ -391,7 +391,7 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* A moved vertex has another row, and the faces at it may be cut otherwise: all but triangles. */
+/* Adds the faces of moved vertices, except triangles, because they may be cut differently. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -415,7 +415,7 @@ static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *er
     return status;
 }
 
-/* Does the frame still hold every vertex that came or moved, and well? */
+/* Does the frame still contain every vertex that is new or moved, and fit well? */
 static he_status check_frame(const he_slots *s, const he_mesh *m, const he_touched *t,
                              he_error *err)
 {
@@ -435,7 +435,7 @@ static he_status check_frame(const he_slots *s, const he_mesh *m, const he_touch
     return HE_OK;
 }
 
-/* The old and new lengths of the runs of touched faces, two each, and what they come to. */
+/* The old and new lengths of the runs of touched faces, two numbers each, and their sums. */
 typedef struct runs {
     uint32_t *length;
     uint64_t before, after;
@@ -464,7 +464,7 @@ static void commit(he_slots *s, const he_mesh *m, const he_touched *t, const run
 {
     issue_faces(s, m->c.faces.issued);
     s->vertices = m->c.vertices.issued;
-    /* All that is freed before any is taken. */
+    /* Every run is freed before any is taken. */
     for (size_t i = 0; i < t->faces.count; i++) {
         uint32_t face = t->faces.ids[i], before = r->length[2 * i];
         if (before > 0) {
