@@ -1,8 +1,8 @@
-/* op.h - THE operation table: one row an edit, and all there is to know about it.
+/* op.h - THE operation table: one row an edit, with everything the program knows about it.
  *
- * The rows drive the decoding of JSON bodies, GET /v1/operations, the OpenAPI schemas, the
- * viewer's tool panel, fuzzing, and what the tests owe: every row succeeds once, every refusal it
- * declares is produced and no other, V, E and F move as declared, the checker passes, and a
+ * The rows drive the decoding of JSON bodies, GET /v1/operations, the OpenAPI schemas, the viewer's
+ * tool panel, fuzzing, and the duties of the tests: every row succeeds once, every refusal it
+ * declares is produced and no other, V, E and F change as declared, the checker passes, and a
  * refusal leaves the mesh bit-identical.
  *
  * A row's name is also the C function's (edge_split is he_edge_split) and the tests'. */
@@ -11,7 +11,7 @@
 
 #include "mesh/mesh.h"
 
-/* What a parameter holds. */
+/* The type of a parameter. */
 typedef enum he_param_type {
     HE_PARAM_ELEMENT,  /* one id of the row's kind */
     HE_PARAM_ELEMENTS, /* one id under `name`, or a list under `plural` */
@@ -24,39 +24,41 @@ typedef enum he_param_type {
     HE_PARAM_CYCLE, /* a list of element ids whose order matters and where repeats are refusals */
     HE_PARAM_TEXT,  /* a string */
     HE_PARAM_COLOR, /* red, green and blue, from 0 on; with HE_OPACITY also four */
-    HE_PARAM_MESH   /* another mesh, which stands still meanwhile */
+    HE_PARAM_MESH   /* another mesh, which must not change meanwhile */
 } he_param_type;
 
 /* Flags of a parameter. */
 enum {
     HE_REQUIRED = 1,
-    HE_NULLABLE = 2,    /* an element that may be null: HE_NONE */
-    HE_EXCLUSIVE = 4,   /* the ends of the range are not in it */
-    HE_RANGE = 8,       /* min and max apply */
-    HE_DERIVED = 16,    /* a number or flag whose default follows from the mesh, as `doc` says */
-    HE_COSTS_MESH = 32, /* where it is given, a local operation costs the mesh */
-    HE_WHOLE = 128,     /* a number with a range that has no fraction */
-    /* Elements whose neighbours are looked at too: all corners of the faces about a vertex, all
-     * edges at the corners of a face or along a loop, both of an edge. */
+    HE_NULLABLE = 2,  /* an element that may be null, which is HE_NONE */
+    HE_EXCLUSIVE = 4, /* the ends of the range are excluded */
+    HE_RANGE = 8,     /* min and max apply */
+    HE_DERIVED = 16,  /* a number or flag whose default is computed from the mesh, as `doc` says */
+    HE_COSTS_MESH =
+        32,         /* if it is given, a local operation costs as much as one of the whole mesh */
+    HE_WHOLE = 128, /* a number with a range, without a fraction */
+    /* The operation also visits neighbours of the elements: all corners of the faces around a
+     * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */
     HE_REACHES = 64,
-    /* Each call walks about all of the elements given here: around the vertices and along the loops
-     * of faces and holes, and with HE_REACHES around all corners of their faces. A list of
-     * operations is charged for that, since it may name one hub again and again. */
+    /* Each call walks around all of the elements given here: around the vertices and along the
+     * loops of faces and holes, and with HE_REACHES around all corners of their faces. A list of
+     * operations is charged for that, since it may name one vertex of large degree again and
+     * again. */
     HE_WALKS = 256,
     HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
 };
 
 typedef struct he_param {
     const char *name;
-    const char *plural; /* of HE_PARAM_ELEMENTS, else NULL */
+    const char *plural; /* for HE_PARAM_ELEMENTS, else NULL */
     he_param_type type;
-    he_kind kind; /* of elements */
+    he_kind kind; /* kind of the elements */
     unsigned flags;
-    /* Parameters of one letter are alternatives: at most one is given, and exactly one where any
-     * of them is required. 0 stands alone. */
+    /* Parameters with one letter are alternatives: at most one is given, and exactly one if any of
+     * them is required. 0 means no alternatives. */
     char group;
     double min, max;
-    double fallback;            /* default of a number; 0 or 1 of a flag; index of a choice */
+    double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
     const char *const *choices; /* ends in NULL */
     const char *doc;
 } he_param;
@@ -64,27 +66,28 @@ typedef struct he_param {
 /* A decoded argument, at its parameter's index. Lists are borrowed for the call. */
 typedef struct he_arg {
     bool given;
-    uint32_t id;         /* ELEMENT; HE_NONE for null */
-    const uint32_t *ids; /* ELEMENTS, CYCLE */
-    size_t count;        /* of ids or points */
-    bool list;           /* ELEMENTS and POINTS: given in its list form */
+    uint32_t id;         /* for ELEMENT; HE_NONE for null */
+    const uint32_t *ids; /* for ELEMENTS and CYCLE */
+    size_t count;        /* number of ids or points */
+    bool list;           /* for ELEMENTS and POINTS: given as a list */
     double number;
-    const he_vec3 *points; /* POINT, POINTS */
+    const he_vec3 *points; /* for POINT and POINTS */
     bool flag;
     int choice;
     double matrix[16];
     const char *text;    /* borrowed */
-    double color[4];     /* `count` numbers of it */
-    const he_mesh *mesh; /* borrowed, and not the one that is edited */
+    double color[4];     /* `count` of the numbers are given */
+    const he_mesh *mesh; /* borrowed; never the mesh that is edited */
 } he_arg;
 
-/* What an operation gives back besides the sets that follow from its delta. */
+/* The type of a result. An operation gives results in addition to the sets that follow from its
+ * delta. */
 typedef enum he_result_type {
     HE_RESULT_ELEMENT,  /* one id, or null */
     HE_RESULT_ELEMENTS, /* a list of ids */
     HE_RESULT_NUMBER,
-    HE_RESULT_MAP,    /* old id -> new id, null where dead */
-    HE_RESULT_COUNTS, /* how many elements, one number a step */
+    HE_RESULT_MAP,    /* old id -> new id, null if dead */
+    HE_RESULT_COUNTS, /* numbers of elements, one for each step */
     HE_RESULT_CHOICE  /* one of the strings in `choices` */
 } he_result_type;
 
@@ -98,66 +101,66 @@ typedef struct he_result_row {
 
 enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
 
-/* Values of the results, at the index of their row. he_op_run clears and fills them; the caller
- * clears them at last. */
+/* The results, at the index of their row. he_op_run clears and fills them; in the end the caller
+ * clears them. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
-    uint32_t id[HE_OP_RESULTS]; /* of a choice its index */
+    uint32_t id[HE_OP_RESULTS]; /* for a choice, its index */
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* local: costs what it touches. whole: costs the mesh, may run long. */
+/* local: costs what it touches. whole: costs the whole mesh, so it may run long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
-/* A change in V, E, F that does not depend on the mesh, or HE_VARIES. */
+/* A change of V, E or F that depends on the mesh. */
 enum { HE_VARIES = -1000 };
 
 typedef struct he_op {
     const char *name;
     const char *doc; /* one sentence */
     he_op_size size;
-    he_param params[HE_OP_PARAMS]; /* ends at the first without a name */
+    he_param params[HE_OP_PARAMS]; /* ends at the first one without a name */
     he_result_row results[HE_OP_RESULTS];
-    /* Every refusal it can give besides HE_NO_MEMORY, HE_IDS_EXHAUSTED and, under a watch,
+    /* Every refusal it can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and, under a watch,
      * HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
-    int change[3]; /* V, E, F */
-    /* How long it takes beside `transform`: for each element of the mesh where it costs the mesh,
-     * else for each element of its lists. Measured, and rounded up; 0 stands for 1. */
+    int change[3]; /* change of V, E, F */
+    /* Its time relative to `transform`: for each element of the mesh if it costs the whole mesh,
+     * else for each element of its lists. Measured, and rounded up; 0 means 1. */
     unsigned pace;
-    /* By about how many times the mesh grows; NULL where it stays of its size. */
+    /* Returns about how many times the mesh grows; NULL if it keeps its size. */
     double (*growth)(const he_arg *args);
-    /* A refusal that the mesh's counts alone tell of, so that nothing need be begun; NULL where
-     * none does. HE_OK is no promise. */
+    /* Finds a refusal from the mesh's counts alone, before anything is begun; NULL if there is
+     * none. HE_OK is no promise. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
-    /* Call through he_op_run. */
+    /* Called by he_op_run only. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
 } he_op;
 
 size_t he_op_count(void);
 const he_op *he_op_at(size_t i);
-size_t he_op_number(const he_op *op); /* the number by which he_op_at gives it */
-const he_op *he_op_find(const char *name, size_t length); /* NULL when there is none */
+size_t he_op_number(const he_op *op); /* the number of the operation for he_op_at */
+const he_op *he_op_find(const char *name, size_t length); /* NULL if there is none of that name */
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
-/* Does it cost the mesh, given these? */
+/* Does it cost the whole mesh, with these arguments? */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* By about how many times the mesh grows, 1 where it stays of its size. */
+/* Returns about how many times the mesh grows, 1 if it keeps its size. */
 double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Its pace, at least 1. */
+/* Returns its pace, at least 1. */
 unsigned he_op_pace(const he_op *op);
-/* What it would refuse, where that can be told without looking at the elements. */
+/* Finds a refusal without looking at the elements. */
 HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
                                      const he_arg args[HE_OP_PARAMS], he_error *err);
 /* Is this a refusal the row declares (or a resource failure any row may have)? */
 bool he_op_declares(const he_op *op, he_status status);
 
-/* An argument for every parameter with its default and `given` false. */
+/* Fills in an argument for every parameter with its default and `given` false. */
 void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS]);
-/* Apply one operation. Arguments are those of he_op_defaults with some given; ranges, groups and
- * finiteness were checked by whoever decoded them (asserted here). A refusal changes nothing, and
- * so does a list of elements that is given and empty: its results are null, 0 and empty lists. */
+/* Applies one operation. Arguments are those of he_op_defaults, some of them given. The decoder has
+ * checked ranges, groups and finiteness (asserted here). A refusal changes nothing. Neither does a
+ * list of elements that is given and empty: its results are null, 0 and empty lists. */
 HE_NODISCARD he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARAMS],
                                  he_results *out, he_error *err);
 void he_results_clear(he_results *results);

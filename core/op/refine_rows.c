@@ -23,7 +23,7 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Each step makes four of one, or three. */
+/* Each step makes four faces of one, or three. */
 static double subdivide_growth(const he_arg *args)
 {
     return pow(args[0].choice == HE_SQRT3 ? 3 : 4, args[1].number);
@@ -34,7 +34,7 @@ static he_status foresee_subdivide(const he_mesh *m, const he_arg *args, he_erro
     return he_subdivide_fits(m, (he_scheme)args[0].choice, (unsigned)args[1].number, err);
 }
 
-/* In the order of he_scheme. */
+/* Strings in the order of he_scheme. */
 static const char *const schemes[] = {"loop", "catmull_clark", "linear", "sqrt3", NULL};
 
 const he_op he_refine_rows[] = {

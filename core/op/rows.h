@@ -1,10 +1,11 @@
-/* rows.h - where the rows of the table are, for table.c and op.c, and how a row gives results. */
+/* rows.h - the arrays of rows, for table.c and op.c, and the functions with which rows give
+ * results. */
 #ifndef HE_OP_ROWS_H
 #define HE_OP_ROWS_H
 
 #include "op/op.h"
 
-/* Rows by what they edit; each array ends in a row without a name. */
+/* Rows by the kind of element they edit; each array ends in a row without a name. */
 extern const he_op he_vertex_rows[];
 extern const he_op he_edge_rows[];
 extern const he_op he_border_rows[];
@@ -18,20 +19,21 @@ extern const he_op he_refine_rows[];
 extern const he_op he_decimate_rows[];
 extern const he_op he_material_rows[];
 
-/* All rows in the order of the table. NULL past the last. */
+/* Returns the rows in the order of the table; NULL past the last. */
 const he_op *he_table_row(size_t i);
-/* The number of a row of the table. */
+/* Returns the number of a row of the table. */
 size_t he_table_number(const he_op *op);
 
-/* Result i of a row is one element, which may be HE_NONE, or one choice. */
+/* Sets result i of a row to one element, which may be HE_NONE, or to one choice. */
 void he_give(he_results *out, size_t i, uint32_t id);
 void he_give_number(he_results *out, size_t i, double number);
-/* Room for result i, a list of at most `count` ids: asked for before the edit, which may not fail
- * afterwards. */
+/* Makes room for result i, a list of at most `count` ids. To be called before the edit, which must
+ * not fail afterwards.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err);
-/* Append to it. */
+/* Appends to list i. */
 void he_give_add(he_results *out, size_t i, uint32_t id);
-/* Result i is the whole list, which is empty afterwards. */
+/* Makes the whole list result i; `takes` is empty afterwards. */
 void he_give_list(he_results *out, size_t i, he_ids *takes);
 
 #endif
