@@ -9,11 +9,11 @@
 
 typedef struct he_gather {
     const uint32_t *of; /* NULL: every live element */
-    size_t count;       /* of `of`, or the issued rows */
+    size_t count;       /* entries of `of`, or the issued rows */
     he_ids *ids;
     uint32_t *offsets; /* the next one to write, or NULL */
     uint64_t budget;   /* half-edges that may still be visited */
-    bool capped;       /* does the budget come from the mesh's size? */
+    bool capped;       /* was the budget set by the mesh's size? */
     unsigned flags;
 } he_gather;
 
@@ -42,9 +42,9 @@ static void turn_clockwise(he_ids *ids, size_t from)
     }
 }
 
-/* What is read off each half-edge of a walk. */
+/* What each half-edge of a walk contributes. */
 typedef enum reading { ITSELF, TWIN, EDGE, ORIGIN, TARGET, FACE } reading;
-/* Which half-edge follows. */
+/* How a walk goes on from a half-edge. */
 typedef enum way { TURN, NEXT } way;
 
 static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
@@ -66,7 +66,7 @@ static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
     return HE_NONE;
 }
 
-/* The half-edge a walk of this kind starts from; HE_NONE at an isolated vertex. */
+/* Returns the half-edge from which a walk of this kind starts; HE_NONE at an isolated vertex. */
 static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t id)
 {
     if (kind == HE_VERTEX) {
@@ -75,9 +75,9 @@ static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t 
     return kind == HE_FACE ? m->c.face_halfedge[id] : id;
 }
 
-/* The one loop behind all relations that walk. It is inlined into each with `kind`, `path` and
- * `what` known, so that a dense query of a million vertices runs without a branch on them. Walking
- * past the end of a row table is what dead and absent links lead to, and is caught before use. */
+/* The one loop of all relations that walk. It is inlined into each with `kind`, `path` and `what`
+ * known, so that a dense query of a million vertices runs without a branch on them. Dead and absent
+ * links lead past the end of a row table; that is tested before the row is read. */
 static ALWAYS_INLINE he_status walk(const he_mesh *m, he_gather *g, he_kind kind, way path,
                                     reading what, he_error *err)
 {
@@ -187,10 +187,10 @@ static he_status halfedge_ring(const he_mesh *m, he_gather *g, he_error *err)
     return walk(m, g, HE_HALFEDGE, TURN, ITSELF, err);
 }
 
-/* Up to this many neighbours a repeat is looked for one by one, beyond it in `seen`. */
+/* Up to this many neighbours are compared one by one to find repeats; more are put into `seen`. */
 enum { FEW = 16 };
 
-/* Append `face` to the run that began at `from`, unless it is there. */
+/* Appends `face` to the run that began at `from`, unless the run contains it. */
 static he_status add_once(he_ids *ids, size_t from, he_idmap *seen, uint32_t face, he_error *err)
 {
     uint32_t index;
@@ -258,7 +258,8 @@ static he_status face_faces(const he_mesh *m, he_gather *g, he_error *err)
     return HE_OK;
 }
 
-/* Both half-edges of each edge. Two elements read the same in both directions. */
+/* Appends what both half-edges of each edge contribute. Two elements are in one order in both
+ * directions. */
 static ALWAYS_INLINE he_status sides(const he_mesh *m, he_gather *g, reading what, he_error *err)
 {
     for (size_t i = 0; i < g->count; i++) {
@@ -360,8 +361,8 @@ he_status he_relation_append(const he_mesh *m, const he_relation *relation, uint
     return status;
 }
 
-/* An upper bound of the answer for all elements, which is exact for most relations; 0 where the
- * mesh's size gives none (a half-edge of a big face has as many in its loop). */
+/* Returns an upper bound of the answer for all elements, which is exact for most relations; 0 if
+ * the mesh's size gives none (each half-edge of a big face has the whole loop). */
 static uint64_t bound(const he_mesh *m, const he_relation *relation)
 {
     return relation->of == HE_HALFEDGE ? 0 : 2u * (uint64_t)m->c.edges.live;

@@ -9,17 +9,17 @@
 
 enum {
     BINS = 16,
-    /* On the way down each level leaves two pairs behind at most; a pair is split on either side.
-     */
+    /* On the way down each level leaves at most two pairs on the stack; a pair is split on either
+     * side. */
     PAIRS = 6 * HE_BOXES_STACK
 };
 
 typedef struct builder {
     he_boxes tree;
-    const he_bounds *boxes; /* of things, by their numbers */
+    const he_bounds *boxes; /* boxes of things, by their numbers */
     const uint32_t *group;  /* or NULL */
     he_bounds *group_boxes;
-    size_t capacity; /* nodes there is room for */
+    size_t capacity; /* nodes that fit */
     he_budget *budget;
 } builder;
 
@@ -36,14 +36,14 @@ void he_bounds_include(he_bounds *b, const he_bounds *other)
     }
 }
 
-/* Half the surface. */
+/* Returns half the surface. */
 static double surface(const he_bounds *b)
 {
     double x = b->max[0] - b->min[0], y = b->max[1] - b->min[1], z = b->max[2] - b->min[2];
     return x * y + y * z + z * x;
 }
 
-/* Twice the centre. */
+/* Returns twice the centre. */
 static double middle(const he_bounds *b, int axis)
 {
     return b->min[axis] + b->max[axis];
@@ -51,15 +51,15 @@ static double middle(const he_bounds *b, int axis)
 
 /* --- splitting --- */
 
-/* A run of `order` to be made a node. */
+/* A run of `order` that will become a node. */
 typedef struct run {
     uint32_t node, first, count, depth;
-    uint32_t least, most; /* groups of what it holds */
+    uint32_t least, most; /* lowest and highest group of its things */
 } run;
 
 typedef struct cut {
-    int axis; /* -1: none was found */
-    int bin;  /* what lies in bins below goes left */
+    int axis; /* -1: no cut was found */
+    int bin;  /* things in bins below it go left */
     double low, factor;
 } cut;
 
@@ -68,7 +68,7 @@ static uint32_t group_of(const builder *b, uint32_t thing)
     return b->group == NULL ? 0 : b->group[thing];
 }
 
-/* The box that says where a thing of a run lies. */
+/* Returns the box by which a thing of a run is placed: its own or its group's. */
 static const he_bounds *place_of(const builder *b, const run *r, uint32_t i)
 {
     uint32_t thing = b->tree.order[r->first + i];
@@ -82,7 +82,8 @@ static int bin_of(const cut *c, const he_bounds *b)
     return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* The cheapest place to cut along one axis; the cost comes back, DBL_MAX where all go one way. */
+/* Finds the cheapest cut along one axis. Returns its cost, DBL_MAX if all things would be on one
+ * side. */
 static double cut_along(const builder *b, const run *r, cut *c)
 {
     uint32_t counts[BINS] = {0};
@@ -155,7 +156,7 @@ static bool goes_left(const builder *b, const run *r, const cut *c, uint32_t i)
     return bin_of(c, place_of(b, r, i)) < c->bin;
 }
 
-/* How many of the run went left. */
+/* Divides the run; returns how many things are on the left. */
 static uint32_t divide(builder *b, const run *r)
 {
     cut c = {.axis = -1};
@@ -176,7 +177,7 @@ static uint32_t divide(builder *b, const run *r)
     return left;
 }
 
-/* Room for two more nodes. */
+/* Makes room for two more nodes. */
 static he_status grow(builder *b, he_error *err)
 {
     size_t need = (size_t)b->tree.node_count + 2;
@@ -192,7 +193,7 @@ static he_status grow(builder *b, he_error *err)
     return HE_OK;
 }
 
-/* Not greater, not less. */
+/* Returns the next float that is not greater, or not less. */
 static float downward(double x)
 {
     float near = (float)x;
@@ -204,7 +205,7 @@ static float upward(double x)
     return -downward(-x);
 }
 
-/* The box of a run, and which groups it holds. */
+/* Finds the box of a run, and which groups it contains. */
 static he_bounds look(const builder *b, run *r)
 {
     he_bounds bounds = he_bounds_none();
@@ -283,7 +284,7 @@ he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *
                         uint32_t groups, he_budget *budget, he_boxes *out, he_error *err)
 {
     builder b = {.boxes = boxes, .group = group, .budget = budget};
-    /* As many as there are when most leaves are full, and one for the first look ahead. */
+    /* About the number of nodes if most leaves are full, and one for the first prefetch. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);
@@ -325,7 +326,7 @@ static bool apart(const he_box_node *a, const he_box_node *b)
     return false;
 }
 
-/* The pairs that two nodes, not both of them leaves, are made of. */
+/* Splits a pair of nodes, not both of them leaves, into pairs of their children. */
 static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
 {
     const he_box_node *a = &nodes[p.a], *b = &nodes[p.b];
@@ -335,7 +336,7 @@ static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
         out[2] = (node_pair){a->first, a->first + 1};
         return 3;
     }
-    /* Split the one that is no leaf, or is higher up: nodes are numbered from the root. */
+    /* Splits the node that is no leaf, or is higher up: nodes are numbered from the root. */
     bool first = b->count > 0 || (a->count == 0 && p.a < p.b);
     for (uint32_t side = 0; side < 2; side++) {
         out[side] = first ? (node_pair){a->first + side, p.b} : (node_pair){p.a, b->first + side};

@@ -1,16 +1,16 @@
-/* boxes.h - a binary tree of boxes over things that have boxes.
+/* boxes.h - a bounding volume hierarchy: a binary tree of boxes over things that have boxes.
  *
- * The tree is made top-down by binned surface area heuristics (I. Wald, "On fast construction of
- * SAH-based bounding volume hierarchies", 2007), each node down to HE_BOXES_LEAF things; from
- * HE_BOXES_DEEP on it is halved instead, so that no input makes it deeper than what the walks have
- * room for.
+ * The tree is built top-down by binned surface area heuristics (I. Wald, "On fast construction of
+ * SAH-based bounding volume hierarchies", 2007), each node down to HE_BOXES_LEAF things; from depth
+ * HE_BOXES_DEEP on it is halved instead, so that no input makes it deeper than the stacks of the
+ * walks.
  *
- *     nodes    0: the root; children of a node stand together, first and first + 1
+ *     nodes    0: the root; children of a node are neighbours, first and first + 1
  *     order    the things, in the order of leaves
  *
- * Things may come in GROUPS that are to have subtrees of their own, such as the triangles about a
- * vertex where thousands meet: while a run holds things of more than one group, those of a group
- * count as lying where the box of the whole group lies, and so stay together. */
+ * Things may belong to GROUPS that get subtrees of their own, such as the triangles about a vertex
+ * of very large degree: while a run contains things of more than one group, each thing of a group
+ * counts as having the box of the whole group, so the group stays together. */
 #ifndef HE_QUERY_BOXES_H
 #define HE_QUERY_BOXES_H
 
@@ -19,8 +19,8 @@
 
 enum {
     HE_BOXES_LEAF = 4,
-    HE_BOXES_DEEP = 48, /* below this, halves */
-    HE_BOXES_STACK = 96 /* more than any path is long */
+    HE_BOXES_DEEP = 48, /* from this depth on, runs are halved */
+    HE_BOXES_STACK = 96 /* more than the length of any path */
 };
 
 typedef struct he_bounds {
@@ -30,8 +30,8 @@ typedef struct he_bounds {
 /* A box of floats, rounded outward. */
 typedef struct he_box_node {
     float min[3], max[3];
-    uint32_t first; /* place in the order, or node */
-    uint32_t count; /* things of a leaf, 0 inside */
+    uint32_t first; /* index in the order, or of the first child */
+    uint32_t count; /* things of a leaf, 0 for an inner node */
 } he_box_node;
 
 typedef struct he_boxes {
@@ -41,31 +41,34 @@ typedef struct he_boxes {
     he_bounds all;
 } he_boxes;
 
-/* Holds nothing, and holds what `b` holds as well. */
+/* Return a box that contains nothing, and one that contains `b` as well. */
 he_bounds he_bounds_none(void);
 void he_bounds_include(he_bounds *b, const he_bounds *other);
 
-/* A tree over one thing or more, n log n in time. `group` has a number from 0 below `groups` for
- * each thing; those of group 0 belong to none. NULL where there are no groups. `out` is the
- * caller's to clear. HE_NO_MEMORY; HE_LIMIT and HE_CANCELLED by the budget. */
+/* Makes a tree over one thing or more, in n log n time. `group` has a number below `groups` for
+ * each thing; things of group 0 belong to no group. It is NULL if there are no groups. The caller
+ * clears `out`.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work. */
 HE_NODISCARD he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *group,
                                      uint32_t groups, he_budget *budget, he_boxes *out,
                                      he_error *err);
 void he_boxes_clear(he_boxes *tree);
 
-/* What is done with the pairs of things whose boxes meet. */
+/* The functions that visit pairs of things whose boxes intersect. */
 typedef struct he_boxes_visit {
-    /* Need nothing below one node be tried with anything below the other? May be NULL: boxes that
-     * do not meet are left out anyhow. */
+    /* Returns true if nothing below one node needs to be tried with anything below the other. May
+     * be NULL. Boxes that do not intersect are skipped anyhow. */
     bool (*is_needless)(void *context, uint32_t a, uint32_t b);
-    /* Try the things of two leaves, or of one with one another where both are the same node. What
-     * it fails with ends the visit. */
+    /* Tries the things of two leaves, or of one leaf with one another if both are one node. An
+     * error ends the visit. */
     he_status (*try_leaves)(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err);
 } he_boxes_visit;
 
-/* Visit each pair of leaves whose boxes meet once, charged a step for each pair of nodes. HE_LIMIT
- * and HE_CANCELLED by the budget, and what try_leaves fails with. */
+/* Visits each pair of leaves whose boxes intersect once, charging a step for each pair of nodes.
+ * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work.
+ * Returns the error of try_leaves if that fails. */
 HE_NODISCARD he_status he_boxes_visit_pairs(const he_box_node *nodes, const he_boxes_visit *visit,
                                             void *context, he_budget *budget, he_error *err);
 

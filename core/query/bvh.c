@@ -63,7 +63,7 @@ static he_bounds *find_boxes(const he_bvh *tree, const he_mesh *m)
     return boxes;
 }
 
-/* --- groups: triangles that no box tells apart --- */
+/* --- groups: triangles that boxes cannot separate --- */
 
 static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
 {
@@ -74,7 +74,8 @@ static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
     return i;
 }
 
-/* Triangles are listed face by face. How many groups there are, with group 0. */
+/* Numbers the groups of faces with many triangles, which are listed face by face. Returns the
+ * number of groups, with group 0. */
 static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
 {
     uint32_t groups = 1;
@@ -89,7 +90,8 @@ static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
     return groups;
 }
 
-/* A triangle at several hubs goes with the one that has the most spokes. */
+/* Numbers the groups of hubs. A triangle at several hubs belongs to the one with the most
+ * spokes. */
 static uint32_t group_spokes(const he_bvh *tree, uint32_t groups, uint32_t *group)
 {
     const he_hubs *hubs = &tree->hubs;
@@ -116,7 +118,7 @@ static bool has_wide_faces(const he_bvh *tree)
     return false;
 }
 
-/* *group stays NULL where all triangles are of group 0. */
+/* *group stays NULL if all triangles are of group 0. */
 static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, uint32_t **group,
                              uint32_t *groups, he_error *err)
 {
@@ -139,7 +141,7 @@ static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, 
 
 /* --- the tree --- */
 
-/* In the order of leaves. */
+/* Sorts the triangles in the order of leaves. */
 static bool arrange(he_bvh *tree, he_boxes *boxes)
 {
     he_bvh_triangle *sorted = he_mem_array(NULL, tree->count, sizeof *sorted);
@@ -165,7 +167,7 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     if (tree->discs == NULL) {
         return false;
     }
-    /* Smaller, so what was there is kept if it cannot be moved. */
+    /* The array shrinks; if it cannot be moved, the old one is kept. */
     he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
     tree->nodes = nodes == NULL ? boxes->nodes : nodes;
     tree->node_count = boxes->node_count;

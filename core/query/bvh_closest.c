@@ -7,16 +7,16 @@ static double square(he_vec3 a)
     return he_vec3_dot(a, a);
 }
 
-/* How far along from a to b, 0 to 1, the nearest point is. */
+/* Returns where the nearest point is on the way from a to b, from 0 to 1. */
 static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 {
     he_vec3 ab = he_vec3_sub(b, a);
     double t = he_vec3_dot(he_vec3_sub(p, a), ab) / square(ab);
-    return t > 0 ? (t < 1 ? t : 1) : 0; /* NaN is that of equal ends */
+    return t > 0 ? (t < 1 ? t : 1) : 0; /* NaN if the ends are equal: then 0 */
 }
 
-/* The nearest point over the inside of the triangle; false when the foot of the point is not there,
- * or the triangle is too thin to tell. */
+/* Finds the nearest point inside the triangle. Returns false if the foot of the perpendicular is
+ * outside, or the triangle is too thin to decide. */
 static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     he_vec3 u = he_vec3_sub(c[1], c[0]), v = he_vec3_sub(c[2], c[0]), w = he_vec3_sub(p, c[0]);
@@ -31,7 +31,7 @@ static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
     return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
 }
 
-/* What a walk has found yet, and how one gets from there to the point. */
+/* The best result of a walk so far, and the vector from there to the point. */
 typedef struct approach {
     he_vec3 p, back;
     he_bvh_found best;
@@ -45,7 +45,7 @@ static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
     return he_vec3_sub(p, q);
 }
 
-/* The way to the point from where on a triangle it is nearest. */
+/* Returns the vector to the point from the nearest point of a triangle. */
 static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     if (over(p, c, weight)) {
@@ -70,10 +70,11 @@ static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
     return back;
 }
 
-/* What rounding may make something seem farther than a triangle in it. */
+/* By this factor rounding may make a box seem farther than a triangle in it. */
 static const double SLACK = 1 + 16 * DBL_EPSILON;
 
-/* Does the triangle lie behind the plane across the way at its beginning? Then it is farther. */
+/* Is the triangle behind the plane through the best point so far, across the vector? Then it is
+ * farther. */
 static bool is_behind(const approach *a, const he_vec3 c[3])
 {
     double far = a->best.far * SLACK;
@@ -102,8 +103,8 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     }
 }
 
-/* The squared distance to what is below a node is not less; what is told may be less than could be
- * when it is more than `far`. */
+/* Returns a lower bound of the squared distance to the triangles below a node; the bound may be
+ * smaller than necessary once it is more than `far`. */
 static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -148,7 +149,7 @@ static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budg
             uint32_t left = node->first, right = left + 1;
             double to_left = to_node(a->p, tree, left, far),
                    to_right = to_node(a->p, tree, right, far);
-            bool swap = to_left <= to_right; /* the nearer one on top */
+            bool swap = to_left <= to_right; /* puts the nearer one on top */
             stack[depth].node = swap ? right : left;
             stack[depth++].near = swap ? to_right : to_left;
             stack[depth].node = swap ? left : right;
@@ -169,7 +170,7 @@ he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, do
     he_vec3 p = {ldexp(point.x, -tree->exponent), ldexp(point.y, -tree->exponent),
                  ldexp(point.z, -tree->exponent)};
     if (!(he_vec3_extent(p) < HE_BVH_FAR)) {
-        /* From here on only the direction tells which point is nearest. */
+        /* So far away, only the direction decides which point is nearest. */
         he_vec3_normalise(point, &p);
         p = he_vec3_scale(p, HE_BVH_FAR);
     }

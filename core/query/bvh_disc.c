@@ -2,10 +2,11 @@
 
 #include "query/bvh_walk.h"
 
-/* Up to so many triangles are looked at one by one. Discs about discs grow with each level. */
+/* Discs around up to this many triangles are computed from them, larger ones from the children's
+ * discs, which makes them larger with each level. */
 enum { PATCH = 256 };
 
-/* Twice what the rounding of a normal to floats may come to. */
+/* Twice the rounding error of a normal in floats. */
 static const double ROUNDING = 4e-7;
 
 static he_vec3 of_floats(const float v[3])
@@ -20,13 +21,13 @@ static void to_floats(he_vec3 v, float out[3])
     out[2] = (float)v.z;
 }
 
-/* Not less, and with room for what rounding made of the terms. */
+/* Returns a float that is not less, with a margin for the rounding of the terms. */
 static float upward(double x)
 {
     return nextafterf((float)(x * (1 + 1e-6)), HUGE_VALF);
 }
 
-/* What is to lie in a disc: as seen from its centre, along its normal and across. */
+/* Finds how far a point is from the centre of a disc, along its normal and across. */
 static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
 {
     double along = he_vec3_dot(from, normal);
@@ -58,7 +59,7 @@ static void center(he_bvh_disc *disc, const he_box_node *node)
     }
 }
 
-/* A run of triangles. */
+/* Computes the disc around a run of triangles. */
 static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, uint32_t begin,
                   uint32_t end, he_vec3 normal, he_bvh_disc *disc)
 {
@@ -87,12 +88,12 @@ static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_box_node *
         sum = he_vec3_add(sum, he_vec3_cross(he_vec3_sub(c[1], c[0]), he_vec3_sub(c[2], c[0])));
     }
     if (!he_vec3_normalise(sum, &normal)) {
-        normal = (he_vec3){0, 0, 1}; /* any does */
+        normal = (he_vec3){0, 0, 1}; /* any direction is valid */
     }
     about(tree, m, node, node->first, node->first + node->count, normal, disc);
 }
 
-/* The mean of the children's. */
+/* Returns the mean of the children's normals. */
 static he_vec3 mean_normal(const he_bvh_disc children[2])
 {
     he_vec3 sum = {0, 0, 0}, normal;
@@ -106,7 +107,7 @@ static he_vec3 mean_normal(const he_bvh_disc children[2])
     return normal;
 }
 
-/* About the discs of both children. */
+/* Computes the disc around the discs of both children. */
 static void about_children(const he_box_node *node, const he_bvh_disc children[2], he_vec3 normal,
                            he_bvh_disc *disc)
 {
@@ -116,7 +117,8 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
         double high, wide;
         he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
         double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
-        double askew = sqrt(1 - same * same) + 1e-3; /* what rounding may hide of a small angle */
+        double askew =
+            sqrt(1 - same * same) + 1e-3; /* the margin covers a small angle lost by rounding */
         reach(from, normal, &high, &wide);
         thick = fmax(thick, high + children[i].thick + children[i].radius * askew);
         radius = fmax(radius, wide + children[i].radius + children[i].thick * askew);
@@ -143,7 +145,7 @@ static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
 he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, he_error *err)
 {
     he_status status = HE_OK;
-    /* Children have greater numbers. */
+    /* Children have greater numbers than their parent, so they are done first. */
     for (uint32_t i = tree->node_count; i-- > 0 && status == HE_OK;) {
         const he_box_node *node = &tree->nodes[i];
         he_bvh_disc *disc = &tree->discs[i];

@@ -11,21 +11,21 @@ typedef struct prism {
     double min[3], max[3];
 } prism;
 
-/* What the triangles below a node have in common: hubs, and a face. What is left is HE_NONE. */
+/* What all triangles below a node have in common: hubs, and a face. Unused entries are HE_NONE. */
 enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
 typedef struct common {
-    uint32_t of[COMMON]; /* the face last */
+    uint32_t of[COMMON]; /* the face is last */
 } common;
 
 typedef struct walk {
     he_pair_search search;
-    common *commons; /* one a node; NULL where nothing is in common to many */
-    uint32_t done;   /* triangles that met all that are to come */
-    uint32_t leaves; /* that were tried with themselves */
+    common *commons; /* one for each node; NULL if there are no hubs or large faces */
+    uint32_t done;   /* triangles that were tried with all following ones */
+    uint32_t leaves; /* leaves that were tried with themselves */
 } walk;
 
-/* The watch is told how far the walk is after so many leaves. */
+/* After this many leaves the watch gets the progress. */
 enum { TOLD = 1024 };
 
 /* --- triangles --- */
@@ -90,7 +90,7 @@ static prism load(const he_pair_search *s, uint32_t triangle)
     return p;
 }
 
-/* a may be b. */
+/* a and b may be one leaf. */
 static he_status try_leaves(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err)
 {
@@ -156,7 +156,7 @@ static common of_triangle(const he_pair_search *s, uint32_t i)
     return out;
 }
 
-/* Children have greater numbers. */
+/* Children have greater numbers than their parent, so they are done first. */
 static void find_commons(walk *w)
 {
     for (uint32_t at = w->search.tree->node_count; at-- > 0;) {
@@ -173,8 +173,8 @@ static void find_commons(walk *w)
     }
 }
 
-/* Does the box lie beside the slab that a disc bounds? Its normal is rounded to floats, by less
- * than the allowance here (bvh_disc.c). */
+/* Is the box outside the slab that a disc bounds? The disc's normal is rounded to floats, by less
+ * than the margin here (bvh_disc.c). */
 static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
 {
     double off = 0, reach = slab->thick, size = 0;
@@ -188,7 +188,7 @@ static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
     return fabs(off) > reach + 1e-6 * size;
 }
 
-/* Asked only where there are hubs or wide faces: the boxes of other meshes tell enough apart. */
+/* Used only if there are hubs or wide faces: in other meshes the boxes separate enough. */
 static bool is_needless(void *context, uint32_t a, uint32_t b)
 {
     const walk *w = context;
@@ -201,7 +201,7 @@ static bool is_needless(void *context, uint32_t a, uint32_t b)
                       is_beside(&tree->discs[b], &tree->nodes[a]));
 }
 
-/* --- the whole --- */
+/* --- the whole search --- */
 
 static he_status prepare(walk *w, he_error *err)
 {

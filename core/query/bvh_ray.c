@@ -1,9 +1,9 @@
 #include "query/bvh_walk.h"
 
-/* A ray as boxes and triangles want it, in the tree's coordinates. */
+/* A ray, prepared for tests of boxes and triangles, in the tree's coordinates. */
 typedef struct ray {
     double origin[3], direction[3], inverse[3];
-    int x, y, z; /* the axes, so that the direction is mostly along z */
+    int x, y, z; /* the axes, permuted so that the direction is mostly along z */
     double shear_x, shear_y, shear_z;
 } ray;
 
@@ -14,7 +14,7 @@ static void as_array(he_vec3 v, double out[3])
     out[2] = v.z;
 }
 
-/* From a unit direction. */
+/* Prepares a ray with a unit direction. */
 static ray prepare(he_vec3 origin, he_vec3 direction)
 {
     ray r = {.z = 0};
@@ -34,11 +34,11 @@ static ray prepare(he_vec3 origin, he_vec3 direction)
     return r;
 }
 
-/* What rounding may add to a distance at which a box is entered or left, relatively. */
+/* The relative rounding error of a distance at which a box is entered or left. */
 static const double SLACK = 32 * DBL_EPSILON;
 
-/* Where the ray enters the box, not before 0; HUGE_VAL when it misses it or enters beyond `far`. A
- * ray that runs in the plane of a side gives NaN there, which counts as inside. */
+/* Returns where the ray enters the box, at least 0; HUGE_VAL if it misses the box or enters beyond
+ * `far`. A ray in the plane of a side gives NaN for it, which counts as inside. */
 static double enter(const ray *r, const he_box_node *node, double far)
 {
     double near = 0, out = far;
@@ -68,7 +68,8 @@ static void meet(const ray *r, const he_bvh *tree, const he_mesh *m, uint32_t tr
         x[k] = p[r->x] - r->origin[r->x] - r->shear_x * z[k];
         y[k] = p[r->y] - r->origin[r->y] - r->shear_y * z[k];
     }
-    /* The same two products for both faces of an edge, so both see the ray on the same side. */
+    /* Both faces of an edge compute exactly these two products, so both decide on one side of the
+     * ray. */
     double side[3];
     for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -123,7 +124,7 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
             uint32_t a = node->first, b = node->first + 1;
             double to_a = enter(r, &tree->nodes[a], best->far);
             double to_b = enter(r, &tree->nodes[b], best->far);
-            bool swap = to_a <= to_b; /* the nearer one on top */
+            bool swap = to_a <= to_b; /* puts the nearer one on top */
             stack[depth].node = swap ? b : a;
             stack[depth++].near = swap ? to_b : to_a;
             stack[depth].node = swap ? a : b;
@@ -133,9 +134,9 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
     return HE_OK;
 }
 
-/* From far out, begin where the ray enters the box of all; the distance to there comes back,
- * HUGE_VAL when it misses. Along the axis by which it enters its place is that side of the box
- * exactly, however coarse the numbers are so far out. */
+/* Moves a ray with a far origin to where it enters the box of all faces. Returns the distance,
+ * HUGE_VAL if it misses. On the axis by which it enters, the new origin is exactly that side of the
+ * box, however coarse numbers are so far away. */
 static double approach(ray *r, const he_box_node *root)
 {
     double near = enter(r, root, HUGE_VAL), latest = -HUGE_VAL;

@@ -1,27 +1,28 @@
-/* Spokes of one hub share points beyond it exactly where the SECTORS of directions in which they
- * leave it do: a point of both is one of a ray from the hub that both begin with.
+/* Spokes of one hub share points other than the hub exactly if the SECTORS of directions in which
+ * they leave it intersect: a common point is on a ray from the hub that both begin with.
  *
- *         .--u           A sector is an arc from u to v of a great circle of the unit sphere about
- *       .'   |           the hub, shorter than half of it. Boxes about arcs tell spokes apart that
- *     hub    | arc       boxes about triangles do not: around a disc or cone of n spokes each box
- *       '.   |           meets those of a few neighbours, and n log n steps do.
+ *         .--u           A sector is an arc from u to v of a great circle of the unit sphere around
+ *       .'   |           the hub, shorter than half of it. Boxes around arcs separate spokes that
+ *     hub    | arc       boxes around triangles do not: around a disc or cone of n spokes each box
+ *       '.   |           intersects those of a few neighbours, and n log n steps are enough.
  *         '--v
  *
- * The boxes are rounded outward; what they do not tell apart is tried exactly, like all pairs. */
+ * The boxes are rounded outward; pairs that they do not separate are tried exactly, like all
+ * others. */
 #include "geometry/meet.h"
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 
-/* Coordinates of directions, and of what is made of them here, are not farther off than this. */
+/* The error of coordinates of directions, and of values computed from them here, is below this. */
 static const double ROUNDING = 1e-14;
 
 typedef struct sectors {
     he_pair_search *search;
     uint32_t hub;
     uint32_t *spokes; /* triangles that have area */
-    he_bounds *arcs;  /* about the arc of each */
+    he_bounds *arcs;  /* box around the arc of each */
     uint32_t count;
-    const uint32_t *order; /* of the tree over the arcs */
+    const uint32_t *order; /* order of the tree over the arcs */
 } sectors;
 
 static void include(he_bounds *b, he_vec3 p, double pad)
@@ -35,8 +36,8 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* A point of the arc between u and v is one of the chord, pushed out to length 1: by no more than
- * what the middle of the chord lacks, along any axis. */
+/* A point of the arc between u and v is a point of the chord, pushed out to length 1: along any
+ * axis it moves by no more than the middle of the chord does. */
 static he_bounds about_arc(he_vec3 u, he_vec3 v)
 {
     he_bounds bounds = he_bounds_none();
@@ -46,7 +47,7 @@ static he_bounds about_arc(he_vec3 u, he_vec3 v)
     return bounds;
 }
 
-/* The corners from the one at the hub on. */
+/* Returns the box of a triangle's arc, from its corners except the one at the hub. */
 static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
 {
     int at = same(corner[0], hub) ? 0 : same(corner[1], hub) ? 1 : 2;
@@ -56,7 +57,8 @@ static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
     return about_arc(u, v);
 }
 
-/* Directions from the middle of all, so that floats tell apart what is seen from far away. */
+/* Moves the directions' mean to the origin, so that floats can separate directions that are nearly
+ * equal. */
 static void center(sectors *s)
 {
     he_bounds all = he_bounds_none();

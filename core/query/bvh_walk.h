@@ -1,4 +1,4 @@
-/* bvh_walk.h - what the walks over a tree of boxes share. */
+/* bvh_walk.h - functions shared by the walks over a tree of boxes. */
 #ifndef HE_QUERY_BVH_WALK_H
 #define HE_QUERY_BVH_WALK_H
 
@@ -6,8 +6,8 @@
 #include "mesh/walk.h"
 #include "query/bvh.h"
 
-/* Beyond this from the origin, in coordinates of the tree, products of coordinates might overflow.
- */
+/* Farther from the origin than this, in coordinates of the tree, products of coordinates might
+ * overflow. */
 #define HE_BVH_FAR 0x1p100
 
 static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t triangle,
@@ -19,14 +19,15 @@ static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t
     }
 }
 
-/* What a walk has found yet: a triangle, and where in it. */
+/* The best result of a walk so far: a triangle, and a point in it. */
 typedef struct he_bvh_found {
     uint32_t triangle; /* HE_NONE: nothing */
     double weight[3];
-    double far; /* of the tree's lengths, or their squares: what is farther need not be looked at */
+    double far; /* a length in the tree's coordinates, or its square: nothing farther needs to be
+                   visited */
 } he_bvh_found;
 
-/* The hit in the mesh's own lengths, but for its distance. */
+/* Returns the hit in the mesh's own lengths, without its distance. */
 static inline he_hit he_bvh_tell(const he_bvh *tree, const he_mesh *m, const he_bvh_found *found)
 {
     const he_bvh_triangle *t = &tree->triangles[found->triangle];

@@ -5,13 +5,13 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* --- which elements --- */
+/* --- chosen elements --- */
 
-/* Rows of sums, one for each chosen element: by id when all are, else by rank. */
+/* The chosen elements have one row of sums each: by id if all are chosen, else by rank. */
 typedef struct chosen {
     bool all;
     he_ids ids;   /* sorted, each once; empty when all */
-    he_ids faces; /* beside them, likewise */
+    he_ids faces; /* faces beside them, sorted, each once; empty if all */
 } chosen;
 
 static void clear(chosen *c)
@@ -20,7 +20,7 @@ static void clear(chosen *c)
     he_ids_clear(&c->faces);
 }
 
-/* HE_NONE: not chosen. */
+/* Returns HE_NONE if the element is not chosen. */
 static uint32_t row_of(const chosen *c, uint32_t id)
 {
     if (c->all) {
@@ -90,13 +90,13 @@ typedef struct triangle {
     uint32_t corner[3];
     bool is_side[3]; /* is the side from corner i to the next one an edge of the mesh? */
     double length[3];
-    double angle[3], cosine[3], sine[3]; /* at corners */
-    he_vec3 along[3];                    /* unit, along sides */
-    he_vec3 normal;                      /* unit, unless degenerate */
+    double angle[3], cosine[3], sine[3]; /* at its corners */
+    he_vec3 along[3];                    /* unit vectors along its sides */
+    he_vec3 normal;                      /* unit vector, unless degenerate */
     bool degenerate;
 } triangle;
 
-/* Sines below are those of parallel sides. */
+/* Sines below this mean parallel sides. */
 static const double THIN = 16 * DBL_EPSILON;
 
 static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_ROW])
@@ -127,8 +127,8 @@ static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_R
     }
 }
 
-/* A face by itself near the unit ball: how it is cut depends on nothing else, so that an element
- * has one value, whether it is asked for alone or with all others. */
+/* Returns a frame for one face alone. The cut depends on nothing else, so an element has one value,
+ * whether it is computed alone or with all others. */
 static he_frame frame_of(const he_mesh *m, uint32_t first)
 {
     he_vec3 base = m->c.position[m->c.origin[first]];
@@ -190,11 +190,11 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_w
 
 /* --- curvature --- */
 
-/* In lengths divided by 2^exponent, which is that of the longest side yet. */
+/* In lengths divided by 2^exponent, that of the longest side so far. */
 typedef struct sums {
     double angle, area;
     he_vec3 bend;   /* sum of cotangents times sides towards the vertex */
-    he_vec3 normal; /* by angle */
+    he_vec3 normal; /* weighted by angle */
     int exponent;
     bool any;
 } sums;
@@ -218,7 +218,7 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* The part of the triangle that is nearest to corner i, unless an angle is obtuse. */
+/* Returns the part of the triangle nearest to corner i, if no angle is obtuse. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;

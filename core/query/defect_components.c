@@ -1,4 +1,4 @@
-/* Components that are small, or closed and inside out. */
+/* Finds components that are small, or closed and inside out. */
 #include "query/defects.h"
 
 #include "geometry/geometry.h"
@@ -9,21 +9,21 @@
 #include <float.h>
 
 typedef struct shell {
-    uint32_t face; /* the lowest */
+    uint32_t face; /* the lowest face */
     bool open;
-    double min[3], max[3]; /* times the scale, as all below */
-    double volume, reach;  /* six times; what the terms could have come to */
+    double min[3], max[3]; /* in coordinates times the scale, like the fields below */
+    double volume, reach;  /* six times the volume; the most that the sum of its terms could be */
 } shell;
 
 typedef struct survey {
     const he_mesh *m;
     int exponent;
     double scale;
-    const uint32_t *component; /* of faces */
+    const uint32_t *component; /* component of each face */
     shell *shells;
 } survey;
 
-/* Less of that may be rounding. */
+/* A volume below this share of `reach` may be rounding noise. */
 static const double NOISE = 1e-10;
 
 static he_vec3 corner(const survey *s, uint32_t h)
@@ -56,7 +56,7 @@ static void add_face(survey *s, uint32_t f)
         own->open |= s->m->c.face[h ^ 1u] == HE_NONE;
         h = next;
     } while (h != first);
-    /* Far from where the volume is measured from, it would cancel. */
+    /* Measured from a point near the component, because from far away the volume would cancel. */
     he_vec3 from = he_vec3_sub(apex, corner(s, s->m->c.face_halfedge[own->face]));
     own->volume += he_vec3_dot(from, vector);
     own->reach += he_vec3_length(from) * he_vec3_length(vector);

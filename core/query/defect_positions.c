@@ -1,4 +1,4 @@
-/* Vertices in the same place. */
+/* Finds vertices at one position. */
 #include "query/defects.h"
 
 #include "geometry/near.h"

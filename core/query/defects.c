@@ -57,7 +57,7 @@ static he_status of_vertices(const he_mesh *m, he_watch *watch, he_defects *out,
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
         } else if (h != HE_DEAD && m->c.face[h] == HE_NONE) {
-            /* Only open fans can be several. */
+            /* Only a vertex with open fans can have several. */
             uint32_t fans = he_vertex_fans(m, (he_vertex){v});
             if (fans > 1) {
                 he_defects_add(out, HE_DEFECT_BOWTIE, v, HE_NONE, fans);
@@ -89,7 +89,7 @@ static he_status of_edges(const he_mesh *m, double merge, he_watch *watch, he_de
 
 /* --- faces --- */
 
-/* Lengths times a power of two that brings the mesh near the unit cube. */
+/* Lengths are multiplied by a power of two that brings the mesh near the unit cube. */
 typedef struct measure {
     const he_mesh *m;
     int exponent;
@@ -101,7 +101,7 @@ static he_vec3 corner(const measure *s, uint32_t h)
     return he_vec3_scale(s->m->c.position[s->m->c.origin[h]], s->scale);
 }
 
-/* Twice the area over the longest edge. */
+/* Returns twice the area divided by the longest edge. */
 static double width_of(const measure *s, uint32_t first, double area)
 {
     double longest = 0;
@@ -115,7 +115,7 @@ static double width_of(const measure *s, uint32_t first, double area)
     return longest > 0 ? 2 * area / longest : 0;
 }
 
-/* How far the corners are from the plane through `about`. */
+/* Returns the largest distance of a corner from the plane through `about`. */
 static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 normal)
 {
     double most = 0;
@@ -131,7 +131,7 @@ static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 
 static void of_face(const measure *s, uint32_t f, he_defects *out)
 {
     uint32_t first = s->m->c.face_halfedge[f], budget = he_ring_budget(s->m);
-    int exponent; /* of this face, beside that of all */
+    int exponent; /* scale of this face, relative to that of the mesh */
     he_ring r = he_ring_measure(s->m, first, &budget, &exponent);
     he_vec3 normal;
     bool degenerate = !he_ring_normal(&r, &normal);

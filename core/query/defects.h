@@ -1,27 +1,25 @@
-/* defects.h - what a valid mesh may have and its owner may not want.
+/* defects.h - finds properties that a valid mesh may have and its owner may not want.
  *
  *     bowtie                a vertex of two fans or more; `value` is how many
  *     isolated_vertex       a vertex without an edge
  *     duplicate_position    a vertex no farther than `merge` from an earlier one that is not itself
  *                           listed, which is `other`; `value` is the distance
  *     zero_length_edge      an edge no longer than `merge`; `value` is the length
- *     degenerate_face       a face without area: what is left of its area vector is rounding noise,
- *                           or it is no wider than `merge` across its longest edge, which is what
- *                           `value` tells
+ *     degenerate_face       a face without area: its area vector is rounding noise, or its width
+ *                           across its longest edge is at most `merge`; `value` is that width
  *     nonplanar_face        of four corners or more, one of them farther than `flat` from the plane
- *                           through their mean across the area vector; `value` is how far
+ *                           through their mean across the area vector; `value` is the distance
  *     small_component       faces joined by edges in a box whose diagonal is no longer than
- *                           `small`, which is `value`; told by the lowest face
+ *                           `small`, which is `value`; named by the lowest face
  *     inside_out_component  a component by edges without a boundary whose volume, `value`, is
- *                           negative; told likewise. One that bounds a hollow within another is as
- *                           it should be, and listed all the same: which of two is the hollow one,
- *                           only the mesh's owner knows. A component more than about 1e107 times
- *                           smaller than the mesh's largest coordinate is not listed: its volume
- *                           is taken for 0
- *     self_intersection     a face that meets `other` where it should not: bvh.h. This is not
- *                           looked for here
+ *                           negative; named by the lowest face. One that bounds a cavity within
+ *                           another is correct, and listed all the same: only the mesh's owner
+ *                           knows which of two is the cavity. A component more than about 1e107
+ *                           times smaller than the mesh's largest coordinate is not listed: its
+ *                           volume counts as 0
+ *     self_intersection     a face that intersects `other`: see bvh.h, not searched here
  *
- * Values are in the mesh's own lengths, never more than DBL_MAX. All in time linear in the mesh. */
+ * Values are in the mesh's own lengths, never more than DBL_MAX. The time is linear in the mesh. */
 #ifndef HE_QUERY_DEFECTS_H
 #define HE_QUERY_DEFECTS_H
 
@@ -40,29 +38,29 @@ typedef enum he_defect_code {
     HE_DEFECTS
 } he_defect_code;
 
-/* "bowtie", and the kind of the elements that have it. */
+/* Returns a name such as "bowtie", and the kind of the elements that have the defect. */
 const char *he_defect_name(he_defect_code code);
 he_kind he_defect_kind(he_defect_code code);
 
-/* Lengths from which on something is a defect, or up to which. */
+/* Lengths at which an element becomes a defect. */
 typedef struct he_thresholds {
     double merge, flat, small;
-    /* Of the hashes of places. Whoever makes the mesh must not know it, or he could make all places
-     * collide. */
+    /* Seed for hashing positions. A client that makes the mesh must not know it, or it could make
+     * all positions collide. */
     uint64_t seed;
 } he_thresholds;
 
-/* Parts of the diagonal of the box around the vertices that have edges, of all vertices where none
- * has: 1e-9, 1e-4 and 1e-2. The seed is 0. */
+/* Returns default thresholds: 1e-9, 1e-4 and 1e-2 of the diagonal of the box around the vertices
+ * that have edges, or around all vertices if none has. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
-/* The first of each, by rising id, and how many there are. */
+/* The first defects of each code, by rising id, and how many there are. */
 enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
     uint32_t id;
-    uint32_t other; /* HE_NONE where there is none */
-    double value;   /* 0 where none is told */
+    uint32_t other; /* HE_NONE if there is none */
+    double value;   /* 0 if there is none */
 } he_defect_found;
 
 typedef struct he_defect_list {
@@ -75,16 +73,18 @@ typedef struct he_defects {
     he_defect_list of[HE_DEFECTS];
 } he_defects;
 
-/* One more of a kind. */
+/* Adds a defect. */
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 
-/* Of a mesh that he_check passed, all but self-intersections. HE_NO_MEMORY; HE_CANCELLED by the
- * watch, which may be NULL and is not the mesh's: others may read that one meanwhile. */
+/* Finds all defects except self-intersections in a mesh that passed he_check. `watch`, which may be
+ * NULL, is not the mesh's: other threads may read the mesh meanwhile.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds,
                                        he_watch *watch, he_defects *out, he_error *err);
 
-/* --- the parts, which add to what was found --- */
+/* --- the parts of he_defects_find, which add to `out` --- */
 HE_NODISCARD he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed,
                                                he_watch *watch, he_defects *out, he_error *err);
 HE_NODISCARD he_status he_defects_of_components(const he_mesh *m, double small, he_watch *watch,

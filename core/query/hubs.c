@@ -18,7 +18,7 @@ typedef struct search {
     const uint32_t *triangles;
     size_t stride;
     uint32_t count;
-    uint32_t *corners; /* of triangles, by vertex; then the number of the vertex's hub */
+    uint32_t *corners; /* number of corners, by vertex; then the number of the vertex's hub */
     he_budget *budget;
 } search;
 
@@ -60,9 +60,9 @@ static he_status count_corners(const search *s, he_error *err)
     return status;
 }
 
-/* Vertices are counted by the hash of their place in a table too small to tell all places apart:
- * what has few corners there is no hub, and the rest, few unless somebody chose them, is compared
- * as it is. */
+/* Vertices are counted by the hash of their position in a small table, where positions may collide.
+ * A slot with few corners contains no hub; vertices in other slots, few unless a file was made for
+ * it, are compared exactly. */
 static he_status list_candidates(const search *s, candidate **out, size_t *count, he_error *err)
 {
     uint32_t vertices = s->m->c.vertices.issued;
@@ -118,8 +118,8 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
     return HE_OK;
 }
 
-/* Number the hubs among sorted candidates, and write the number of each vertex, or HE_NONE, where
- * its corners were counted. How many there are. */
+/* Numbers the hubs among sorted candidates, and writes the number of each vertex, or HE_NONE, in
+ * place of its corners. Returns the number of hubs. */
 static uint32_t number_hubs(const search *s, const candidate *list, size_t count, he_vec3 *places)
 {
     uint32_t hubs = 0;
@@ -140,7 +140,7 @@ static uint32_t number_hubs(const search *s, const candidate *list, size_t count
     return hubs;
 }
 
-/* The hubs of a triangle, each once. */
+/* Finds the hubs of a triangle, each once. */
 static int hubs_at(const search *s, uint32_t triangle, uint32_t out[3])
 {
     const uint32_t *t = triangle_of(s, triangle);
@@ -181,7 +181,7 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u hubs",
                              hubs->count);
     }
-    /* Each count becomes the end of its hub's run, and filling from the last brings it down to the
+    /* Each count becomes the end of its hub's run; filling from the last entry lowers it to the
      * beginning. */
     uint32_t sum = 0;
     for (uint32_t h = 0; h < hubs->count; h++) {

@@ -1,8 +1,8 @@
 /* idmap.h - a set of ids that numbers them in order of arrival.
  *
- * A walk over part of a mesh must remember where it has been, at a cost proportional to what it
- * touched and not to the mesh. The n-th id added gets the index n, so what a walk knows of an
- * element (its depth, its distance) lives in the caller's arrays beside `ids`, and `ids` itself is
+ * A walk over part of a mesh must remember the elements it has visited, at a cost proportional to
+ * what it touched and not to the mesh. The n-th id added gets the index n, so the caller can keep
+ * facts about an element (its depth, its distance) in arrays parallel to `ids`, and `ids` itself is
  * the queue of a breadth-first walk. {0} is empty. */
 #ifndef HE_QUERY_IDMAP_H
 #define HE_QUERY_IDMAP_H
@@ -11,14 +11,15 @@
 
 typedef struct he_idmap {
     he_ids ids;      /* in order of arrival */
-    uint32_t *slots; /* index + 1, or 0 where free; open addressing, at most half full */
-    unsigned log2;   /* of the number of slots, 0 while there are none */
+    uint32_t *slots; /* index + 1, or 0 if free; open addressing, at most half full */
+    unsigned log2;   /* logarithm of the number of slots, 0 while there are none */
 } he_idmap;
 
-/* The index of an id, HE_NONE when it was never added. */
+/* Returns the index of an id, HE_NONE if it was never added. */
 uint32_t he_idmap_find(const he_idmap *map, uint32_t id);
-/* The index of an id, which is added at the end when new; `*added` says whether it was. Expected
- * constant time. HE_NO_MEMORY leaves the map as it was. */
+/* Finds the index of an id, which is added at the end if it is new; `*added` says whether it was.
+ * Expected constant time.
+ * Returns HE_NO_MEMORY if memory is out; the map is as it was. */
 HE_NODISCARD he_status he_idmap_add(he_idmap *map, uint32_t id, uint32_t *index, bool *added,
                                     he_error *err);
 void he_idmap_clear(he_idmap *map); /* frees */

@@ -3,9 +3,9 @@
 #include "geometry/point_hash.h"
 #include "mesh/walk.h"
 
-/* Half-edges that wait for one that runs the other way. */
+/* Half-edges for which none that runs the other way was found yet. */
 typedef struct slot {
-    uint32_t halfedge; /* + 1, of the first; 0: free */
+    uint32_t halfedge; /* the first one + 1; 0: free */
     uint32_t waiting;
 } slot;
 
@@ -19,7 +19,7 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* The slot of half-edges from `from` to `to`, or the free one that would be theirs. */
+/* Returns the slot of half-edges from `from` to `to`, or the free one where they belong. */
 static slot *find(const table *t, const he_mesh *m, he_vec3 from, he_vec3 to)
 {
     uint64_t seed = (uint64_t)(uintptr_t)t->slots;

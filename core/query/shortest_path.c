@@ -13,20 +13,20 @@ static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
                    he_kind_name(kind), id);
 }
 
-/* A vertex Dijkstra's algorithm has met; its index is that of the idmap. */
+/* A vertex that the search has reached; its index is that of the idmap. */
 typedef struct node {
     double distance;
-    uint32_t via;   /* the half-edge that arrives on the best path; HE_NONE at the start */
-    uint32_t place; /* in the heap, HE_NONE once settled */
+    uint32_t via;   /* the half-edge by which the best path arrives; HE_NONE at the start */
+    uint32_t place; /* index in the heap, HE_NONE once settled */
 } node;
 
 typedef struct search {
     he_idmap met;
     node *nodes;
     size_t capacity;
-    uint32_t *heap; /* of nodes, the nearest first; as many entries as `nodes` */
-    uint32_t count; /* in the heap */
-    uint32_t steps; /* half-edges looked at */
+    uint32_t *heap; /* nodes, the nearest first; it has room for all of `nodes` */
+    uint32_t count; /* entries of the heap */
+    uint32_t steps; /* half-edges visited */
 } search;
 
 static void search_clear(search *s)
@@ -36,7 +36,7 @@ static void search_clear(search *s)
     he_mem_free(s->heap);
 }
 
-/* Equal distances go in the order of arrival, which makes the answer the same everywhere. */
+/* Equal distances are in the order of arrival, so the answer is equal everywhere. */
 static bool nearer(const search *s, uint32_t a, uint32_t b)
 {
     double x = s->nodes[a].distance, y = s->nodes[b].distance;
@@ -110,7 +110,7 @@ static he_status search_grow(search *s, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for a search over %zu vertices", capacity);
 }
 
-/* A way of length `distance` to `vertex` by `via` was found. */
+/* Updates `vertex` with a path of length `distance` that arrives by `via`. */
 static he_status reach(search *s, uint32_t vertex, double distance, uint32_t via, he_error *err)
 {
     if (s->met.ids.count >= s->capacity) {
@@ -142,7 +142,7 @@ static bool has_ends(const he_mesh *m, uint32_t h)
     return m->c.origin[h] < m->c.vertices.issued && m->c.origin[h ^ 1u] < m->c.vertices.issued;
 }
 
-/* Settle vertices until `to` is: `*goal` is its node, HE_NONE when it cannot be reached. */
+/* Settles vertices until `to` is settled: `*goal` is its node, HE_NONE if it cannot be reached. */
 static he_status dijkstra(const he_mesh *m, uint32_t from, uint32_t to, he_measure by, search *s,
                           uint32_t *goal, he_error *err)
 {
@@ -188,7 +188,7 @@ static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he
             break;
         }
         n = he_idmap_find(&s->met, m->c.origin[via]);
-        /* A way that does not lead back over settled vertices comes from broken links. */
+        /* A path that is longer than the settled vertices comes from broken links. */
         if (n == HE_NONE || out->edges.count >= s->met.ids.count) {
             return corrupt(HE_HALFEDGE, via, err);
         }

@@ -21,8 +21,8 @@ static he_status broken(he_kind kind, uint32_t id, he_error *err)
 
 /* --- components: union-find in one array --- */
 
-/* Union-find with path halving (van Leeuwen and van der Weide 1977), the lowest member at the root:
- * elements of one piece have close ids, so paths stay short without ranks. */
+/* Union-find with path halving (van Leeuwen and van der Weide 1977), with the lowest member as the
+ * root: elements of one component have close ids, so paths stay short without ranks. */
 static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i) {
@@ -32,7 +32,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* Were they apart? */
+/* Joins two trees; returns whether they were separate. */
 static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
     a = root_of(parent, a);
@@ -45,8 +45,8 @@ static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
     return a != b;
 }
 
-/* A new forest in which every edge has joined its ends (HE_VERTEX) or its faces (HE_FACE), and how
- * many times that made one tree of two. */
+/* Makes a forest in which every edge has joined its ends (HE_VERTEX) or its faces (HE_FACE), and
+ * counts how often two trees were joined. */
 static he_status join_all(const he_mesh *m, he_kind kind, uint32_t **out, uint32_t *joins,
                           he_error *err)
 {
@@ -110,13 +110,13 @@ static he_status add_component(he_components *list, he_component component, he_e
     return HE_OK;
 }
 
-/* The tree a face is in. */
+/* Returns the root of the tree that contains a face. */
 static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t f)
 {
     return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
-/* Number the trees by their lowest face in `label`, and count faces. */
+/* Numbers the trees by their lowest face in `label`, and counts their faces. */
 static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t *label,
                              he_components *list, he_error *err)
 {
@@ -141,9 +141,9 @@ static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *paren
     return HE_OK;
 }
 
-/* Count each vertex once in every component that has a face at it. By vertex, and at a single
- * closed fan, one look is enough; elsewhere `last`, which keeps for each component the vertex it
- * counted last, tells the fans of one component apart from those of another. */
+/* Counts each vertex once in every component that has a face at it. With HE_JOINED_BY_VERTEX, and
+ * at a single closed fan, the vertex has one component; otherwise `last`, which has for each
+ * component the vertex it counted last, prevents counting a component twice for two fans. */
 static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *parent,
                                 const uint32_t *label, uint32_t *last, he_components *list,
                                 he_error *err)
@@ -243,7 +243,7 @@ he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *cou
     if (status != HE_OK) {
         return status;
     }
-    /* A parent is lower than its child: it has its label by then. */
+    /* A parent has a lower number than its child, so it has its label already. */
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             label[f] = HE_NONE;
@@ -273,7 +273,7 @@ static he_status add_loop(he_boundaries *list, he_boundary loop, he_error *err)
     return HE_OK;
 }
 
-/* Every boundary half-edge is seen once, so loops that run into one another are noticed. */
+/* Every boundary half-edge is visited once, so loops that run into one another are noticed. */
 static he_status follow_hole(const he_mesh *m, uint32_t first, uint64_t *seen, uint32_t *length,
                              he_error *err)
 {
@@ -333,8 +333,8 @@ void he_boundaries_clear(he_boundaries *boundaries)
 
 /* --- bow-ties --- */
 
-/* Each open fan has one boundary half-edge that leaves the vertex: a vertex that boundary
- * half-edges leave twice has two fans. */
+/* Each open fan has one boundary half-edge that leaves the vertex, so a vertex that two boundary
+ * half-edges leave has two fans. */
 static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice, uint32_t *count,
                               he_error *err)
 {
@@ -358,7 +358,7 @@ static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice,
     return HE_OK;
 }
 
-/* `list` may be NULL where the number is enough. */
+/* `list` may be NULL if only the number is needed. */
 static he_status find_bowties(const he_mesh *m, he_ids *list, uint32_t *count, he_error *err)
 {
     *count = 0;
@@ -390,8 +390,8 @@ he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err)
 
 /* --- everything at once --- */
 
-/* faces_of[d] counts faces of degree d. It grows to the largest degree, which is no longer than the
- * mesh. */
+/* faces_of[d] counts faces of degree d. It grows to the largest degree, which is at most the number
+ * of half-edges. */
 static he_status tally(const he_mesh *m, uint32_t **faces_of, size_t *size, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
@@ -486,7 +486,7 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
     if (status == HE_OK) {
         status = count_components(m, HE_FACE, t.faces, &t.components_by_edge, err);
     }
-    /* Only a bow-tie joins what no edge does. */
+    /* Without bow-ties components by vertex and by edge are equal. */
     if (status == HE_OK && t.bowties > 0) {
         status = count_components(m, HE_VERTEX, used, &t.components, err);
     } else {

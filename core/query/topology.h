@@ -1,28 +1,28 @@
-/* topology.h - the shape of a mesh as a whole: pieces, holes, handles.
+/* topology.h - the shape of a mesh as a whole: components, boundary loops, handles.
  *
- * Two faces are in one component BY EDGE when a chain of faces leads from one to the other, each
- * sharing an edge with the one before; BY VERTEX when sharing a corner is enough. The two differ
- * only at bow-ties. Isolated vertices belong to no component and are counted apart.
+ * Two faces are in one component BY EDGE if a chain of faces leads from one to the other, each
+ * sharing an edge with the one before; BY VERTEX if sharing a corner is enough. The two differ only
+ * at bow-ties. Isolated vertices belong to no component and are counted separately.
  *
  *     euler = used vertices - edges + faces
  *     genus = (2 components - euler - boundary loops) / 2, the number of handles; it means nothing
- *             where there is a bow-tie, because fans share a vertex that the formula counts once
+ *             if there is a bow-tie, because fans share a vertex that the formula counts once
  *
- * Everything is linear in the mesh, but for union-find's inverse Ackermann, and uses flat arrays.
- * Links that do not close, or lead to elements that do not exist, are HE_CORRUPT; HE_NO_MEMORY is
- * always possible. Outputs are the caller's to clear. */
+ * Everything is linear in the mesh, except for union-find's inverse Ackermann, and uses flat
+ * arrays. Links that do not close, or lead to elements that do not exist, give HE_CORRUPT; every
+ * function may return HE_NO_MEMORY. The caller clears outputs. */
 #ifndef HE_QUERY_TOPOLOGY_H
 #define HE_QUERY_TOPOLOGY_H
 
 #include "mesh/mesh.h"
 
-/* How many faces have a degree. */
+/* The number of faces of one degree. */
 typedef struct he_degree_count {
     uint32_t degree, faces;
 } he_degree_count;
 
 typedef struct he_topology {
-    uint32_t vertices, edges, faces; /* that live */
+    uint32_t vertices, edges, faces; /* live ones */
     uint32_t isolated_vertices;
     uint32_t boundary_halfedges, boundary_loops;
     uint32_t bowties; /* vertices of two fans or more */
@@ -31,11 +31,11 @@ typedef struct he_topology {
     bool has_genus;
     bool closed;              /* no boundary half-edge; false of a mesh without faces */
     bool manifold;            /* no bow-tie; false of a mesh without faces */
-    he_degree_count *degrees; /* by rising degree, none with 0 faces */
+    he_degree_count *degrees; /* by rising degree; degrees without faces are left out */
     size_t degree_count;
 } he_topology;
 
-/* All of it in one call. */
+/* Computes all of this in one call. */
 HE_NODISCARD he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err);
 void he_topology_clear(he_topology *topology);
 
@@ -58,7 +58,7 @@ typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connect
 
 typedef struct he_component {
     uint32_t faces;
-    uint32_t vertices; /* by edge, a bow-tie counts in each component that meets there */
+    uint32_t vertices; /* components by edge each count a bow-tie that they share */
     uint32_t face;     /* the lowest id */
 } he_component;
 
@@ -71,12 +71,12 @@ HE_NODISCARD he_status he_components_find(const he_mesh *m, he_connection by, he
                                           he_error *err);
 void he_components_clear(he_components *components);
 
-/* The component by edge of each face ever issued, HE_NONE where it is dead, and how many there are:
- * numbered from 0 by rising lowest face. The array is the caller's to free. */
+/* Finds the component by edge of each face ever issued, HE_NONE if it is dead, and the number of
+ * components: they are numbered from 0 by rising lowest face. The caller frees the array. */
 HE_NODISCARD he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count,
                                            he_error *err);
 
-/* Append the vertices of two fans or more, by rising id. */
+/* Appends the vertices of two fans or more, by rising id. */
 HE_NODISCARD he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err);
 
 #endif

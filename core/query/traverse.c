@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Every id at or past this is absent, dead or never issued. */
+/* Ids at or past this are absent, dead or never issued. */
 static uint32_t halfedge_end(const he_mesh *m)
 {
     return 2u * m->c.edges.issued;
@@ -53,7 +53,7 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *st
             return corrupt(HE_HALFEDGE, from.i, err);
         }
         for (size_t i = 0; i < count && status == HE_OK; i++) {
-            /* How much is left is not known, so that this only asks whether to go on. */
+            /* The length of the path is not known, so only cancellation is tested. */
             status = he_watch_at(watch, taken, UINT64_MAX, err);
             if (status != HE_OK) {
                 return status;
@@ -120,7 +120,7 @@ he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out, he_e
     return status;
 }
 
-/* What a breadth-first walk has met, in order, and how deep. */
+/* The elements that a breadth-first walk has reached, in order, with their depths. */
 typedef struct flood {
     he_idmap met;
     he_ids depths;
@@ -146,7 +146,7 @@ static he_status meet(flood *f, uint32_t id, uint32_t depth, he_error *err)
     return status;
 }
 
-/* All steps together turn over each half-edge at most once, which bounds the walk on any links. */
+/* All steps together visit each half-edge at most once, which bounds the walk on any links. */
 static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
                             size_t limit, flood *f, he_error *err)
 {
@@ -207,10 +207,10 @@ he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t fro
     return status;
 }
 
-/* The half-edge that continues `h`; HE_NONE where the walk ends, HE_DEAD on broken links. */
+/* Returns the half-edge that continues `h`; HE_NONE if the walk ends, HE_DEAD on broken links. */
 typedef uint32_t (*onward)(const he_mesh *m, uint32_t h);
 
-/* Straight on through the target of `h`, if it is interior and has four edges. */
+/* Goes straight on through the target of `h`, if that is interior and has four edges. */
 static uint32_t straight_on(const he_mesh *m, uint32_t h)
 {
     uint32_t around[5] = {h ^ 1u};
@@ -229,7 +229,7 @@ static uint32_t straight_on(const he_mesh *m, uint32_t h)
     return around[4] == around[0] ? around[2] : HE_NONE;
 }
 
-/* Into the face of `h` and out of its opposite side, if it has four. */
+/* Goes into the face of `h` and out of its opposite side, if it has four. */
 static uint32_t across(const he_mesh *m, uint32_t h)
 {
     if (m->c.face[h] == HE_NONE) {
@@ -248,7 +248,7 @@ static uint32_t across(const he_mesh *m, uint32_t h)
     return around[4] == h ? around[2] ^ 1u : HE_NONE;
 }
 
-/* Append the edges after `first` until the walk ends or comes back to it. */
+/* Appends the edges after `first` until the walk ends or comes back to it. */
 static he_status follow(const he_mesh *m, uint32_t first, onward step, he_ids *out, bool *closed,
                         he_error *err)
 {

@@ -1,66 +1,69 @@
-/* traverse.h - walks over a mesh, long or short.
+/* traverse.h - walks over a mesh.
  *
- * A walk costs time and memory proportional to what it touches: it may be asked of a mesh of
- * millions a thousand times a second. Every walk is bounded by the number of half-edges; links that
- * lead nowhere or do not close are HE_CORRUPT. Elements named by the caller are refused with
+ * A walk costs time and memory proportional to what it touches: a mesh of millions of elements may
+ * be walked a thousand times a second. Every walk is bounded by the number of half-edges; links
+ * that lead nowhere or do not close give HE_CORRUPT. Elements named by the caller are refused with
  * HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT. Lists are appended to, and on failure are as they were;
- * HE_NO_MEMORY is always possible. */
+ * every function may return HE_NO_MEMORY. */
 #ifndef HE_QUERY_TRAVERSE_H
 #define HE_QUERY_TRAVERSE_H
 
 #include "mesh/mesh.h"
 
-/* PATH. Take the steps of a list in turn, the whole list `repeat` times over. */
+/* PATH. Takes the steps of a list in turn, the whole list `repeat` times. */
 typedef enum he_step { HE_STEP_NEXT, HE_STEP_PREV, HE_STEP_TWIN } he_step;
 typedef enum he_until {
-    HE_UNTIL_COUNT,   /* only `repeat` ends it */
-    HE_UNTIL_START,   /* ends also at the first return to `from` */
-    HE_UNTIL_BOUNDARY /* ends also at the first half-edge without a face, or when the whole list
-                         was taken and led back to `from` */
+    HE_UNTIL_COUNT, /* only `repeat` ends it */
+    HE_UNTIL_START, /* ends also at the first return to `from` */
+    /* ends also at the first half-edge without a face, or when the whole list was taken and led
+     * back to `from` */
+    HE_UNTIL_BOUNDARY
 } he_until;
 
-/* The half-edges stood on, `from` first and the one at the end last: one more than the steps taken.
- * `until` is looked at after each step, not before the first. `repeat` 0 takes no step; UINT64_MAX
- * is for walks that `until` ends. Those always end: a list of steps maps half-edges one to one, so
- * that taking it as often as there are half-edges has come back (else HE_CORRUPT). `limit` bounds
- * the steps (0: nothing does): HE_LIMIT. `watch` may be NULL; HE_CANCELLED. An empty list of steps
- * is HE_BAD_VALUE. */
+/* Appends the half-edges of the path, `from` first and the last one at the end: one more than the
+ * steps taken. `until` is tested after each step, not before the first. `repeat` 0 takes no step;
+ * UINT64_MAX is for paths that `until` ends. Those always end: a list of steps maps half-edges one
+ * to one, so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT).
+ * `limit` bounds the steps (0: no bound). `watch` may be NULL.
+ * Returns HE_LIMIT if the path would take more steps.
+ * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_BAD_VALUE if the list of steps is empty. */
 HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps,
                                         size_t count, uint64_t repeat, he_until until,
                                         uint64_t limit, he_watch *watch, he_ids *out,
                                         he_error *err);
 
-/* LOOP. The half-edges of the face or hole of `from`, from itself by next. Their origins are the
- * vertices. */
+/* LOOP. Appends the half-edges of the face or hole of `from`, starting with it, by next. Their
+ * origins are the vertices of the loop. */
 HE_NODISCARD he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out,
                                         he_error *err);
 
 /* BREADTH FIRST from a vertex along edges, or from a face across edges (`kind` is HE_VERTEX or
- * HE_FACE). Elements in the order they are met, neighbours counter-clockwise as in adjacency.h,
- * with their distance in steps; `from` is first, at depth 0. Nothing deeper than `depth` is visited
- * (HE_NONE: no bound), and the walk stops when it has `limit` elements (0: no bound), which is not
- * an error. */
+ * HE_FACE). Elements are in the order in which they are reached, neighbours counter-clockwise as in
+ * adjacency.h, with their distance in steps; `from` is first, at depth 0. Nothing deeper than
+ * `depth` is visited (HE_NONE: no bound). The walk stops at `limit` elements (0: no bound), which
+ * is not an error. */
 HE_NODISCARD he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t from,
                                                  uint32_t depth, size_t limit, he_ids *ids,
                                                  he_ids *depths, he_error *err);
 
 /* SHORTEST PATH along edges. */
 typedef enum he_measure {
-    HE_BY_EDGES, /* each counts 1 */
-    HE_BY_LENGTH /* each counts its length */
+    HE_BY_EDGES, /* each edge counts 1 */
+    HE_BY_LENGTH /* each edge counts its length */
 } he_measure;
 
 typedef struct he_path {
-    bool found;       /* false: no path joins them; an answer, not an error */
-    he_ids vertices;  /* from, ..., to; only `from` when they are the same */
+    bool found;       /* false: no path joins them, which is no error */
+    he_ids vertices;  /* from, ..., to; only `from` if they are one vertex */
     he_ids edges;     /* between them, one fewer */
-    double length;    /* in the measure asked for; DBL_MAX where a double cannot hold it */
-    uint64_t visited; /* half-edges looked at, whatever came of it: what the search cost */
+    double length;    /* in the measure asked for; DBL_MAX if a double cannot hold it */
+    uint64_t visited; /* half-edges visited, also if no path was found: the cost of the search */
 } he_path;
 
-/* Dijkstra (1959) on a heap of four children a node, until `to` is settled; by edges this goes
- * breadth first. Of several shortest paths one is chosen by the order of the links, the same on
- * every machine. `out` is the caller's to clear. */
+/* Dijkstra (1959) on a heap of four children a node, until `to` is settled; HE_BY_EDGES makes it
+ * breadth first. Of several shortest paths the order of the links decides, equally on every
+ * machine. The caller clears `out`. */
 HE_NODISCARD he_status he_traverse_shortest_path(const he_mesh *m, he_vertex from, he_vertex to,
                                                  he_measure by, he_path *out, he_error *err);
 void he_path_clear(he_path *path);
@@ -69,22 +72,22 @@ void he_path_clear(he_path *path);
  *
  *             |     |              the loop enters such a vertex by one edge and leaves by the
  *        o----o=====o=====o        second one after it. It ends at a vertex on the boundary and at
- *             |     |     ^ ends   one of any other degree, and `*closed` says that it met itself.
+ *             |     |     ^ ends   one of any other degree; `*closed` says that it came back.
  *
- * Edges in the order along the loop. A closed one begins with `from` and goes on in the direction
- * of half-edge 2e; an open one begins at its end behind 2e. An edge between two such ends, like any
- * on the boundary, is a loop of one. */
+ * Appends the edges in the order along the loop. A closed one begins with `from` and goes on in the
+ * direction of half-edge 2e; an open one begins at the end that is opposite to that direction. An
+ * edge between two such ends, like any on the boundary, is a loop of one edge. */
 HE_NODISCARD he_status he_traverse_edge_loop(const he_mesh *m, he_edge from, he_ids *out,
                                              bool *closed, he_error *err);
 
-/* EDGE RING. Edges that lie opposite each other in faces of four sides:
+/* EDGE RING. Edges that are opposite each other in faces of four sides:
  *
  *        o---o---o---o             it ends at the boundary and at a face of any other degree.
  *        ||  ||  ||  ||  ends
  *        o---o---o---o
  *
- * Edges in order. A closed ring begins with `from` and goes on into the face of half-edge 2e; an
- * open one begins at its end on the other side, and ends beyond the face of 2e. */
+ * Appends the edges in order. A closed ring begins with `from` and goes on into the face of
+ * half-edge 2e; an open one begins at its end on the other side, and ends beyond the face of 2e. */
 HE_NODISCARD he_status he_traverse_edge_ring(const he_mesh *m, he_edge from, he_ids *out,
                                              bool *closed, he_error *err);
 
