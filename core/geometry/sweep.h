@@ -7,7 +7,7 @@
  *
  *       _____c3                  A corner on one of the sides is joined to all of the chain that
  *      |    /                    it sees from that end. Where the loop begins to run onward and
- * back | c2 v inside an interval, the corner splits the interval, and its chain
+ * back |  c2      v              inside an interval, the corner splits the interval, and its chain
  *      |    \                    at the corner visited last, which it sees; where two intervals
  *      |_____c1____c0            meet in a corner, it is the middle of both chains together.
  *
