@@ -136,8 +136,8 @@ static void run_next(st_pool *pool, st_share share)
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
-    /* Another LONG task or JOB may begin now. The signal wakes a thread for it, because this one may
-     * take a task of another share. */
+    /* Another LONG task or JOB may begin now. The signal wakes a thread for it, because this one
+     * may take a task of another share. */
     pthread_cond_signal(&pool->wake);
 }
 
