@@ -1,4 +1,5 @@
-/* backup.h - POST /v1/admin/backup: a backup beside the store, sent and forgotten. */
+/* backup.h - POST /v1/admin/backup: makes a backup in the store's folder, sends it and deletes
+ * it. */
 #ifndef HE_SERVER_BACKUP_H
 #define HE_SERVER_BACKUP_H
 
@@ -7,15 +8,15 @@
 
 #include <stdatomic.h>
 
-/* One at a time is made or kept. */
+/* Only one backup exists at a time. */
 typedef struct srv_backups {
     const char *folder; /* of the store */
     _Atomic bool taken;
 } srv_backups;
 
-/* api_options' `backup`; `context` is an srv_backups, which outlives the blob. The file lies beside
- * the store, where there is room for it if anywhere, and has no name once it is made: it goes with
- * the blob, or with the process. */
+/* The `backup` of api_options; `context` is an srv_backups, which outlives the blob. The file is
+ * made in the store's folder, where space is most likely, and unlinked when complete, so that it
+ * disappears with the blob or with the process. */
 st_status srv_backup_make(void *context, api_blob *out, char *message, size_t size);
 
 #endif

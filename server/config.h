@@ -1,8 +1,8 @@
-/* config.h - what the daemon can be told: THE table of options.
+/* config.h - the settings of the daemon: THE table of options.
  *
- * A flag wins over its environment variable, that over a line of the configuration file, that over
- * the default. --help, --print-config and the
- * parsing are made from one row an option; adding an option is adding a row and a member. */
+ * A flag overrides its environment variable, which overrides a line of the configuration file,
+ * which overrides the default. --help, --print-config and parsing are driven by one row per option;
+ * to add an option, add a row and a member. */
 #ifndef HE_SERVER_CONFIG_H
 #define HE_SERVER_CONFIG_H
 
@@ -13,13 +13,13 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Times that an option which is a list may be given, all of them together. */
+/* How often list options may be given, all of them together. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* The words of choices, in the order in which their rows of the table name them.
+/* The values of choices, in the order in which their rows name them.
  *
- * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury what its
- * reader wants to see. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
+ * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury more important
+ * ones. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
 typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_kind;
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
@@ -27,73 +27,72 @@ typedef struct srv_config {
     const char *config; /* a file; "": none */
     const char *listen;
     bool insecure;
-    const char *tokens;             /* a file; "": nobody needs a token */
+    const char *tokens;             /* a file; "": requests need no token */
     const char *tls_cert, *tls_key; /* files; both "": plain HTTP */
-    srv_policy policy;              /* its proxies are those of `trusted_proxies` */
+    srv_policy policy; /* which requests browsers may send; `trusted_proxies` fills its proxies */
     srv_names trusted_proxies;
-    const char *web;   /* "": look beside the executable */
-    const char *store; /* "memory", or "sqlite:" and a folder: srv_config_folder */
+    const char *web;   /* "": search beside the executable */
+    const char *store; /* "memory", or "sqlite:" and a folder: see srv_config_folder */
     bool samples;
     uint64_t log;        /* srv_log_kind */
     uint64_t log_format; /* srv_log_format */
     uint64_t log_level;  /* srv_level of server/log/line.h */
-    uint64_t slow;       /* milliseconds; 0: no request is slow */
+    uint64_t slow;       /* milliseconds; 0: slow requests are not logged */
 
     uint64_t max_upload;    /* bytes */
     uint64_t memory_budget; /* bytes; 0: three quarters of st_memory_limit_find */
-    uint64_t undo_budget;   /* bytes a mesh */
+    uint64_t undo_budget;   /* bytes per mesh */
     uint64_t max_meshes;
     bool no_compression;
 
-    uint64_t workers, jobs; /* threads; 0: one a core */
+    uint64_t workers, jobs; /* threads; 0: one per core */
     uint64_t job_queue;
     uint64_t read_seconds;
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
 
-    api_limits token_limits, address_limits; /* by api/limit/limit.h */
+    api_limits token_limits, address_limits; /* limits by api/limit/limit.h */
     uint64_t limit_burst;                    /* seconds */
 
     uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
-    const char *backup, *restore, *dump; /* files, a folder; NULL: not asked for */
+    const char *backup, *restore, *dump; /* files, and a folder; NULL: not given */
     bool help, version, print_config, healthcheck, verify, new_token;
-    const char *healthcheck_url;         /* NULL: /livez at `listen` */
-    const char *verified;                /* a file; NULL: the store */
-    const char *token_name, *token_role; /* of new_token; NULL: not given */
+    const char *healthcheck_url;         /* NULL: /livez at the address of `listen` */
+    const char *verified;                /* a file; NULL: verify the store */
+    const char *token_name, *token_role; /* arguments of new_token; NULL: not given */
 
-    /* The text that list members point into, and that of the configuration file. */
+    /* Owned texts: those that list members point into, and the configuration file. */
     char *owned[SRV_MAX_LISTS];
     unsigned owned_count;
     char *file_text;
 } srv_config;
 
-/* Fill `config` from arguments (without the program's name) and `environment` (getenv, or a test's
- * own). Texts are borrowed from both. False with a sentence in `message` otherwise; then `config`
- * is empty but for log_format, in which the sentence is to be written. */
+/* Fills `config` from arguments (without the program's name) and from `environment` (getenv, or a
+ * test's function), and borrows their texts. Returns false with a sentence in `message` if one is
+ * wrong; then `config` is empty but for log_format, the format in which to print the sentence. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size);
 void srv_config_clear(srv_config *config);
 
-/* The folder of the store; NULL where meshes are kept in memory alone. */
+/* Returns the folder of the store; NULL if meshes are in memory only. */
 const char *srv_config_folder(const srv_config *config);
 
-/* Where a daemon of these options is reached on this machine: "http://127.0.0.1:8080",
- * "https://...", "unix:/run/hedge/socket". `listen` is NULL, or the address with the port that was
- * taken. */
+/* Writes the URL of such a daemon on this machine: "http://127.0.0.1:8080", "https://...",
+ * "unix:/run/hedge/socket". `listen` is the address with the port that is in use, or NULL. */
 enum { SRV_URL_TEXT = 8 + SRV_ADDRESS_TEXT };
 void srv_config_url(const srv_config *config, const char *listen, char out[SRV_URL_TEXT]);
 
-/* The variables of `environment` ("NAME=value", the last NULL) whose names begin with HEDGE_ and
- * are no option's: how many there are, and their names with ", " between them, cut to `size`
- * bytes. A misspelt one would otherwise be ignored in silence; Kubernetes sets HEDGE_PORT for a
- * service that is called hedge. */
+/* Finds variables in `environment` ("NAME=value", the last NULL) that begin with HEDGE_ and belong
+ * to no option. Returns their number and writes their names, separated by ", " and cut to `size`
+ * bytes. Without this a misspelt variable would be ignored silently. Kubernetes sets such
+ * variables, too: HEDGE_PORT for a service called hedge. */
 size_t srv_config_find_unknown(char *const *environment, char *names, size_t size);
 
 void srv_config_help(FILE *out);
-/* Each option as `name = value`, as a configuration would set it. */
+/* Prints each option as `name = value`, as a configuration file would have it. */
 void srv_config_print(const srv_config *config, FILE *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* config_option.h - one row of THE table of options, for the files that read and print it. */
+/* config_option.h - one row of THE table of options, for the sources that read and print it. */
 #ifndef HE_SERVER_CONFIG_OPTION_H
 #define HE_SERVER_CONFIG_OPTION_H
 
@@ -7,8 +7,9 @@
 
 #include <stddef.h>
 
-/* An action and a command are not settings: they have no variable, and no line in a file. A command
- * takes a text. A source is where settings are read from: it has a variable, and no line. */
+/* A setting has a variable and may be in a file. An action and a command have neither; a command
+ * takes a text. A source is the place of other settings: it has a variable but cannot be in a
+ * file. */
 typedef enum srv_option_kind {
     SRV_TEXT,
     SRV_LIST,
@@ -22,11 +23,11 @@ typedef enum srv_option_kind {
 } srv_option_kind;
 
 typedef struct srv_option {
-    const char *name; /* --name; NAME with '_' after HEDGE_ is its variable */
+    const char *name; /* --name; the variable is HEDGE_ and the name in capitals with '_' */
     srv_option_kind kind;
     size_t member;
-    const char *fallback; /* as it would be written */
-    const char *argument; /* for --help */
+    const char *fallback; /* the default, as a user would write it */
+    const char *argument; /* placeholder in --help */
     uint64_t low, high;
     const char *doc;
 } srv_option;
@@ -38,20 +39,21 @@ extern const size_t srv_option_count;
 
 const srv_option *srv_option_find(const char *name, size_t length);
 void srv_option_variable(const srv_option *row, char out[SRV_VARIABLE_TEXT]);
-/* Settings may stand in a file. */
+/* May it be in a configuration file? */
 bool srv_option_is_setting(const srv_option *row);
-/* It may stand alone: "--samples". */
+/* Can it be given without a value, as in "--samples"? */
 bool srv_option_is_switch(const srv_option *row);
 
-/* Which of the words of an SRV_CHOICE the text is, from 0; false where it is none. */
+/* Finds the text among the words of an SRV_CHOICE and sets `out` to its index. Returns false if it
+ * is none of them. */
 bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
-/* The value of a setting or a source, as a configuration would set it, added to `out`. */
+/* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
-/* Give an option its value. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or
- * "hedged.conf:3: listen"; it begins the sentence in `message` when the value is refused. Of one
- * place the items of lists add up; `seen`, an entry for each row, false at first, knows which
- * lists the place has begun, and those replace what came from places of less weight. */
+/* Sets an option. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or "hedged.conf:3:
+ * listen", and begins the sentence in `message` if the value is refused. Items of a list from one
+ * source add up and replace those of a source that it overrides; `seen`, with an entry per row that
+ * is false at first, says which lists the present source has begun. */
 bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
                     bool *seen, char *message, size_t size);
 

@@ -1,11 +1,12 @@
-/* version.h - which hedged this is. A release is a tag, v and SRV_VERSION; `make lint` compares. */
+/* version.h - the version of hedged. A release is tagged v and SRV_VERSION; `make lint` compares
+ * the two. */
 #ifndef HE_SERVER_VERSION_H
 #define HE_SERVER_VERSION_H
 
 #define SRV_VERSION "0.1.0"
 
-/* The commit it was built from, "" where the sources came without git and COMMIT= was not given to
- * make; ends with "+" when files were changed since. */
+/* The git commit of the build; it ends in "+" if files were changed since. "" if the sources had no
+ * git and make was not given COMMIT=. */
 extern const char srv_commit[];
 
 #endif

@@ -7,8 +7,7 @@
  *     api_upload_begin    before the body
  *     api_upload_feed     per piece
  *     api_upload_end      the body is whole and, unless its format is read at the end, well formed
- *     api_upload_build    makes the mesh; long for a large mesh, so it may have to move to the job
- * pool
+ *     api_upload_build    makes the mesh; on the job pool if it is large
  *
  * The exchange holds the state. All functions return false with the problem filled. */
 #ifndef HE_API_DOCUMENT_UPLOAD_H

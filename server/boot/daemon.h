@@ -1,24 +1,23 @@
-/* daemon.h - everything a running hedged is made of, put together and taken apart.
+/* daemon.h - all parts of a running hedged, put together and taken apart.
  *
  *     store <- api service <- http <- clients
  *                  ^            |
- *                jobs <---------+       log <- http, and all that happens to the daemon itself  */
+ *                jobs <---------+       log <- http, and all events of the daemon itself */
 #ifndef HE_SERVER_BOOT_DAEMON_H
 #define HE_SERVER_BOOT_DAEMON_H
 
 #include "server/config.h"
 
-/* What the process was started with; all borrowed. */
+/* What the process was started with; everything is borrowed. */
 typedef struct srv_started {
-    const srv_config *config; /* read from the others */
+    const srv_config *config; /* made from the other members */
     int argc;
     char *const *argv; /* without the program's name */
     char *const *environment;
 } srv_started;
 
-/* Serve until SIGTERM or SIGINT; SIGHUP has read again what reload.c lists. The process's exit
- * status: 0 after a stop, 1 when it could not start, with a line in the log that says why. To be
- * called from the only thread. */
+/* Serves until SIGTERM or SIGINT. Returns the exit status of the process: 0 after a stop, 1 if it
+ * could not start, with the reason in the log. Must be called from the only thread. */
 int srv_daemon_run(const srv_started *started);
 
 #endif

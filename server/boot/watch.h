@@ -1,5 +1,5 @@
-/* watch.h - what the main thread looks at while others serve: the health of the disk, and whether a
- * worker still answers, which systemd's watchdog is told. */
+/* watch.h - periodic work of the main thread: checking the disk, and checking for systemd's
+ * watchdog whether a worker still answers. */
 #ifndef HE_SERVER_BOOT_WATCH_H
 #define HE_SERVER_BOOT_WATCH_H
 
@@ -9,11 +9,12 @@
 typedef struct srv_watch {
     st_memory_rest rest;
     st_health health;
-    uint64_t fed; /* when systemd was told that a worker answered, st_clock_micros */
+    uint64_t fed; /* when systemd was last notified that a worker answered, st_clock_micros */
 } srv_watch;
 
-/* To be called about once a second, on a `watch` that is zero at first: gives unused memory back,
- * says on stderr when the disk is full, has space again or failed, and feeds systemd's watchdog. */
+/* Call it about once a second, with a `watch` that is zero at first. Returns unused memory to the
+ * system, logs when the disk is full, has space again or failed, and notifies systemd's
+ * watchdog. */
 void srv_watch_look(srv_watch *watch, const srv_parts *parts);
 
 #endif

@@ -1,8 +1,8 @@
-/* http_ahead.h - answers whose bytes take their time to make: made ahead, on threads of their own.
+/* http_ahead.h - answers that are slow to make: other threads make them ahead.
  *
- * While a piece is made the connection is suspended and the worker serves others; while it is sent
- * nothing is made. The threads are not those of long work, behind which a download would stand
- * still.
+ * While a piece is made the connection is suspended and the worker serves others; while a piece is
+ * sent, no other one is made. The threads are not those of long work, because a download would have
+ * to wait behind that.
  *
  *     srv_ahead_take ---- bytes, the end or a failure: send that
  *        ^      `-------- SRV_AHEAD_WAIT: suspend the connection, then srv_ahead_make
@@ -18,24 +18,24 @@
 
 enum { SRV_AHEAD_WAIT = -2 };
 
-/* In the storage of the request. The rest is the module's. */
+/* Stored in the request; the caller uses only the members up to `resume`. */
 typedef struct srv_ahead {
     int64_t (*read)(void *context, char *buffer, size_t size); /* as in api_answer */
     void *context;
     void (*resume)(struct srv_ahead *ahead);
-    size_t size; /* of the piece that was made last, 0: none was */
-    char *piece; /* NULL without memory: then it is made as it is taken */
+    size_t size; /* of the last piece; 0: none was made */
+    char *piece; /* NULL without memory: each piece is then made when it is taken */
     size_t from, to;
-    int64_t last; /* of read: 0 or -1 when there is no more */
+    int64_t last; /* the last result of `read`: 0 or -1 at the end */
     bool begun;
 } srv_ahead;
 
 void srv_ahead_clear(srv_ahead *ahead);
 
-/* Bytes that were made, 0 at the end, -1 on failure, or SRV_AHEAD_WAIT. */
+/* Returns the number of bytes, 0 at the end, -1 on failure, or SRV_AHEAD_WAIT. */
 int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size);
-/* After SRV_AHEAD_WAIT. The caller touches nothing of the request after that. Where too much
- * waits for the threads it is made here. */
+/* Makes the next piece, after SRV_AHEAD_WAIT. The caller must not touch the request afterwards. If
+ * the queue of the threads is full, the piece is made by the calling thread. */
 void srv_ahead_make(srv_ahead *ahead, st_pool *threads);
 
 #endif

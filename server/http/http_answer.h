@@ -1,9 +1,9 @@
-/* http_answer.h - sending what a request is answered: what its exchange says, or a refusal.
+/* http_answer.h - sending the answer of a request: that of its exchange, or a refusal.
  *
- * Bytes that are there are sent as they are. Others are pulled: those of a reader as the socket
- * takes them; those that are slow to make, or all where there are more downloads than workers
- * (http_ahead.h), and those of an answer that goes on (http_live.h) with the connection suspended
- * in between. */
+ * Bytes in memory are sent as they are. Other answers are pulled. A reader is called as the socket
+ * takes its bytes. Answers that are slow to make (or all, if there are more downloads than workers)
+ * are made ahead (http_ahead.h), and streams wait for events (http_live.h); both suspend the
+ * connection meanwhile. */
 #ifndef HE_SERVER_HTTP_HTTP_ANSWER_H
 #define HE_SERVER_HTTP_HTTP_ANSWER_H
 
@@ -11,15 +11,15 @@
 
 typedef struct srv_request srv_request;
 
-/* From now on the answer is a problem with this he_status or code of api/json/problem.h; the
- * exchange, if there was one, is freed. */
+/* Replaces the answer by a problem with this he_status or code of api/json/problem.h, and frees the
+ * exchange, if there is one. */
 void srv_answer_refuse(srv_request *r, int code, const char *text);
 
-/* Queue the answer; the request is DONE. False, for which the connection is to be closed, when
- * memory is out. */
+/* Queues the answer; the request is then DONE. Returns false when memory is out: the caller closes
+ * the connection. */
 bool srv_answer_send(srv_request *r);
-/* Write the answer while the body is still arriving, and be CUT: the connection is to be closed,
- * and what still comes is drained. */
+/* Writes the answer while the body is still arriving; the request is then CUT: the caller closes
+ * the connection, and the rest of the body is drained. */
 void srv_answer_cut_off(srv_request *r);
 
 #endif

@@ -1,22 +1,22 @@
-/* http_buffer.h - the memory libmicrohttpd keeps for each connection: counted, and given back while
- * the connection is idle.
+/* http_buffer.h - the memory that libmicrohttpd keeps for each connection: counts it, and returns
+ * it to the system while the connection is idle.
  *
- * libmicrohttpd takes SRV_BUFFER_BYTES from mmap() for each connection, zeroes all of it after each
- * request and keeps it until the connection ends: ten thousand clients who once asked something
- * would hold 350 MB. It has no option for that. So this module defines mmap(), munmap() and
- * epoll_wait() for the whole program, to which the dynamic linker binds libmicrohttpd's calls, as
- * it does with an allocator of one's own.
+ * libmicrohttpd allocates SRV_BUFFER_BYTES with mmap() for each connection, zeroes all of it after
+ * each request and keeps it until the connection ends: ten thousand idle clients that once sent a
+ * request would occupy 350 MB. It has no option for that. So this module defines mmap(), munmap()
+ * and epoll_wait() for the whole program. The dynamic linker binds libmicrohttpd's calls to these
+ * definitions, as it does for a replaced malloc().
  *
  *   B1  mmap() of exactly that size by libmicrohttpd's workers takes a buffer from one reserved
- *       range, and munmap() of a buffer puts it back; both save the system call. All other calls
- *       are the system's unchanged.
- *   B2  A worker that is about to wait in epoll_wait() gives back the pages of its connections that
- *       have been idle for a second; at once when memory is full; a few each time, so that nobody
- *       waits for it. It is the one thread that reads and writes these pages.
- *   B3  Only pages that are all zeros are given back: the system puts zeros in their place, so that
- *       the library cannot tell, whatever it keeps there.
- *   B4  What a buffer holds is counted by st_memory_count: all of it from the beginning of a
- *       request, and what was not given back while idle. */
+ *       range, and munmap() of a buffer puts it back; both save the system call. All other calls go
+ *       to the system unchanged.
+ *   B2  A worker that is about to wait in epoll_wait() returns the pages of its connections that
+ *       have been idle for a second (at once when memory is full), a few each time, so that no
+ *       client waits for it. It is the only thread that reads and writes these pages.
+ *   B3  Only pages that are all zeros are returned: the system replaces them by zeros, so that the
+ *       library cannot notice, whatever it keeps there.
+ *   B4  st_memory_count counts what a buffer occupies: all of it from the beginning of a request,
+ *       and the pages that were not returned while it is idle. */
 #ifndef HE_SERVER_HTTP_HTTP_BUFFER_H
 #define HE_SERVER_HTTP_HTTP_BUFFER_H
 
@@ -24,25 +24,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Holds all that http_syntax.h lets through of a head, and the head of its answer; and is above 32
- * KiB, to which libmicrohttpd uses malloc(). No larger: it zeroes all of it after each request, and
- * with 64 connections of 128 KiB that leaves the cache and costs more than half of the throughput.
+/* Large enough for the largest head that http_syntax.h lets through and the head of its answer, and
+ * above 32 KiB, up to which libmicrohttpd uses malloc(). Not larger, because libmicrohttpd zeroes
+ * it after each request: 64 connections with 128 KiB each do not fit into the cache, which costs
+ * more than half of the throughput.
  */
 enum { SRV_BUFFER_BYTES = 36 * 1024 };
 
 enum { SRV_NO_BUFFER = UINT32_MAX };
 
-/* Reserve address space for so many buffers; their pages come as they are written. Before
- * libmicrohttpd starts; a second time keeps what there is, beyond which the system is asked as
- * without this module. False when there is no room. */
+/* Reserves address space for this many buffers; pages are allocated as they are written. Call it
+ * before libmicrohttpd starts. A second call keeps the first reservation; more buffers than that
+ * come from the system directly. Returns false if there is no address space. */
 bool srv_buffers_reserve(size_t most);
 
-/* The one this thread took last, SRV_NO_BUFFER when it took none since the last call: libmicrohttpd
- * takes a connection's buffer right before it tells of the connection. */
+/* Returns the buffer that this thread took last, or SRV_NO_BUFFER if it took none since the last
+ * call. libmicrohttpd takes the buffer of a connection right before it reports the connection. */
 uint32_t srv_buffer_taken(void);
 
-/* Its connection waits for a request, or has begun one. For the worker that took it, with the
- * microseconds of the monotonic clock. SRV_NO_BUFFER does nothing. */
+/* Says that the buffer's connection is idle, or (srv_buffer_use) has begun a request. Called by the
+ * worker that took it, with the microseconds of the monotonic clock. SRV_NO_BUFFER does nothing. */
 void srv_buffer_rest(uint32_t buffer, uint64_t now);
 void srv_buffer_use(uint32_t buffer);
 

@@ -1,8 +1,8 @@
-/* http_deadline.h - closes connections that take their time.
+/* http_deadline.h - closes connections that are too slow.
  *
- * libmicrohttpd's timeout is about silence: one byte now and then keeps a connection for ever. A
- * thread of this module looks at every connection twice a second and shuts down the socket of one
- * that outstays its stage; libmicrohttpd then sees the end and cleans up.
+ * libmicrohttpd has a timeout of silence only: one byte now and then keeps a connection open for
+ * ever. A thread of this module checks every connection twice a second and shuts down the socket of
+ * one that exceeds the time of its stage; libmicrohttpd then sees the end and cleans up.
  *
  *     HANDSHAKE                       of TLS; a plain connection begins with IDLE
  *         |
@@ -10,29 +10,31 @@
  *       ^                                                                                       |
  *       +---------------------------------- completed ------------------------------------------+
  *
- *     HANDSHAKE  head seconds; like IDLE a short while only when there are too many connections
- *     IDLE    idle seconds; a short while only when there are too many connections, or too many of
+ *     HANDSHAKE  `head` seconds; only a short time if there are too many connections
+ *     IDLE    `idle` seconds; only a short time if there are too many connections, or too many of
  *             its address
- *     HEAD    head seconds
- *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average. Like
- *             HEAD not at all when the client has closed its side, which libmicrohttpd leaves to
- *             time out
- *     WORK    not limited here: the client is waiting for us. Who works asks whether it still does:
- *             work for a client that was reset ends at once, for one that closed its side after a
- *             second, before which it gets its answer
- *     ANSWER  while bytes wait to be taken: min_rate bytes a second, over `grace` seconds. What
- *             counts is what the client's side has acknowledged, not what fits the socket's buffer;
- *             on a Unix socket, which acknowledges nothing, what the client has read. So it goes on
- * while IDLE, when all of an answer is in that buffer LIVE    an answer that goes on (http_live.h),
- * in place of ANSWER: while bytes wait to be taken, one a second over `total` seconds
+ *     HEAD    `head` seconds
+ *     BODY    `total` seconds, and after `grace` seconds min_rate bytes a second on average.
+ *             Neither BODY nor HEAD is ended here if the client has closed its side:
+ *             libmicrohttpd's timeout does that
+ *     WORK    not limited here, because the client waits for the server. The working thread checks
+ *             whether it still does: work for a connection that was reset ends at once, work for a
+ *             client that closed its side after a second, so that short work is still answered
+ *     ANSWER  while bytes wait to be read: min_rate bytes a second, over `grace` seconds. Bytes
+ *             count when the client's side has acknowledged them, not when they are in the socket's
+ *             buffer; on a Unix socket, which acknowledges nothing, when the client has read them.
+ *             The check continues during IDLE if the rest of an answer is in that buffer
+ *     LIVE    a stream (http_live.h), in place of ANSWER: while bytes wait to be read, one a second
+ *             over `total` seconds
  *
- * Closing costs the workers, who clean up, and the clients' side. So that a thousand slow clients
- * who came together do not keep others waiting when they are closed together, at most SRV_CLOSES
- * are closed at once, and the next a hundredth of a second later. The lock of the list is held for
- * as many, or for SRV_LOOKS looks.
+ * Closing a connection costs time of the workers, which clean up, and of the clients' side. A
+ * thousand slow clients that connected together must not delay others when they are closed
+ * together: at most SRV_CLOSES are closed at once, and the next ones a hundredth of a second later.
+ * The lock of the list is held for as many, or for SRV_LOOKS checks.
  *
- * It also drains connections that were answered before their body was read: closing a socket with
- * unread data resets it, and a reset can take the answer away before the client has read it. */
+ * The module also drains connections that were answered before their body was read: closing a
+ * socket with unread data resets it, and a reset can discard the answer before the client has read
+ * it. */
 #ifndef HE_SERVER_HTTP_HTTP_DEADLINE_H
 #define HE_SERVER_HTTP_HTTP_DEADLINE_H
 
@@ -57,79 +59,80 @@ typedef enum srv_stage {
 } srv_stage;
 
 typedef struct srv_deadline_options {
-    uint64_t idle, head, grace, total; /* seconds */
-    uint64_t min_rate;                 /* bytes a second, 0: none */
+    uint64_t idle, head, grace, total; /* in seconds */
+    uint64_t min_rate;                 /* in bytes a second; 0: no minimum */
     uint64_t max_connections;
-    api_metrics *metrics; /* where connections that are closed are counted, NULL: nowhere */
+    api_metrics *metrics; /* counts connections that are closed; NULL: not counted */
 } srv_deadline_options;
 
 typedef struct srv_deadlines srv_deadlines;
 
 enum { SRV_CLOSES = 16, SRV_LOOKS = 64 };
 
-/* One open socket. Its stage is set by the worker that serves it and read by the thread. */
+/* One open socket. The worker that serves it sets its stage; the thread reads it. */
 typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
     _Atomic int stage;
-    _Atomic uint64_t since;   /* microseconds of the monotonic clock */
+    _Atomic uint64_t since;   /* start of the stage, microseconds of the monotonic clock */
     _Atomic uint64_t bytes;   /* received in this stage */
-    bool drain;               /* drain after closing */
+    bool drain;               /* drain the socket after closing */
     gnutls_session_t session; /* NULL: plain */
     srv_certificates *certificates;
-    srv_certificate *certificate; /* held from the handshake on; NULL: none is */
-    bool is_proxy;                /* a trusted one: what it tells of its client is believed */
-    api_rate_key client;          /* of its address */
-    uint32_t of_peer;             /* peers.h */
-    _Atomic bool beyond;          /* its address had as many connections as it may before */
-    uint32_t buffer;              /* http_buffer.h */
-    /* The worker's own. */
+    srv_certificate *certificate; /* a reference from the handshake on; NULL: none */
+    bool is_proxy;                /* a trusted proxy: what it says about its client is believed */
+    api_rate_key client;          /* key of its address */
+    uint32_t of_peer;             /* entry in peers.h */
+    _Atomic bool beyond;          /* its address already had the maximum of connections */
+    uint32_t buffer;              /* its buffer in http_buffer.h */
+    /* Used by the worker only. */
     srv_syntax syntax;
-    uint64_t requests;   /* begun so far, as libmicrohttpd sees it */
-    bool widened;        /* the socket has SRV_SEND_BUFFER, not SRV_FIRST_SEND_BUFFER */
-    bool tells_end;      /* the kernel says with what is read whether there is more: http_recv.h */
-    bool may_have_ended; /* it said so of what was read last */
-    bool counts_sent;    /* of a Unix socket the kernel does not say how much was sent */
-    _Atomic uint64_t sent; /* bytes, as far as they are counted; also read by the thread */
-    /* The thread's own. */
-    uint64_t acked;                /* the most that it ever found acknowledged */
-    uint64_t window, window_acked; /* since when it measures an answer, 0: not */
-    uint64_t taken;                /* `since` of the IDLE stage in which no byte waited, 0: none */
-    uint64_t kept;                 /* bytes the kernel had for it, as they were counted last */
-    bool late;                     /* it was closed for taking too long */
-    uint64_t closed;               /* `since` of the stage in which the client closed, 0: not */
+    uint64_t requests;   /* requests begun so far, as counted from libmicrohttpd's calls */
+    bool widened;        /* the socket has SRV_SEND_BUFFER rather than SRV_FIRST_SEND_BUFFER */
+    bool tells_end;      /* the kernel reports with each read whether there is more: http_recv.h */
+    bool may_have_ended; /* it did so for the last read */
+    bool counts_sent;    /* bytes sent are counted, because a Unix socket does not report them */
+    _Atomic uint64_t sent; /* bytes sent, if they are counted; the thread reads it, too */
+    /* Used by the thread only. */
+    uint64_t acked;                /* the most bytes found acknowledged so far */
+    uint64_t window, window_acked; /* start of the measured interval of an answer, 0: none */
+    uint64_t taken;  /* `since` of an IDLE stage in which no byte was waiting, 0: none */
+    uint64_t kept;   /* bytes in the kernel's buffer at the last count */
+    bool late;       /* it was closed for being too slow */
+    uint64_t closed; /* `since` of the stage in which the client closed its side, 0: none */
     uint64_t closed_bytes;
     char peer[SRV_ADDRESS_TEXT];
 } srv_connection;
 
-/* NULL when memory, descriptors or threads are out. */
+/* Returns NULL when memory, descriptors or threads are out. */
 srv_deadlines *srv_deadlines_new(const srv_deadline_options *options);
 /* No connection may be left. */
 void srv_deadlines_free(srv_deadlines *deadlines);
 
-/* `session` NULL: no TLS. NULL when memory is out: then the socket is not watched. */
+/* `session` is NULL without TLS. Returns NULL when memory is out; the socket is then not
+ * watched. */
 srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket, const struct sockaddr *peer,
                                   gnutls_session_t session, uint32_t buffer);
-/* The socket is about to be closed. Accepts NULL. */
+/* Call it before the socket is closed. Takes NULL. */
 void srv_deadlines_remove(srv_deadlines *deadlines, srv_connection *connection);
 size_t srv_deadlines_count(const srv_deadlines *deadlines);
 
-/* Accept NULL. */
+/* Both take NULL. */
 void srv_connection_enter(srv_connection *connection, srv_stage stage, uint64_t now);
 void srv_connection_moved(srv_connection *connection, uint64_t bytes);
-/* Has the client left while its request is worked on? True when the connection was reset, and when
- * the client closed its side and its request has been in this stage for SRV_CLOSED_MICROS: a client
- * that only closed its writing side may still read, but is not told from one that is gone. For the
- * thread that works for the connection. */
+/* Did the client leave while its request is worked on? Returns true if the connection was reset, or
+ * if the client closed its side and the request has been in this stage for SRV_CLOSED_MICROS. (A
+ * client that closed only its writing side may still read, but cannot be distinguished from one
+ * that is gone.) Called by the thread that works on the request. */
 enum { SRV_CLOSED_MICROS = 1000000 };
 bool srv_connection_is_left(const srv_connection *connection, uint64_t now);
 
-/* Has this connection outstayed its stage at `now`? `crowded`: there are too many. Not for
- * answers. */
+/* Has the connection exceeded the time of its stage at `now`? `crowded`: there are too many
+ * connections. Not used for answers. */
 bool srv_connection_is_late(const srv_connection *connection, const srv_deadline_options *options,
                             bool crowded, uint64_t now);
-/* Does the client take its answer too slowly? To be asked again and again, with the bytes that
- * wait in the socket and all that were ever acknowledged. */
+/* Does the client read its answer too slowly? Must be called repeatedly, with the bytes waiting in
+ * the socket and all bytes ever acknowledged. */
 bool srv_connection_is_stuck(srv_connection *connection, const srv_deadline_options *options,
                              uint64_t outstanding, uint64_t acknowledged, uint64_t now);
 

@@ -1,7 +1,7 @@
-/* http_handle.h - the moves of a request between the states that http_request.h draws.
+/* http_handle.h - the transitions of a request between the states in http_request.h.
  *
- * What the client sends is handed to api piece by piece; what api calls long work runs on the job
- * pool, and an answer that is not durable yet is held (D1), both with the connection suspended. */
+ * What the client sends is passed to api piece by piece. Long work runs on the job pool, and an
+ * answer that is not durable yet is held back (D1); in both cases the connection is suspended. */
 #ifndef HE_SERVER_HTTP_HTTP_HANDLE_H
 #define HE_SERVER_HTTP_HTTP_HANDLE_H
 
@@ -10,10 +10,10 @@
 
 typedef struct srv_request srv_request;
 
-/* For each call of libmicrohttpd's handler: once with the headers, once for each piece of the body,
- * once at its end, and once more after each resume. `size` goes down to what of `upload` is to come
- * again. False when the connection is to be closed. The request may be another thread's when it
- * returns. */
+/* Handles one call of libmicrohttpd's handler: once with the headers, once for each piece of the
+ * body, once at its end, and once after each resume. Reduces `size` to the bytes of `upload` that
+ * must be passed again. Returns false if the connection shall be closed. When it returns, another
+ * thread may own the request. */
 bool srv_request_handle(srv_request *r, const char *method, const char *version, const char *upload,
                         size_t *size);
 

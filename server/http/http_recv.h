@@ -1,34 +1,35 @@
-/* http_recv.h - what libmicrohttpd gets when it calls recv() or gnutls_record_recv().
+/* http_recv.h - replaces recv() and gnutls_record_recv(), so that libmicrohttpd reads checked
+ * bytes.
  *
  * This module defines both for the whole program, and the dynamic linker binds libmicrohttpd's
- * calls to them, as it does with an allocator of one's own. A call for a watched socket with no
- * flags, as libmicrohttpd makes it, hands the bytes through the socket's state machine
- * (http_syntax.h); over TLS it is gnutls_record_recv() that does, and recv(), by which gnutls
- * reads what is encrypted, does not. All other calls, of other sockets or with flags, are those of
- * the system and of gnutls, unchanged.
+ * calls to them, as it does for a replaced malloc(). A call without flags for a watched socket,
+ * which is how libmicrohttpd calls, passes the bytes through the socket's state machine
+ * (http_syntax.h). Over TLS gnutls_record_recv() does that, and recv(), with which gnutls reads
+ * encrypted bytes, does not. All other calls go to the system and to gnutls unchanged.
  *
  *   R1  A recv() makes at most one system call: recvmsg(), or recvfrom() where the socket is not
- *       watched. It goes through the C library's function of that name, so that the sanitizers see
- *       it. A gnutls_record_recv() is one gnutls_record_recv_seq().
- *   R2  After a fault nothing more is read from the socket: the ending that the machine puts in
- *       place of the rest is handed out, then nothing (EAGAIN), until the handler's answer closes
- *       the connection.
- *   R3  Fewer bytes than asked for are returned only where the socket had no more, or after a
- *       fault: libmicrohttpd takes that for an empty socket and waits for its next edge-triggered
+ *       watched. It calls the C library's function of that name, so that the sanitizers see it. A
+ *       gnutls_record_recv() makes one gnutls_record_recv_seq().
+ *   R2  After a fault nothing more is read from the socket: the calls return the ending that the
+ *       state machine puts in place of the rest, then nothing (EAGAIN), until the handler's answer
+ *       closes the connection.
+ *   R3  A call returns fewer bytes than asked for only if the socket had no more, or after a fault:
+ *       libmicrohttpd then assumes that the socket is empty and waits for its next edge-triggered
  *       event.
- *   R4  The machine is found in a table by descriptor, without a lock. A slot is written only by
- *       the worker that owns the descriptor, after accept() and before close(): between those no
+ *   R4  The state machine is found in a table by descriptor, without a lock. A slot is written only
+ *       by the worker that owns the descriptor, after accept() and before close(): in between no
  *       other socket has its number.
- *   R5  The end of what a client sends is seen when it comes with the last bytes before it. No
- *       further event tells of it, and so libmicrohttpd would wait for the next request until the
- *       connection is idle for too long. The kernel says with the bytes whether there is more to
- *       read (TCP_INQ), which an end is.
- *       Over TLS libmicrohttpd itself reads on until there is no more, and finds the end.
+ *   R5  If the end of the client's stream arrives together with the last bytes, it is noticed then.
+ *       No further event reports it, so libmicrohttpd would wait for the next request until the
+ *       idle timeout. The kernel reports with the bytes whether there is more to read (TCP_INQ),
+ *       and counts the end as more. Over TLS libmicrohttpd itself reads on until there is no more,
+ *       and finds the end.
  *   R6  A connection enters SRV_STAGE_HEAD with the first byte of a request, and a TLS connection
  *       SRV_STAGE_IDLE when it is first read from, which libmicrohttpd does after the handshake.
  *
- * It also defines send() and sendmsg(), which are the system's but for a count: of a Unix socket
- * the kernel does not say how much was ever sent, which http_deadline.h wants to know. */
+ * It also defines send() and sendmsg(), which call the system's and count the bytes:
+ * http_deadline.h needs the number of bytes sent, and the kernel does not report it for Unix
+ * sockets. */
 #ifndef HE_SERVER_HTTP_HTTP_RECV_H
 #define HE_SERVER_HTTP_HTTP_RECV_H
 
@@ -36,26 +37,27 @@
 
 #include <sys/types.h>
 
-/* Linux gives no process more descriptors than this, unless fs.nr_open was raised. */
+/* Linux allows a process no more descriptors than this, unless fs.nr_open was raised. */
 enum { SRV_MAX_DESCRIPTORS = 1 << 20 };
 
-/* From here on recv() of the connection's socket goes through its state machine, which is {0}.
- * False when the descriptor is beyond the table: the socket must not be served. */
+/* From now on recv() of the connection's socket passes through its state machine, which must be
+ * {0}. Returns false if the descriptor is outside of the table: the socket must then not be
+ * served. */
 bool srv_recv_watch(srv_connection *connection);
-/* To be called before the socket is closed. */
+/* Call it before the socket is closed. */
 void srv_recv_forget(int socket);
-/* The connection of a TLS session; NULL where it is not watched. */
+/* Returns the connection of a TLS session, or NULL if it is not watched. */
 srv_connection *srv_recv_find(gnutls_session_t session);
-/* Has the client closed its side, and is no request begun beside the one that is served? Then its
- * answer is the last. For the worker of the connection. Accepts NULL: false. */
+/* Has the client closed its side, without another request after the present one? Then the present
+ * answer is the last. Called by the worker of the connection. Takes NULL and returns false. */
 bool srv_recv_has_ended(const srv_connection *connection);
 
-/* Writes to the client past libmicrohttpd, which must not be in the middle of an answer. False when
- * the socket, which does not block, would not take all of it. */
+/* Writes to the client directly; libmicrohttpd must not be in the middle of an answer. Returns
+ * false if the socket, which does not block, did not take all of it. */
 bool srv_recv_send(srv_connection *connection, const char *bytes, size_t length);
 
-/* Reads by `receive`, which returns like recv(), and checks what came. Like recv(), -1 with EAGAIN
- * after the end of a fault. */
+/* Reads with `receive`, which returns like recv(), and checks the bytes. Returns like recv(): -1
+ * with EAGAIN after the ending of a fault. */
 ssize_t srv_recv_checked(srv_syntax *syntax, char *buffer, size_t size,
                          ssize_t (*receive)(void *context, char *buffer, size_t size),
                          void *context);

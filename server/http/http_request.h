@@ -1,19 +1,19 @@
-/* http_request.h - a request from its first line to its completion, and the house's door to
+/* http_request.h - a request from its first line to its completion, and the only door to
  * libmicrohttpd.
  *
- * This is the one file that includes <microhttpd.h>, and only the sources server/http*.c include
- * it; lint looks after both. Headers name a srv_request without its inside.
+ * This is the one file that includes <microhttpd.h>, and only the sources of server/http include
+ * it; lint checks both. Headers only declare srv_request.
  *
- *     http.c          the daemon: options, start, stop, what libmicrohttpd calls
- *     http_handle.c   the moves of a request between its states: reading, waiting
- *     http_answer.c   sending what it is answered
- *     http_request.c  its beginning and end, and how it is suspended
+ *     http.c          the daemon: options, start, stop, callbacks of libmicrohttpd
+ *     http_handle.c   transitions of a request between its states: reading, waiting
+ *     http_answer.c   sending the answer
+ *     http_request.c  beginning and end of a request, and how it is suspended
  *
- * Each knows those below it, none those above.
+ * Each calls those below it in this list, none those above.
  *
- * A request's states. libmicrohttpd calls `handle` once with the headers, once for each piece of
- * the body and once at its end, and once more after each resume; srv_request_handle makes every
- * move but the two marked.
+ * The states of a request follow. libmicrohttpd calls `handle` once with the headers, once for each
+ * piece of the body and once at its end, and once more after each resume; srv_request_handle makes
+ * every transition but the two marked with a star.
  *
  *     FRESH -- headers --> BODY -- its end, the answer is there -----------------> DONE
  *       |                   |  \                                                    ^
@@ -22,11 +22,12 @@
  *       |                   +-- refused while reading, much left: CUT               |
  *       +-- refused at once, much to come ------------------------------------------+
  *
- *     instead of DONE, when what the answer shows is not durable: HELD --resume_held*--> DONE
+ *     instead of DONE, while the answer is not durable: HELD --resume_held*--> DONE
  *
- * While WORK or HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
- * or the hold resumes it exactly once. An answer that goes on is DONE and suspended again and again
- * by `pull_live`: see http_live.h. So is one that is made ahead, by `pull_ahead`: http_ahead.h.
+ * In WORK and HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
+ * or the wait for durability resumes it exactly once. A stream is DONE, and `pull_live` suspends it
+ * again and again: see http_live.h. `pull_ahead` does that with an answer that is made ahead:
+ * http_ahead.h.
  */
 #ifndef HE_SERVER_HTTP_HTTP_REQUEST_H
 #define HE_SERVER_HTTP_HTTP_REQUEST_H
@@ -52,33 +53,33 @@ struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
-    srv_peers *peers; /* NULL: addresses may have as many connections as there are */
+    srv_peers *peers; /* NULL: no limit of connections per address */
     srv_live *live;
     unsigned port;
     srv_ids ids;
     srv_spans spans;
     _Atomic bool stopping;
     srv_gate gate;
-    _Atomic size_t downloads; /* answers that are sent piece by piece, but for those that go on */
+    _Atomic size_t downloads; /* number of answers sent piece by piece, except streams of events */
 };
 
 typedef struct srv_request {
     srv_http *http;
     struct MHD_Connection *connection;
-    srv_connection *socket; /* NULL when it is not watched */
+    srv_connection *socket; /* NULL: not watched */
     srv_state state;
-    bool counted; /* by the gate */
-    bool aside;   /* counted by the gate as suspended: until it runs again or has completed */
-    bool whole;   /* all of the body has arrived */
+    bool counted; /* counted by the gate */
+    bool aside;   /* counted by the gate as suspended, until it runs again or has completed */
+    bool whole;   /* the whole body has arrived */
     uint64_t started;
-    uint64_t number; /* on its connection, from 1 */
+    uint64_t number; /* number of the request on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
-    uint64_t announced; /* Content-Length; UINT64_MAX when chunked */
-    uint64_t swallowed; /* since the answer was known */
+    uint64_t announced; /* Content-Length; UINT64_MAX: chunked */
+    uint64_t swallowed; /* bytes of the body skipped since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
-    char *joined; /* headers whose lines were joined (http_headers.h), NULL: none were */
+    char *joined; /* headers whose lines were joined (http_headers.h); NULL: none */
     srv_client client;
-    const char *cors; /* the origin to be named, NULL: none */
+    const char *cors; /* origin to name in CORS headers; NULL: none */
     bool close;
 
     api_exchange *exchange; /* NULL: the answer is `refusal` */
@@ -88,40 +89,42 @@ typedef struct srv_request {
     api_rate_fields rate_fields; /* of the exchange that the refusal took the place of */
     bool preflight;
     st_wait hold;
-    uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: as long as it takes */
+    uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: no limit */
     srv_stream stream;
     srv_ahead ahead;
-    size_t block; /* bytes libmicrohttpd holds for a download, 0: it is none */
+    size_t block; /* bytes libmicrohttpd allocated for a download; 0: none */
     int status;
     srv_trace trace;
     srv_timing timing;
 
     char method[SRV_METHOD + 1];
-    const char *path; /* NULL until the headers were read */
+    const char *path; /* NULL before the headers were read */
     char target[];    /* raw */
 } srv_request;
 
-/* The request line has arrived. NULL when memory is out, or when its bytes were not checked
- * (http_recv.h): then the connection is closed without an answer. */
+/* Begins a request when its request line has arrived. Returns NULL when memory is out, or if its
+ * bytes were not checked (http_recv.h): the connection is then closed without an answer. */
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection);
-/* Answered, or its client was lost: tells the log and frees the request. The
- * server may be freed at once after that. */
+/* Ends a request that was answered or whose client is gone: logs it and frees it. The server may be
+ * freed right afterwards. */
 void srv_request_end(srv_request *r);
 
-/* The address of the client, "192.0.2.1", THE one by which clients are counted and told apart: what
- * a trusted proxy tells (--trusted-proxy), else that of the connection. On a Unix socket it is the
- * user, "unix:uid=1000". It is known when the headers have been read, valid as long as the request,
- * and "" before that. Without --trusted-proxy all clients of a proxy have the proxy's address. */
+/* Returns the address of the client, such as "192.0.2.1": THE address by which clients are counted
+ * and distinguished. It is what a trusted proxy says (--trusted-proxy), else the address of the
+ * connection. On a Unix socket it is the user, "unix:uid=1000". It is "" until the headers have
+ * been read, and valid as long as the request. Without --trusted-proxy all clients of a proxy have
+ * the proxy's address. */
 static inline const char *srv_request_client(const srv_request *r)
 {
     return r->client.address;
 }
 
-/* Suspend the connection, as long as that is allowed: to be called before another thread is told of
- * the request, which then resumes it, with MHD_resume_connection, exactly once. False when the gate
- * is closed: then nothing is suspended, and the connection is to be closed. */
+/* Suspends the connection, if that is still allowed. Call it before another thread gets the
+ * request; that thread then resumes it with MHD_resume_connection, exactly once. Returns false if
+ * the gate is closed: nothing is suspended, and the connection must be closed. */
 bool srv_request_suspend(srv_request *r);
-/* Its worker has it again: first in each callback before which it may have been suspended. */
+/* Notes that the worker owns the request again. Call it first in each callback before which the
+ * request may have been suspended. */
 void srv_request_resumed(srv_request *r);
 
 #endif

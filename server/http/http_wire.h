@@ -18,23 +18,23 @@ typedef struct srv_wire {
     api_header headers[SRV_WIRE_HEADERS];
     size_t header_count;
     const char *bytes;
-    int64_t length; /* -1: not known */
+    int64_t length; /* -1: unknown */
     bool close;
     char retry[API_RETRY];
 } srv_wire;
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value);
-/* What api answers. */
+/* Describes an answer of api. */
 void srv_wire_answer(srv_wire *wire, const api_answer *answer);
-/* A problem that was found before or beside api, written into `text`, which `wire` then borrows.
- * NULL is no problem but 204 without a body. */
+/* Describes a problem found outside of api; it is written into `text`, which `wire` then borrows. A
+ * NULL problem describes 204 without a body. */
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
                       api_text *text);
-/* Let a page of `origin` read the answer (P4). `preflight`: and say what it may send. */
+/* Lets pages of `origin` read the answer (P4). `preflight`: also lists what they may send. */
 void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight);
 
-/* Write it to a connection past libmicrohttpd (srv_recv_send), closing it. False when the socket
- * would not take all of it. */
+/* Writes the answer to a connection directly (srv_recv_send), with Connection: close. Returns false
+ * if the socket did not take all of it. */
 bool srv_wire_send(const srv_wire *wire, const char *reason, srv_connection *connection);
 
 #endif

@@ -1,7 +1,7 @@
-/* access.h - one request as a record, and its lines in the log.
+/* access.h - the record of one request, and its lines in the log.
  *
- * Records are small and of one size, so that a worker fills one without memory of its own and goes
- * on; log.h has them formatted by another thread. */
+ * Records are small and have a fixed size, so that a worker fills one without allocating; log.h
+ * formats them on another thread. */
 #ifndef HE_SERVER_LOG_ACCESS_H
 #define HE_SERVER_LOG_ACCESS_H
 
@@ -19,37 +19,37 @@ enum {
     SRV_ACCESS_LINE = 2560
 };
 
-/* Where the time of a request went. The parts add up to the whole. */
+/* The parts of the time of a request. They add up to the whole. */
 typedef enum srv_part {
     SRV_PART_RECEIVE, /* its head and body arrive */
     SRV_PART_QUEUE,   /* it waits for a thread */
-    SRV_PART_LOCK,    /* it waits for other requests that use the mesh, or the list of meshes */
+    SRV_PART_LOCK,    /* it waits for the lock of the mesh or of the list of meshes */
     SRV_PART_WORK,
-    SRV_PART_STORE, /* it waits for what it shows to be durable */
-    SRV_PART_SEND,  /* the client takes the answer */
+    SRV_PART_STORE, /* it waits until its changes are durable */
+    SRV_PART_SEND,  /* the client reads the answer */
     SRV_PARTS
 } srv_part;
 
-/* The query is never logged: it may hold a ticket, or what is nobody's business. */
+/* The query is never logged: it may hold a ticket or private data. */
 typedef struct srv_access {
-    double time; /* of the end, seconds since 1970 */
+    double time; /* when it ended, in seconds since 1970 */
     char request_id[SRV_REQUEST_ID + 1];
     char method[SRV_METHOD + 1];
-    char path[SRV_LOG_PATH];      /* raw, cut */
-    const char *route;            /* template, static; NULL: none */
-    int status;                   /* 0: closed without an answer */
+    char path[SRV_LOG_PATH];      /* raw; truncated if long */
+    const char *route;            /* template of the route, static; NULL: none */
+    int status;                   /* 0: the connection was closed without an answer */
     uint64_t bytes_in, bytes_out; /* of bodies */
     uint64_t duration_us;
-    uint64_t parts[SRV_PARTS]; /* microseconds; of a slow request alone */
+    uint64_t parts[SRV_PARTS]; /* microseconds; filled for slow requests only */
     char peer[SRV_PEER];
     char trace_id[SRV_TRACE_ID + 1]; /* "": the client sent no traceparent */
-    char parent_id[SRV_SPAN_ID + 1]; /* the client's; "": what it sent was malformed */
-    char span_id[SRV_SPAN_ID + 1];   /* of this request, answered in traceparent */
+    char parent_id[SRV_SPAN_ID + 1]; /* sent by the client; "": none or malformed */
+    char span_id[SRV_SPAN_ID + 1];   /* of this request, sent back in traceparent */
 } srv_access;
 
-/* The line, ended by a newline and a null; its length without the null. */
+/* Writes the line, terminated by a newline and NUL; returns its length without the NUL. */
 size_t srv_access_format(const srv_access *access, bool json, char line[SRV_ACCESS_LINE]);
-/* The line that says where the time of a slow request went. */
+/* Writes the line with the parts of the time of a slow request. */
 size_t srv_access_format_slow(const srv_access *access, bool json, char line[SRV_ACCESS_LINE]);
 
 #endif

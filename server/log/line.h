@@ -12,37 +12,37 @@
 #include <stdarg.h>
 
 typedef enum srv_level {
-    SRV_LEVEL_ERROR,   /* something does not work, and somebody must act */
-    SRV_LEVEL_WARNING, /* something works otherwise than was wanted */
-    SRV_LEVEL_INFO,    /* what every operator wants to know of a start, a stop, a reload */
-    SRV_LEVEL_DEBUG    /* what helps to find out why */
+    SRV_LEVEL_ERROR,   /* something does not work: an operator must act */
+    SRV_LEVEL_WARNING, /* something works, but not as configured */
+    SRV_LEVEL_INFO,    /* starts, stops, reloads: for every operator */
+    SRV_LEVEL_DEBUG    /* for finding the cause of a problem */
 } srv_level;
 
-const char *srv_level_name(srv_level level); /* "error", ... */
+const char *srv_level_name(srv_level level); /* returns "error", ... */
 
-/* {0} until srv_line_begin. */
+/* {0} until srv_line_begin is called. */
 typedef struct srv_line {
     api_text text;
-    api_out out; /* of the JSON format */
+    api_out out; /* writes the JSON format */
     srv_level level;
     bool json;
 } srv_line;
 
-/* The message as printf makes it, cut at SRV_MESSAGE bytes. */
+/* Begins a line with a message in the format of printf, cut at SRV_MESSAGE bytes. */
 enum { SRV_MESSAGE = 1024 };
 void srv_line_begin(srv_line *line, bool json, srv_level level, const char *format, va_list values);
 
 void srv_line_text(srv_line *line, const char *name, const char *value);
 void srv_line_number(srv_line *line, const char *name, uint64_t value);
-/* In JSON the fields between the two are members of an object of this name. */
+/* Fields between open and close are, in JSON, members of an object with this name. */
 void srv_line_open(srv_line *line, const char *name);
 void srv_line_close(srv_line *line);
 
-/* Ends the line: its bytes are line->text, a line feed last, unless that failed for memory. */
+/* Ends the line: line->text then holds it with a line feed, unless memory was out. */
 void srv_line_end(srv_line *line);
 void srv_line_clear(srv_line *line);
 
-/* One whole line written at once, for a program that has no log (log.h) yet. */
+/* Writes one whole line at once, for a program that has no log (log.h) yet. */
 void srv_line_write(int fd, bool json, srv_level level, const char *message);
 
 #endif

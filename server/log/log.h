@@ -1,12 +1,12 @@
-/* log.h - what the daemon says on standard error, without making anybody wait for its reader.
+/* log.h - the log on standard error. A slow reader of the log never delays requests.
  *
- * Lines and records of requests are put into a bounded ring; a thread of the log's own formats and
- * writes them, in the order in which they came. When the reader of the log is slow, they are
- * dropped and counted, and a line says how many:
+ * Lines and records of requests go into a bounded ring buffer; the log's own thread formats and
+ * writes them in their order. When the ring is full, further ones are dropped, and a line says how
+ * many:
  *     {"time":"...","level":"warning","event":"dropped","dropped":12}
  *
- * In the JSON format every line is an object, but those of srv_log_plain. What a token or a ticket
- * is never gets here: nobody who has one hands it to this module. */
+ * In the JSON format every line is an object, except those of srv_log_plain. No code that has a
+ * token or a ticket passes it to this module. */
 #ifndef HE_SERVER_LOG_LOG_H
 #define HE_SERVER_LOG_LOG_H
 
@@ -15,35 +15,37 @@
 
 typedef struct srv_log srv_log;
 
-/* What may change while the log is in use. */
+/* Settings that may change while the log is in use. */
 typedef struct srv_log_settings {
-    srv_level level; /* lines below it are not written; those of requests have no part in that */
+    srv_level level; /* the least severe level that is written; lines of requests have no level */
     bool json;
-    bool requests;    /* a line for each */
-    uint64_t slow_us; /* requests that took longer get a line of where the time went; 0: none do */
+    bool requests;    /* write a line for each request */
+    uint64_t slow_us; /* longer requests get a line about their time; 0: none does */
 } srv_log_settings;
 
-/* Writes to `fd`, borrowed. NULL when memory or threads are out. */
+/* Makes a log that writes to `fd`, which it borrows. Returns NULL when memory or threads are
+ * out. */
 srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings);
-/* Writes what is left, for half a second at most. NULL is accepted. */
+/* Writes what is left, for half a second at most. Takes NULL. */
 void srv_log_free(srv_log *log);
 
-/* Any thread may call what follows, at any time. */
+/* All functions below may be called by any thread at any time. */
 
 void srv_log_set(srv_log *log, const srv_log_settings *settings);
 srv_log_settings srv_log_get(const srv_log *log);
 
-/* A line that is a message alone. */
+/* Writes a line that is only a message. */
 void srv_log_tell(srv_log *log, srv_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* A line with fields: begin, srv_line_text and the others of line.h, end, which puts it into the
- * ring and clears it. */
+/* Writes a line with fields: call begin, then srv_line_text and the others of line.h, then
+ * srv_log_end, which puts the line into the ring and clears it. */
 void srv_log_begin(const srv_log *log, srv_line *line, srv_level level, const char *message);
 void srv_log_end(srv_log *log, srv_line *line);
-/* A line as it is, in either format and at every level, for programs that wait for it. */
+/* Writes a line unchanged, in both formats and at every level, for programs that wait for it. */
 void srv_log_plain(srv_log *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* A request that has ended: a line where requests have one, and another where `slow`. */
+/* Logs a request that has ended: the usual line, if requests are logged, and another one if
+ * `slow`. */
 void srv_log_request(srv_log *log, const srv_access *access, bool slow);
 
 #endif

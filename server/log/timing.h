@@ -1,26 +1,26 @@
-/* timing.h - where the time of one request goes, for the log's lines of slow requests.
+/* timing.h - measures where the time of one request goes, for the log's lines about slow requests.
  *
- * A request is in one part (server/log/access.h) at every moment from its first line to its end, so
- * that the parts add up to the whole. While it works, what its thread waits for locks is counted
- * apart (core/system/lock.h): it enters and leaves SRV_PART_WORK on one thread. */
+ * From its first line to its end a request is always in exactly one part (server/log/access.h), so
+ * that the parts add up to the whole. Waiting for locks during the work is counted separately
+ * (core/system/lock.h); so one thread must enter and leave SRV_PART_WORK. */
 #ifndef HE_SERVER_LOG_TIMING_H
 #define HE_SERVER_LOG_TIMING_H
 
 #include "server/log/access.h"
 
-/* In the storage of the request; the thread that moves the request writes it. */
+/* Stored in the request; written by the thread that currently handles the request. */
 typedef struct srv_timing {
-    bool on;         /* otherwise nothing is measured */
-    srv_part part;   /* in which it is */
+    bool on;         /* false: nothing is measured */
+    srv_part part;   /* the present part */
     uint64_t since;  /* microseconds of the monotonic clock */
-    uint64_t waited; /* st_lock_waited of the thread, when the work began */
+    uint64_t waited; /* st_lock_waited of the thread at the beginning of the work */
     uint64_t parts[SRV_PARTS];
 } srv_timing;
 
-/* From `now` on it is received. */
+/* Begins SRV_PART_RECEIVE at `now`. */
 void srv_timing_begin(srv_timing *timing, uint64_t now);
 void srv_timing_enter(srv_timing *timing, srv_part part);
-/* It has ended: what has passed until `now` belongs to the part in which it is. */
+/* Ends the measurement at `now`; the last interval belongs to the present part. */
 void srv_timing_end(srv_timing *timing, uint64_t now);
 
 #endif

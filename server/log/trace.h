@@ -1,4 +1,4 @@
-/* trace.h - where a request stands in a trace (W3C Trace Context, the recommendation of 2021).
+/* trace.h - the trace context of a request (W3C Trace Context, the recommendation of 2021).
  *
  *     traceparent: 00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01
  *                  |  trace id                         parent id        flags
@@ -6,12 +6,12 @@
  *
  *   T1  A client that sends traceparent gets one back: its trace id, a span id of this request, and
  *       the flag that says whether the client records the trace.
- *   T2  One that is malformed, or sent twice, counts as none (section 4.3), for which the
- *       recommendation begins a new trace: it gets a trace id of ours and no flags.
- *   T3  A client that sends none is answered none. Its request has a request id.
+ *   T2  A malformed one, or two of them, count as none (section 4.3). Then the
+ *       recommendation begins a new trace: the answer has a new trace id and no flags.
+ *   T3  If the client sends none, the answer has none. The request still has a request id.
  *   T4  A version above 00 is read as 00, whatever follows after another hyphen; ff is malformed.
- *   T5  tracestate is neither read nor answered: it is for whom a request is passed on to, and
- *       hedged passes none on. */
+ *   T5  tracestate is neither read nor answered: it is for servers that a request is passed
+ *       on to, and hedged passes none on. */
 #ifndef HE_SERVER_LOG_TRACE_H
 #define HE_SERVER_LOG_TRACE_H
 
@@ -25,12 +25,12 @@ enum { SRV_TRACEPARENT = 55 };
 /* All digits are hexadecimal, in lower case. */
 typedef struct srv_trace {
     char trace_id[SRV_TRACE_ID + 1];    /* "": the request is in no trace */
-    char parent_id[SRV_SPAN_ID + 1];    /* "": the trace begins here */
+    char parent_id[SRV_SPAN_ID + 1];    /* "": this request begins the trace */
     char span_id[SRV_SPAN_ID + 1];      /* of this request */
-    char answered[SRV_TRACEPARENT + 1]; /* the traceparent of the answer */
+    char answered[SRV_TRACEPARENT + 1]; /* traceparent in the answer */
 } srv_trace;
 
-/* New ids: random at the start, and never the same twice from one server. */
+/* A source of span ids: random at the start, and never repeated by one server. */
 typedef struct srv_spans {
     uint64_t seed;
     _Atomic uint64_t next;
@@ -38,8 +38,8 @@ typedef struct srv_spans {
 
 void srv_spans_init(srv_spans *spans);
 
-/* Reads the `count` values of the traceparent headers of a request, of which `value` is the first,
- * and gives a request that has any its span id. */
+/* Reads the `count` values of a request's traceparent headers, of which `value` is the first. If
+ * there are any, makes a span id for the request. */
 void srv_trace_read(srv_spans *spans, const char *value, size_t count, srv_trace *out);
 
 #endif

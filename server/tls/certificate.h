@@ -1,9 +1,9 @@
-/* certificate.h - the certificate that a TLS listener shows, and how another takes its place.
+/* certificate.h - the certificate of the TLS listener, and its replacement.
  *
- * A pair of a certificate and its key is in force. A handshake holds the pair with which it began,
- * so that a pair read meanwhile changes nothing for it, nor for the connection that comes of it. A
- * pair is freed when it is not in force any more and nobody holds it. Every function but new and
- * free may be called by any thread. */
+ * One pair of a certificate and its key is in force. A handshake holds a reference to the pair with
+ * which it began, so that a replacement affects neither it nor its connection. A pair is freed when
+ * it is not in force any more and its last reference is released. Any thread may call the
+ * functions, except new and free. */
 #ifndef HE_SERVER_TLS_CERTIFICATE_H
 #define HE_SERVER_TLS_CERTIFICATE_H
 
@@ -13,33 +13,33 @@
 
 enum {
     SRV_MAX_PEM = 256 * 1024, /* bytes of a file */
-    SRV_MAX_CHAIN = 16 /* certificates in one: the server's own and those that vouch for it */
+    SRV_MAX_CHAIN = 16        /* certificates in a file: the server's own and its intermediates */
 };
 
-/* TLS 1.2 and 1.3, of 1.2 only what has forward secrecy and authenticates what it encrypts. */
+/* TLS 1.2 and 1.3; of 1.2 only cipher suites with forward secrecy and authenticated encryption. */
 extern const char srv_tls_priorities[];
 
 typedef struct srv_certificates srv_certificates;
 typedef struct srv_certificate srv_certificate;
 
-/* No pair is in force yet. NULL when memory is out. */
+/* Makes an empty object without a pair. Returns NULL when memory is out. */
 srv_certificates *srv_certificates_new(void);
-/* Accepts NULL. Pairs that are held stay until they are released. */
+/* Takes NULL. Referenced pairs stay until they are released. */
 void srv_certificates_free(srv_certificates *certificates);
 
-/* Puts the pair of these two files in force: PEM, the chain beginning with the server's own
- * certificate, and a key that is not encrypted. False with a sentence in `message`, which names the
- * file and what is wrong with it: then what was in force before still is. */
+/* Puts the pair of these two files in force: in PEM, the chain beginning with the server's own
+ * certificate, the key not encrypted. Returns false with a sentence in `message`, which names the
+ * file and the fault; the old pair then stays in force. */
 bool srv_certificates_read(srv_certificates *certificates, const char *certificate_path,
                            const char *key_path, char *message, size_t size);
 
-/* Gives the pair in force, which there must be. The caller releases it. */
+/* Returns a reference to the pair in force, which must exist. The caller releases it. */
 srv_certificate *srv_certificates_hold(srv_certificates *certificates);
-/* Accepts NULL. */
+/* Takes NULL. */
 void srv_certificate_release(srv_certificate *certificate);
 
-/* What gnutls_certificate_set_retrieve_function3(3) wants of a pair. It is borrowed: the pair is
- * held as long as the session. */
+/* Fills the outputs of gnutls_certificate_set_retrieve_function3(3). They are borrowed from the
+ * pair, which must be referenced as long as the session exists. */
 void srv_certificate_show(srv_certificate *certificate, gnutls_pcert_st **chain,
                           unsigned int *length, gnutls_privkey_t *key);
 

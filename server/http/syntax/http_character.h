@@ -1,13 +1,13 @@
-/* http_character.h - which characters may stand where in a request (RFC 9110, RFC 3986).
+/* http_character.h - which characters are allowed in which parts of a request (RFC 9110, RFC 3986).
  *
- * Inline, because every byte of every request is asked about once. */
+ * The functions are inline because they check every byte of every request. */
 #ifndef HE_SERVER_HTTP_SYNTAX_HTTP_CHARACTER_H
 #define HE_SERVER_HTTP_SYNTAX_HTTP_CHARACTER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sets of ASCII characters, a bit each: those below 64 and those from 64. */
+/* Sets of ASCII characters as bits: one word for those below 64, one for the others. */
 #define SRV_BIT(c)          (UINT64_C(1) << ((c)&63))
 #define SRV_RANGE(from, to) ((SRV_BIT(to) - SRV_BIT(from)) | SRV_BIT(to))
 #define SRV_DIGITS          SRV_RANGE('0', '9')
@@ -50,7 +50,7 @@ static inline bool srv_is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* May the character stand in a header's value? It is visible, blank, or beyond ASCII. */
+/* Is the character allowed in a header's value: visible, blank, or beyond ASCII? */
 static inline bool srv_is_value(char c)
 {
     unsigned char u = (unsigned char)c;
@@ -62,7 +62,7 @@ static inline char srv_lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c;
 }
 
-/* -1 for another character. */
+/* Returns the value of a hexadecimal digit, or -1. */
 static inline int srv_hexadecimal(char c)
 {
     if (c >= '0' && c <= '9') {

@@ -1,7 +1,7 @@
-/* http_fault.h - what can be wrong with the bytes of a request, and how it is answered.
+/* http_fault.h - faults in the bytes of a request, and how they are answered.
  *
- * http_syntax.h finds faults; the limits that it holds requests to are here, because the sentences
- * name them. */
+ * http_syntax.h finds faults. The limits that it enforces are defined here, because the messages
+ * contain them. */
 #ifndef HE_SERVER_HTTP_SYNTAX_HTTP_FAULT_H
 #define HE_SERVER_HTTP_SYNTAX_HTTP_FAULT_H
 
@@ -10,18 +10,18 @@
 enum {
     SRV_MAX_EMPTY_LINES = 8,
     SRV_MAX_METHOD = 16,
-    SRV_MAX_PARAMETERS = 64, /* of a query, for libmicrohttpd stores each */
+    SRV_MAX_PARAMETERS = 64, /* in a query, because libmicrohttpd stores each */
     SRV_MAX_FIELDS = 100,
     SRV_MAX_HEAD = 16 * 1024,
     SRV_MAX_CHUNK_DIGITS = 16,
     SRV_MAX_EXTENSION = 256,
-    /* Target, headers and what libmicrohttpd stores with each header and parameter. It has to leave
-     * room in libmicrohttpd's buffer (http.c) for the head of the answer. */
+    /* Bytes of target and headers plus what libmicrohttpd stores with each header and parameter.
+     * Its buffer (http.c) must still have space for the head of the answer. */
     SRV_MAX_POOLED = 28 * 1024,
     SRV_POOLED_FIELD = 64
 };
 
-/* X(constant, api_code, sentence, limit named after it or 0) */
+/* X(constant, api_code, message, limit to append or 0) */
 #define SRV_FAULT_MAP(X)                                                                        \
     X(TLS, BAD_FRAMING, "the bytes begin a TLS handshake, and this port speaks plain HTTP", 0)  \
     X(EMPTY_LINES, BAD_FRAMING, "too many empty lines before a request", SRV_MAX_EMPTY_LINES)   \
@@ -65,7 +65,7 @@ typedef enum srv_fault {
         SRV_FAULT_COUNT
 } srv_fault;
 
-/* Fill the problem that answers a fault, which is not SRV_FAULT_NONE. */
+/* Fills the problem for a fault other than SRV_FAULT_NONE. */
 void srv_fault_describe(srv_fault fault, api_problem *problem);
 
 #endif

@@ -1,8 +1,8 @@
-/* http_framing.h - where in a request its path, its query and its body are.
+/* http_framing.h - finds path, query and body of a request.
  *
- * The bytes were checked on their way in (http_syntax.h, rules F1 to F8): here the target is
- * visible ASCII, Content-Length a number, Transfer-Encoding chunked, and neither of them nor Host
- * is given twice. What is left to refuse is a target that is neither path?query nor
+ * The bytes were checked before (http_syntax.h, rules F1 to F8): the target is visible ASCII,
+ * Content-Length is a number, Transfer-Encoding is chunked, and neither of these nor Host is given
+ * twice. This module refuses only targets that are neither path?query nor
  * http://authority/path?query. The connection of a refused request is closed. */
 #ifndef HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
 #define HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
@@ -18,7 +18,7 @@ typedef struct srv_field {
     size_t name_length, value_length;
 } srv_field;
 
-/* A request as libmicrohttpd read it; everything is borrowed. */
+/* A request as libmicrohttpd parsed it; everything is borrowed. */
 typedef struct srv_head {
     const char *method, *target, *version;
     srv_field fields[SRV_MAX_FIELDS];
@@ -29,18 +29,18 @@ typedef struct srv_framing {
     const char *path; /* points into the target, up to '?' or the end */
     size_t path_length;
     const char *query;     /* into the target, "" when absent */
-    const char *authority; /* of an absolute target, NULL else; it counts instead of Host */
+    const char *authority; /* of an absolute target, which overrides Host; else NULL */
     size_t authority_length;
-    const char *host; /* the header, NULL when absent */
+    const char *host; /* the Host header, NULL when absent */
     bool chunked;
     bool has_length;
     uint64_t length;
 } srv_framing;
 
-/* `secure`: it came over TLS, and https://authority/path?query is a target too. False with the
- * problem filled, bad_path. */
+/* `secure`: the request came over TLS, so https://authority/path?query is allowed, too. Returns
+ * false with bad_path. */
 bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem);
-/* Without case; NULL when absent. */
+/* Finds a header, ignoring case; returns NULL when absent. */
 const srv_field *srv_head_find(const srv_head *head, const char *name);
 
 #endif
