@@ -64,7 +64,7 @@ static const char *media_type(const char *name)
     return "application/octet-stream";
 }
 
-/* FNV-1a (Fowler, Noll, Vo): names a content, does not authenticate it. */
+/* FNV-1a (Fowler, Noll, Vo): the tag of a file's content; it need not resist attackers. */
 static uint64_t hash(const char *bytes, size_t length)
 {
     uint64_t value = UINT64_C(0xcbf29ce484222325);
@@ -117,7 +117,7 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
-/* A file that is not a regular one is passed over. */
+/* Skips what is not a regular file. */
 static bool add_file(srv_assets *assets, int folder, const char *name, const char *prefix,
                      char *message, size_t size)
 {
@@ -149,7 +149,7 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     return ok;
 }
 
-/* The same for a file that is served under a name without a suffix. */
+/* Adds a file that is served under a name without a suffix. */
 static bool add_page(srv_assets *assets, int folder, const char *name, const char *path,
                      char *message, size_t size)
 {

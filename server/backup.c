@@ -34,8 +34,8 @@ static void free_backup(void *self)
     he_mem_free(b);
 }
 
-/* The file of one name is written anew, so that what a killed process left goes. -1 with a
- * sentence. */
+/* Replaces an old file of this name, which a killed process may have left. Returns -1 with a
+ * sentence in `message`. */
 static int make_file(const char *folder, char *message, size_t size)
 {
     char path[PATH_MAX], why[ST_SQLITE_MESSAGE];

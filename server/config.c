@@ -245,7 +245,7 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
     return false;
 }
 
-/* The words are parted by '|' in what --help shows. */
+/* The words are separated by '|' in the placeholder that --help shows. */
 bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out)
 {
     const size_t length = strlen(text);
@@ -291,7 +291,7 @@ bool srv_option_is_switch(const srv_option *row)
     return row->kind == SRV_FLAG || row->kind == SRV_ACTION;
 }
 
-/* A list given in one place is not added to that of a place of less weight: it wins over it. */
+/* The first item of a list from one source replaces the items of a source that it overrides. */
 static void begin_list(srv_config *config, const srv_option *row, bool *seen)
 {
     size_t i = (size_t)(row - srv_options);
@@ -329,7 +329,7 @@ static bool read_environment(srv_config *config, char *(*environment)(const char
     return true;
 }
 
-/* "-h" and "-V", which other programs take, too. */
+/* Accepts "-h" and "-V", which are customary. */
 static const char *spelled_out(const char *argument)
 {
     return strcmp(argument, "-h") == 0   ? "--help"
@@ -462,7 +462,7 @@ static bool check(const srv_config *config, char *message, size_t size)
     return true;
 }
 
-/* `file` NULL: none. */
+/* `file` NULL: there is no file. */
 static bool read_places(srv_config *config, const char *file, int argc, char *const *argv,
                         char *(*environment)(const char *name), char *message, size_t size)
 {
@@ -478,7 +478,7 @@ static bool read_places(srv_config *config, const char *file, int argc, char *co
            read_flags(config, argc, argv, message, size);
 }
 
-/* The file that flags or environment name is known when they are read, and weighs less. */
+/* Reads flags and environment twice: they name the file, and they override it. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size)
 {

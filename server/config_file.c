@@ -9,7 +9,7 @@
 
 enum { MOST = 64 * 1024, SOURCE_TEXT = 512 };
 
-/* The whole file with a zero after it; *length leaves that out. */
+/* Loads the whole file with a NUL after it; *length does not count the NUL. */
 static char *load(const char *path, size_t *length, char *message, size_t size)
 {
     FILE *in = fopen(path, "rbe");

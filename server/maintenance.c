@@ -51,7 +51,8 @@ static int restore(const char *folder, const char *file)
 
 /* --- each mesh in turn --- */
 
-/* What is done with a mesh, or with what is left of one. False with a line on stderr. */
+/* Processes a mesh, or what is left of one (`whole` is false). Returns false with a line on
+ * stderr. */
 typedef bool visit(void *context, const st_mesh_info *info, const he_mesh *content, bool whole);
 
 static void stay_open(void *self)
@@ -59,7 +60,7 @@ static void stay_open(void *self)
     (void)self;
 }
 
-/* Says what is wrong with it; what is left goes to `each`. */
+/* Prints the damage and passes what is left to `each`. */
 static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage, visit *each,
                           void *context)
 {
@@ -72,7 +73,7 @@ static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage
     }
 }
 
-/* Of a store of its own, so that one mesh at a time is in memory. */
+/* Opens a store for this mesh alone, so that only one mesh is in memory at a time. */
 static bool visit_in(st_store *store, const st_card *card, visit *each, void *context)
 {
     st_mesh *mesh = NULL;
@@ -80,7 +81,7 @@ static bool visit_in(st_store *store, const st_card *card, visit *each, void *co
     char damage[ST_DAMAGE] = "";
     const st_status status =
         store == NULL ? ST_NO_MEMORY : st_salvage(store, card->id, &mesh, damage);
-    bool good = status == ST_ABSENT; /* it was removed since, by a daemon beside */
+    bool good = status == ST_ABSENT; /* a daemon deleted it meanwhile */
     if (status == ST_DAMAGED ||
         (status == ST_OK && (damage[0] != '\0' || card->damage[0] != '\0'))) {
         visit_damaged(card, mesh, damage[0] != '\0' ? damage : card->damage, each, context);
@@ -109,8 +110,7 @@ static bool visit_mesh(const st_journal *journal, const st_card *card, visit *ea
     return good;
 }
 
-/* An id becomes the name of a file, and a damaged one, or a file that somebody made, may say
- * anything. */
+/* The id becomes a file name. In a damaged or forged file it may be anything. */
 static bool is_id(const char *id)
 {
     return id[0] != '\0' && id[0] != '.' &&
@@ -154,7 +154,7 @@ static void say_fault(void *context, const char *what)
     printf("%s: DAMAGED: %s\n", path, what);
 }
 
-/* A file that is damaged is read all the same, as far as that goes. */
+/* Opens the file and visits its meshes. A damaged file is read as far as possible. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;
@@ -191,7 +191,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 
 /* --- dump --- */
 
-/* A file that was written to its end, or is not there. */
+/* On failure no file is left. */
 static bool write_glb(const char *path, const he_mesh *content)
 {
     char bytes[4096];
@@ -223,8 +223,8 @@ typedef struct dump {
     FILE *list;
 } dump;
 
-/* Ids are letters, digits, '-', '_' and '.': names of files. What is left of a damaged mesh has its
- * revision in the name, so that nobody takes it for the mesh. */
+/* Ids are letters, digits, '-', '_' and '.', and so are valid file names. What is left of a damaged
+ * mesh gets its revision into the name, so that it is not mistaken for the whole mesh. */
 static bool dump_mesh(void *context, const st_mesh_info *info, const he_mesh *content, bool whole)
 {
     const dump *d = context;

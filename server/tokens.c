@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One byte more than a file may have tells that it has too many. */
+/* One byte more than allowed shows that the file is too large. */
 enum { MOST = API_TOKENS_FILE + 1 };
 
 bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t size)

@@ -13,10 +13,10 @@
 
 enum {
     LOG_RING = 8192,
-    STOP_MILLIS = 4000 /* of the five seconds a stop may take */
+    STOP_MILLIS = 4000 /* of the five seconds that a stop may take */
 };
 
-/* The main thread serves nobody, and keeps house until it is told to stop. */
+/* The main thread serves no requests; it does periodic work until a signal stops it. */
 static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *reason)
 {
     const struct timespec second = {.tv_sec = 1};
@@ -32,7 +32,7 @@ static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *
             (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
-    srv_watch_look(&watch, parts); /* a disk that failed in the last second is told too */
+    srv_watch_look(&watch, parts); /* reports a disk that failed in the last second */
 }
 
 static void tell_stop(srv_log *log, const char *reason)
@@ -43,7 +43,7 @@ static void tell_stop(srv_log *log, const char *reason)
     srv_log_end(log, &line);
 }
 
-/* False when work did not end: then nothing that it may use can be freed. */
+/* Returns false if work did not end: then nothing that it may use can be freed. */
 static bool stop(srv_parts *parts, const siginfo_t *reason)
 {
     char text[64];
@@ -103,8 +103,8 @@ int srv_daemon_run(const srv_started *started)
         srv_notify(text);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {
-            /* It is in the middle of its work, on memory that must stay. The journal is left as by
-             * a kill, which it is made for. */
+            /* Threads are still working on memory that must stay. The journal is left as after a
+             * kill, which it is designed for. */
             srv_log_free(parts.log);
             _exit(1);
         }

@@ -12,7 +12,7 @@
 
 enum { MISUSE = 2 };
 
-/* The third is not of the C standard; the systems that hedged runs on all have it. */
+/* The third parameter is not in the C standard, but all systems that hedged runs on have it. */
 int main(int argc, char **argv, char **environment)
 {
     srv_config config;

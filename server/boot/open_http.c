@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Whoever reaches the daemon by the address it listens on names that as the host. */
+/* A client that connects to the address of `listen` may name that address as the host. */
 static void allow_own_host(srv_parts *parts, const srv_address *address)
 {
     srv_names *hosts = &parts->policy.hosts;
@@ -17,8 +17,9 @@ static void allow_own_host(srv_parts *parts, const srv_address *address)
     }
 }
 
-/* Programs wait for the first line. The second is for a reader at a terminal: it names localhost
- * where the daemon listens on all addresses, since 0.0.0.0 in a browser is a Host that is refused.
+/* Programs wait for the first line. The second is for a person at a terminal: it names localhost if
+ * the daemon listens on all addresses, since a browser would send 0.0.0.0 as the Host, which is
+ * refused.
  */
 static void tell_ready(const srv_parts *parts)
 {
@@ -59,7 +60,7 @@ bool srv_open_certificates(srv_parts *parts)
            srv_open_failed(parts, message);
 }
 
-/* The address with the port that was taken. */
+/* Writes the address with the port that is in use. */
 static void name_url(srv_parts *parts, srv_address *address)
 {
     char text[SRV_ADDRESS_TEXT];

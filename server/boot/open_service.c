@@ -22,7 +22,7 @@ static bool load_page(srv_parts *parts)
     if (parts->assets == NULL) {
         return srv_open_failed(parts, "no memory for the page");
     }
-    /* Asked for by name, the page must be there; otherwise serving without it is fine. */
+    /* A page that the user configured must exist; otherwise the daemon serves without it. */
     return message[0] == '\0' || parts->config->web[0] == '\0' || srv_open_failed(parts, message);
 }
 

@@ -7,8 +7,8 @@
 #include "server/version.h"
 
 enum {
-    SHORT_THREADS = 2, /* of the pool, beside as many as there may be jobs: thread_pool.h */
-    MAKER_QUEUE = 1024 /* pieces of answers; beyond it workers make them */
+    SHORT_THREADS = 2, /* threads of the pool in addition to the maximum of jobs: thread_pool.h */
+    MAKER_QUEUE = 1024 /* pieces of answers in the queue; beyond that workers make them */
 };
 
 bool srv_open_failed(const srv_parts *parts, const char *why)
@@ -30,7 +30,7 @@ static bool open_threads(srv_parts *parts)
            srv_open_failed(parts, "no memory or threads to start");
 }
 
-/* *made: the store is new, so that samples may be put into it. */
+/* Sets *made if the store is new, so that samples may be added. */
 static bool open_journal(const srv_parts *parts, st_journal *out, bool *made)
 {
     const char *folder = srv_config_folder(parts->config);

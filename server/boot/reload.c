@@ -28,7 +28,7 @@ static bool reload_tokens(srv_parts *parts, char *message, size_t size)
     return true;
 }
 
-/* The settings that a running daemon can change. */
+/* Can a running daemon change this setting? */
 static bool is_reloaded(const srv_option *row)
 {
     static const char *const names[] = {"log", "log-format", "log-level", "slow"};
@@ -51,8 +51,8 @@ static bool differs(const srv_option *row, const srv_config *one, const srv_conf
     return differ;
 }
 
-/* Only a file can have changed since the start, but what flags and variables say still weighs
- * more. */
+/* Reads all settings again. Only the file can have changed since the start, and flags and variables
+ * still override it. */
 static bool reload_settings(srv_parts *parts, char *message, size_t size)
 {
     const srv_started *started = parts->started;
@@ -103,7 +103,7 @@ static bool (*const reloads[])(srv_parts *parts, char *message, size_t size) = {
     reload_certificates,
 };
 
-/* systemd wants to know when it began, so that it can tell this reload from one before. */
+/* systemd needs the start time to distinguish this reload from an earlier one. */
 static void tell_systemd_begun(void)
 {
     char text[64];
@@ -120,7 +120,7 @@ bool srv_reload(void *context, char *message, size_t size)
     for (size_t i = 0; i < sizeof reloads / sizeof *reloads; i++) {
         if (!reloads[i](parts, why, sizeof why)) {
             srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; what was in force before still is", why);
-            if (ok) { /* the first is told */
+            if (ok) { /* the message is that of the first failure */
                 snprintf(message, size, "%s", why);
             }
             ok = false;

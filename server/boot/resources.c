@@ -20,7 +20,7 @@ size_t srv_cores(void)
     return online < 1 ? 1 : (size_t)online;
 }
 
-/* Connections are descriptors: as many as the system lets this process have. */
+/* Each connection needs a descriptor: raises their limit as far as the system allows. */
 static size_t open_files(void)
 {
     struct rlimit files;
@@ -35,7 +35,7 @@ static size_t open_files(void)
     return (size_t)files.rlim_cur;
 }
 
-/* Some sockets are kept for answering 503 to connections beyond the limit. */
+/* A few descriptors are reserved to answer 503 to connections over the limit. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options)
 {
     size_t files = open_files();

@@ -14,8 +14,8 @@ static uint64_t processor_micros(void)
     return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
 }
 
-/* A line when the disk is found full, when it has space again, and when it failed. What began and
- * ended between two looks is told all the same; what ended and began again is not. */
+/* Logs when the disk is found full, when it has space again, and when it failed. What began and
+ * ended between two checks is logged, too; what ended and began again is not. */
 static void tell_health(srv_log *log, const st_health *before, const st_health *now,
                         const char *folder)
 {
@@ -47,7 +47,7 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     }
 }
 
-/* Within the time that systemd waits, it is told twice that a worker still answers. */
+/* Notifies systemd twice within its timeout if a worker still answers. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();

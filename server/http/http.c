@@ -15,7 +15,7 @@
 
 _Static_assert(SRV_MAX_POOLED + 4 * 1024 <= SRV_BUFFER_BYTES, "a head that passes leaves room");
 
-/* --- what libmicrohttpd calls --- */
+/* --- callbacks of libmicrohttpd --- */
 
 static void *request_begin(void *context, const char *uri, struct MHD_Connection *connection)
 {
@@ -47,7 +47,7 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
     }
 }
 
-/* What libmicrohttpd would decode, the router decodes a segment at a time. */
+/* Keeps percent-escapes, because the router decodes the path segment by segment. */
 static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text)
 {
     (void)context;
@@ -55,8 +55,8 @@ static size_t keep_escapes(void *context, struct MHD_Connection *connection, cha
     return strlen(text);
 }
 
-/* One above the most that its address may have is answered that, once, and closed. The connections
- * of a trusted proxy are those of all its clients. */
+/* A connection over the maximum of its address gets that answer once and is closed. Connections of
+ * a trusted proxy are not counted, because they belong to all its clients. */
 static void count_peer(srv_http *http, srv_connection *c)
 {
     size_t count;
@@ -91,7 +91,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
         api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
-            /* Nothing unchecked is served: libmicrohttpd reads the end at once. */
+            /* Bytes that cannot be checked are not served: libmicrohttpd sees the end of the stream
+             * at once. */
             shutdown(fd, SHUT_RDWR);
         }
     } else {
@@ -107,8 +108,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     }
 }
 
-/* Nobody beyond even those that are answered 503, nobody for whom there is no memory, and nobody
- * once the server stops. */
+/* Refuses connections beyond those that are answered 503, connections for which there is no memory,
+ * and all connections when the server is stopping. */
 static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
 {
     (void)peer;
@@ -127,7 +128,8 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     return MHD_NO;
 }
 
-/* A handshake asks for the certificate, perhaps twice. It shows the pair that it holds already. */
+/* gnutls calls it for each handshake, perhaps twice. Returns the pair to which the connection holds
+ * a reference. */
 static int show_certificate(gnutls_session_t session, const struct gnutls_cert_retr_st *info,
                             gnutls_pcert_st **chain, unsigned int *length,
                             gnutls_ocsp_data_st **ocsp, unsigned int *ocsp_length,
@@ -162,10 +164,12 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         flags |= MHD_USE_TLS;
     }
     struct MHD_OptionItem numbers[] = {
-        /* Strict, it would refuse with pages of its own what http_syntax.h has refused already. */
+        /* In strict mode it would answer with pages of its own what http_syntax.h has refused
+         * already. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
-        /* Divided among the workers, which connections are not: each may hold them all. */
+        /* libmicrohttpd divides the limit by the number of workers, but one worker may get all
+         * connections. */
         {MHD_OPTION_CONNECTION_LIMIT, (intptr_t)(o->max_sockets * o->workers), NULL},
         {MHD_OPTION_CONNECTION_TIMEOUT, (intptr_t)o->deadlines.idle + 1, NULL},
         {MHD_OPTION_LISTEN_BACKLOG_SIZE, SRV_BACKLOG, NULL},
@@ -174,7 +178,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         {MHD_OPTION_END, 0, NULL},
     };
     struct MHD_OptionItem *last = numbers + sizeof numbers / sizeof *numbers - 3;
-    if (o->workers > 1) { /* a pool of one is not a pool */
+    if (o->workers > 1) { /* the library does not accept a pool of one */
         *last++ = (struct MHD_OptionItem){MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)o->workers, NULL};
     }
     if (o->listening >= 0) {
@@ -185,7 +189,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         MHD_OPTION_SOCK_ADDR, &o->address.socket.any, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes,
         NULL, MHD_OPTION_URI_LOG_CALLBACK, request_begin, http, MHD_OPTION_NOTIFY_COMPLETED,
         request_completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http,
-        /* The last ones: what follows an end is not read. */
+        /* These come last, because without TLS the list ends here. */
         tls ? MHD_OPTION_HTTPS_CERT_CALLBACK2 : MHD_OPTION_END, show_certificate,
         MHD_OPTION_HTTPS_PRIORITIES, srv_tls_priorities, MHD_OPTION_END);
 }
@@ -214,7 +218,8 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
     http->deadlines = srv_deadlines_new(&http->options.deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
-    /* Each worker may have taken one for a connection that is not yet, or no longer, counted. */
+    /* Each worker may have taken a buffer for a connection that is not yet, or no longer,
+     * counted. */
     const size_t most = options->max_sockets + options->workers;
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
@@ -254,13 +259,13 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     if (http == NULL) {
         return true;
     }
-    /* From here on accept_policy lets nobody in. MHD_quiesce_daemon is not called for that: it
-     * takes the listening socket out of the workers' epoll sets while they may do so themselves,
-     * and the library aborts where both try. */
+    /* From now on accept_policy refuses all connections. MHD_quiesce_daemon cannot do that: it
+     * removes the listening socket from the workers' epoll sets while they may do the same, and the
+     * library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
     srv_live_stop(http->live);
-    /* At the deadline only those that are suspended still count. */
+    /* After the deadline only suspended requests are waited for. */
     if (!srv_gate_close(&http->gate, millis)) {
         return false;
     }

@@ -12,14 +12,15 @@
 #include <sys/socket.h>
 
 enum {
-    ANSWER_BLOCK = 64 * 1024, /* asked of a reader at once, into memory of libmicrohttpd */
-    LIVE_BLOCK = 1024         /* where thousands wait; used by HTTP/1.0 only */
+    /* bytes requested from a reader at once, in memory of libmicrohttpd */
+    ANSWER_BLOCK = 64 * 1024,
+    LIVE_BLOCK = 1024 /* small, as there may be thousands; used for HTTP/1.0 only */
 };
 
-/* --- what is sent piece by piece --- */
+/* --- answers sent piece by piece --- */
 
-/* What a reader of libmicrohttpd returns for bytes, for the end (0) and for a failure. An end
- * before the length that was announced is one. */
+/* Returns what libmicrohttpd expects of a reader: bytes, its code for the end (0) or for a failure.
+ * An end before the announced length is a failure. */
 static ssize_t pulled(srv_request *r, int64_t got)
 {
     int64_t length = api_answer_of(r->exchange)->length;
@@ -43,8 +44,8 @@ static void widen(srv_request *r)
     }
 }
 
-/* A client that was sent so much has taken some of it: this is more than waits for one that takes
- * nothing. */
+/* When this much was sent, the client must have read some of it, because it is more than the
+ * buffers hold. */
 static void widen_after(srv_request *r, uint64_t position)
 {
     if (position >= SRV_SEND_BUFFER) {
@@ -69,7 +70,7 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
-/* By the thread that makes a piece ahead, while the request is suspended. */
+/* Called by the thread that makes a piece ahead, while the request is suspended. */
 static int64_t read_ahead(void *context, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -80,7 +81,7 @@ static int64_t read_ahead(void *context, char *buffer, size_t size)
     return got;
 }
 
-/* Takes what another thread makes. */
+/* Takes the pieces that another thread makes. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -105,7 +106,7 @@ static void resume_stream(srv_stream *stream)
     MHD_resume_connection(r->connection);
 }
 
-/* The same for an answer that goes on. Once the stream is aside the request is another's. */
+/* Reads from a stream. Once the stream is aside, another thread owns the request. */
 static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t size)
 {
     (void)position;
@@ -120,7 +121,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
-        /* Only the request's headers are needed of the buffer. */
+        /* While waiting, the request needs only its headers in the buffer. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_live_aside(&r->stream);
         return 0;
@@ -142,15 +143,15 @@ void srv_answer_refuse(srv_request *r, int code, const char *text)
     r->step = API_READY;
 }
 
-/* The answer as it is to be sent: the exchange's, or what was refused without one. Valid until the
- * request ends. */
+/* Describes the answer: the exchange's, or a refusal without an exchange. The description is valid
+ * until the request ends. */
 static void describe(srv_request *r, srv_wire *wire)
 {
     *wire = (srv_wire){.close = r->close};
     if (r->exchange != NULL) {
         const api_answer *answer = api_answer_of(r->exchange);
         srv_wire_answer(wire, answer);
-        /* With all of the body read there is nothing left to be mistaken for a request. */
+        /* When the whole body was read, no rest of it can be mistaken for a request. */
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
@@ -181,8 +182,9 @@ static bool is_streamed(const srv_request *r)
     return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
 }
 
-/* Making a piece takes up to a millisecond. A worker that serves a few downloads makes them itself,
- * which saves a way through the pool; a thousand would keep it from all else for a second. */
+/* Making a piece takes up to a millisecond. With a few downloads the worker makes them itself,
+ * which saves the detour through the pool; a thousand would keep it from other work for a
+ * second. */
 static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);
@@ -203,7 +205,7 @@ static struct MHD_Response *response_of(srv_request *r, const srv_wire *wire)
                                                                         : pull,
                                                      r, NULL);
     } else {
-        /* The bytes are the exchange's and live until the request has completed. */
+        /* The exchange owns the bytes, which live until the request has completed. */
         response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
                                                    MHD_RESPMEM_PERSISTENT);
     }
@@ -238,11 +240,11 @@ bool srv_answer_send(srv_request *r)
     srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
                          st_clock_micros());
     if (is_live(r)) {
-        /* Its silence is no fault; the connection is closed after it. */
+        /* A stream may be silent without limit; the connection is closed after it. */
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     }
     if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
-        widen(r); /* nothing is saved by not sending it */
+        widen(r); /* the answer is in memory already, so a small send buffer would save nothing */
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;
@@ -256,9 +258,9 @@ bool srv_answer_send(srv_request *r)
     return queued == MHD_YES;
 }
 
-/* libmicrohttpd takes no response while a body is arriving. So that a client who sends without end
- * learns why it is cut off, the answer is written past libmicrohttpd; closing it then drains
- * the rest of the body. */
+/* libmicrohttpd accepts no response while a body is arriving. So that a client that sends without
+ * end learns why it is cut off, the answer is written directly to the socket; closing the
+ * connection then drains the rest of the body. */
 void srv_answer_cut_off(srv_request *r)
 {
     srv_wire wire;

@@ -17,43 +17,45 @@
 
 enum {
     REST_MICROS = 1000 * 1000,
-    LOOK_MILLIS = 500, /* a worker with idle buffers looks this often */
-    AT_ONCE = 32,      /* buffers given back before others are served again */
-    KEPT = 64,         /* free ones that keep their pages for long, for the next connections */
+    LOOK_MILLIS = 500, /* milliseconds between checks of a worker that has idle buffers */
+    AT_ONCE = 32,      /* buffers returned to the system before requests are served again */
+    KEPT = 64,         /* free buffers that keep their pages for the next connections */
     LANES = 64         /* as many workers as --workers allows */
 };
 
-/* A buffer is FREE, or belongs to a connection: USED, or in its worker's line of idle ones, or not
- * in it because its pages were given back. */
+/* A buffer is FREE or belongs to a connection. Then it is USED, IDLE (in the list of its worker),
+ * or GIVEN (not in the list, because its pages were returned). */
 typedef enum state { FREE, USED, IDLE, GIVEN } state;
 
 struct lane;
 
 typedef struct buffer {
     state state;
-    uint32_t next, previous; /* in the list of free ones, or in the worker's line */
-    struct lane *lane;       /* of the worker that took it */
+    uint32_t next, previous; /* in the list of free buffers or in the worker's list */
+    struct lane *lane;       /* list of the worker that took it */
     uint64_t since;          /* when it became idle */
-    size_t held;             /* bytes, as they are counted */
+    size_t held;             /* bytes counted for it */
 } buffer;
 
-/* A worker's idle buffers, in the order in which they became idle. Its own, without a lock; what
- * connections are left when it has ended are closed by the thread that stops the server. */
+/* The idle buffers of a worker, in the order in which they became idle. Only the worker uses the
+ * list, without a lock; connections left when the worker has ended are closed by the thread that
+ * stops the server. */
 typedef struct lane {
     uint32_t first, last;
 } lane;
 
 static struct {
-    char *memory; /* NULL: nothing is reserved */
-    size_t bytes; /* of one */
+    char *memory; /* NULL: nothing was reserved */
+    size_t bytes; /* size of one buffer */
     size_t page;
     uint32_t most;
     buffer *buffers;
     lane lanes[LANES];
-    pthread_mutex_t lock; /* of what follows */
+    pthread_mutex_t lock; /* protects the members below */
     size_t lanes_used;
-    uint32_t warm, cold, fresh; /* lists of free ones with and without pages; how many ever were */
-    uint64_t put;               /* when one became warm last */
+    /* lists of free buffers with and without pages; number of buffers ever used */
+    uint32_t warm, cold, fresh;
+    uint64_t put; /* when a buffer last joined the warm list */
     _Atomic size_t warm_count;
 } all = {.lock = PTHREAD_MUTEX_INITIALIZER, .warm = SRV_NO_BUFFER, .cold = SRV_NO_BUFFER};
 
@@ -80,7 +82,7 @@ bool srv_buffers_reserve(size_t most)
         he_mem_free(all.buffers);
         return false;
     }
-    /* A huge page would bring back the pages beside the one that is written. */
+    /* A huge page would allocate the pages beside the one that is written. */
     madvise(memory, most * all.bytes, MADV_NOHUGEPAGE);
     all.memory = memory;
     return true;
@@ -92,7 +94,7 @@ static void count(buffer *b, size_t held)
     b->held = held;
 }
 
-/* --- the line of idle ones, by the worker that has it --- */
+/* --- the list of idle buffers, used by its worker only --- */
 
 static void leave_line(uint32_t i)
 {
@@ -130,7 +132,7 @@ void srv_buffer_use(uint32_t i)
     count(&all.buffers[i], all.bytes);
 }
 
-/* --- giving back --- */
+/* --- returning pages to the system --- */
 
 static bool is_zero(const char *page, size_t size)
 {
@@ -161,7 +163,7 @@ static int sooner(int timeout)
     return timeout < 0 || timeout > LOOK_MILLIS ? LOOK_MILLIS : timeout;
 }
 
-/* --- lists of free ones, under the lock --- */
+/* --- lists of free buffers, under the lock --- */
 
 static void push(uint32_t *list, uint32_t i)
 {
@@ -176,8 +178,8 @@ static uint32_t pop(uint32_t *list)
     return i;
 }
 
-/* Give back pages of free ones beyond those that are kept, a second after the last connection
- * ended. How many milliseconds the worker may wait at most before it has to look again. */
+/* Returns the pages of free buffers beyond the number to keep, a second after the last connection
+ * ended. Returns the milliseconds that the worker may wait before the next check. */
 static int give_back_free(int timeout)
 {
     if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
@@ -202,7 +204,7 @@ static int give_back_free(int timeout)
     return more ? 0 : sooner(timeout);
 }
 
-/* How many milliseconds the worker may wait at most before it has to look again. */
+/* Returns the milliseconds that the worker may wait before the next check. */
 static int give_back_idle(int timeout)
 {
     if (own == NULL || own->first == SRV_NO_BUFFER) {
@@ -222,7 +224,7 @@ static int give_back_idle(int timeout)
     return own->first == SRV_NO_BUFFER ? timeout : 0;
 }
 
-/* --- what libmicrohttpd calls --- */
+/* --- the functions that libmicrohttpd calls --- */
 
 uint32_t srv_buffer_taken(void)
 {
@@ -240,7 +242,7 @@ static void *take(void)
     }
     uint32_t i = SRV_NO_BUFFER;
     if (own == NULL) {
-        /* A server was started and stopped in this process again and again. */
+        /* More threads than lists: servers were started and stopped many times in this process. */
     } else if (all.warm != SRV_NO_BUFFER) {
         i = pop(&all.warm);
         atomic_fetch_sub_explicit(&all.warm_count, 1, memory_order_relaxed);
@@ -282,11 +284,11 @@ static void put(uint32_t i)
 typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
 typedef int (*unmap_function)(void *, size_t);
 
-/* Before anything is reserved the program may not even have begun, and a sanitizer not be ready to
- * watch it: then neither is called, and the system is asked directly. */
+/* Without a reservation the program may not even have begun, and a sanitizer may not be
+ * initialized: so the system call is made directly, without instrumentation. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
-/* The next definition after this program's: the C library's, or a sanitizer's before it. */
+/* Finds the next definition after this program's: the C library's, or a sanitizer's before it. */
 static void *next_definition(_Atomic(void *) *kept, const char *name)
 {
     void *found = atomic_load_explicit(kept, memory_order_acquire);
@@ -338,7 +340,7 @@ UNWATCHED int munmap(void *address, size_t length)
     return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
 }
 
-/* epoll_pwait without signals is the same call. */
+/* epoll_pwait without a signal mask does exactly what epoll_wait does. */
 int epoll_wait(int set, struct epoll_event *events, int most, int timeout)
 {
     return epoll_pwait(set, events, most, give_back_idle(give_back_free(timeout)), NULL);

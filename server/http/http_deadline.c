@@ -22,10 +22,10 @@
 
 enum {
     SWEEP_MILLIS = 500,
-    PAUSE_MILLIS = 10, /* after SRV_CLOSES */
+    PAUSE_MILLIS = 10, /* pause after SRV_CLOSES */
     CROWDED_SECONDS = 2,
-    DRAINS = 64,          /* sockets drained at once; further ones are just closed */
-    DRAIN_BYTES = 1 << 20 /* of one socket */
+    DRAINS = 64,          /* sockets drained at one time; further ones are closed without it */
+    DRAIN_BYTES = 1 << 20 /* per socket */
 };
 
 #define SECOND       UINT64_C(1000000)
@@ -39,25 +39,25 @@ typedef struct drain {
 
 struct srv_deadlines {
     srv_deadline_options options;
-    pthread_mutex_t lock; /* of the list, the drains and `ending` */
+    pthread_mutex_t lock; /* protects the list, the drains and `ending` */
     srv_connection *first;
-    srv_connection *next; /* the sweep goes on with it; NULL: none is under way */
+    srv_connection *next; /* where the sweep continues; NULL: no sweep is in progress */
     _Atomic size_t count;
     drain drains[DRAINS];
     size_t drain_count;
     bool ending;
     int wake; /* eventfd */
     pthread_t thread;
-    /* The thread's own. */
+    /* Used by the thread only. */
     uint64_t swept;  /* when the last sweep began */
-    uint64_t paused; /* until when none is closed */
+    uint64_t paused; /* nothing is closed before this time */
 };
 
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
 {
     if (c != NULL) {
-        /* The beginning first: whoever reads the new stage, or that nothing came in it yet, reads
-         * its beginning too. */
+        /* Written first, so that a thread that reads the new stage, or zero bytes, also reads the
+         * new start time. */
         atomic_store_explicit(&c->since, now, memory_order_relaxed);
         atomic_store_explicit(&c->bytes, 0, memory_order_release);
         atomic_store_explicit(&c->stage, (int)stage, memory_order_release);
@@ -140,8 +140,8 @@ static void count_kept(srv_connection *c, uint64_t kept)
     c->kept = kept;
 }
 
-/* What the kernel holds of an answer, with its own records; 0 where it does not say. A Unix socket
- * queues nothing of its own: all is with the reader. */
+/* Bytes of an answer in the kernel, with its bookkeeping; 0 if unknown. A Unix socket has no queue
+ * of its own: everything is in the reader's. */
 static uint64_t kept_by_kernel(const srv_connection *c)
 {
     uint32_t info[SK_MEMINFO_VARS] = {0};
@@ -151,9 +151,9 @@ static uint64_t kept_by_kernel(const srv_connection *c)
                : 0;
 }
 
-/* What has arrived of all that was ever sent. What waits in a Unix socket (`outstanding`) is told
- * with the kernel's own records, so that less seems to have arrived while more waits: it never
- * counts backwards. False where the kernel does not say. */
+/* Finds how many of all bytes ever sent have arrived. For a Unix socket, `outstanding` includes the
+ * kernel's bookkeeping, so the number may seem to fall while more is waiting: it is never reduced.
+ * Returns false if the kernel does not report it. */
 static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
 {
     struct tcp_info info = {0};
@@ -169,7 +169,7 @@ static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
     return told;
 }
 
-/* May bytes of an answer wait? While IDLE, no longer than until once none did. */
+/* May bytes of an answer be waiting? In IDLE only until none was found waiting once. */
 static bool may_wait(const srv_connection *c, int stage, uint64_t since)
 {
     return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
@@ -196,8 +196,9 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
                                    c->acked, now);
 }
 
-/* Has the client closed before its request was complete? Seen twice without a move in between: what
- * was read together with the end may still be on its way through the handler. */
+/* Has the client closed its side before its request was complete? It must be seen twice without
+ * progress in between, because the handler may still be working on bytes that arrived together with
+ * the end. */
 static bool is_request_cut(srv_connection *c)
 {
     char byte;
@@ -215,7 +216,7 @@ static bool is_request_cut(srv_connection *c)
     return again;
 }
 
-/* It is closed for taking too long, which the next sweeps may find again. */
+/* Counts a connection that is closed for being too slow. Later sweeps may find it again. */
 static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
 {
     const int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
@@ -229,12 +230,12 @@ static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
     c->late = true;
 }
 
-/* Has the connection to be closed? Then it is. */
+/* Closes the connection if it has to be closed, and returns whether it did. */
 static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t now)
 {
     bool stuck = is_answer_stuck(c, &d->options, now);
     if (stuck) {
-        /* Without this the system goes on sending what is in its buffer. */
+        /* Without this the kernel would go on sending what is in its buffer. */
         struct linger reset = {.l_onoff = 1, .l_linger = 0};
         setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
         count_late(d, c, true);
@@ -247,9 +248,9 @@ static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t 
     return true;
 }
 
-/* Begins a sweep when it is time for one, and goes on with the one that is under way. While the
- * lock is held no socket of the list is closed, so none can be another's by now. Returns how many
- * milliseconds there is nothing to do. */
+/* Begins a sweep when one is due, or continues the one in progress. While the lock is held no
+ * socket of the list is closed, so no descriptor can belong to another socket. Returns the
+ * milliseconds until there is something to do. */
 static int sweep(srv_deadlines *d)
 {
     uint64_t now = st_clock_micros();
@@ -277,7 +278,7 @@ static int sweep(srv_deadlines *d)
     return d->next == NULL ? SWEEP_MILLIS : 0;
 }
 
-/* True when there is nothing more to wait for. */
+/* Returns true when the drain is finished. */
 static bool drain_once(drain *one, uint64_t now)
 {
     char buffer[16 * 1024];
@@ -323,7 +324,7 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* Somebody else's wake: the list is looked at anyway. */
+            /* Nothing to read: the list is checked anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);
@@ -337,7 +338,7 @@ static void wake(srv_deadlines *d)
 {
     uint64_t one = 1;
     if (write(d->wake, &one, sizeof one) < 0) {
-        /* The counter is full, so the thread is awake. */
+        /* The counter is full, so the thread will wake up anyway. */
     }
 }
 
@@ -407,7 +408,7 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     return c;
 }
 
-/* A duplicate keeps the connection open after its owner has closed the socket. */
+/* Works on a duplicate, which keeps the connection open after its owner has closed the socket. */
 static void begin_drain(srv_deadlines *d, int socket)
 {
     if (d->drain_count == DRAINS || d->ending) {

@@ -12,11 +12,12 @@
 #include <strings.h>
 
 enum {
-    SWALLOW = 256 * 1024, /* of a refused body, rather than close the connection */
-    WORKER_MICROS = 20000 /* that a worker spends on a read, which then goes to the pool */
+    SWALLOW = 256 * 1024, /* bytes of a refused body that are skipped to keep the connection open */
+    WORKER_MICROS = 20000 /* that a worker spends on a read before it goes to the pool */
 };
 
-/* Where a function of this file says nothing else, false has the connection closed. */
+/* Unless the comment says otherwise, functions of this file return false to close the
+ * connection. */
 
 /* --- waiting --- */
 
@@ -35,7 +36,7 @@ static bool begin_wait(srv_request *r, srv_state why)
     return allowed;
 }
 
-/* The worker serves its other connections before it comes back to this one. */
+/* The worker serves its other connections before it returns to this one. */
 static bool give_way(srv_request *r)
 {
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
@@ -46,7 +47,7 @@ static bool give_way(srv_request *r)
     return true;
 }
 
-/* D1. Suspended before the hold is known to others: from then on it may be resumed. */
+/* D1. Suspends first: as soon as the wait is registered, another thread may resume the request. */
 static bool answer_when_durable(srv_request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
@@ -77,7 +78,7 @@ static bool answer_held(srv_request *r)
     return srv_answer_send(r);
 }
 
-/* The exchange has become a job: the client is answered by another one. */
+/* The exchange becomes a job: another exchange answers the client. */
 static void detach(srv_request *r)
 {
     api_exchange *answer = api_detach(r->exchange);
@@ -88,7 +89,7 @@ static void detach(srv_request *r)
     }
 }
 
-/* May the worker go on with a read, or do its other connections wait for too long? */
+/* May the worker continue a read, or have its other connections waited too long? */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -97,7 +98,7 @@ static bool is_short(void *context, const char *phase, double done)
     return st_clock_micros() < r->work_until;
 }
 
-/* Is the client still waiting, and may it? */
+/* Is the client still there, and is there time left? */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -128,7 +129,7 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* a worker comes back to it */
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* a worker will return to it */
     MHD_resume_connection(r->connection);
 }
 
@@ -155,8 +156,8 @@ static bool begin_work(srv_request *r)
 
 /* --- reading --- */
 
-/* Did its bytes turn out to be no request (http_syntax.h)? What libmicrohttpd reads then ends with
- * something else than the client sent. */
+/* Are the bytes no valid request (http_syntax.h)? Then libmicrohttpd parses an ending that the
+ * client did not send. */
 static bool is_faulty(const srv_request *r, api_problem *problem)
 {
     return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
@@ -175,7 +176,7 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
     return MHD_YES;
 }
 
-/* False with r->refusal filled. */
+/* Returns false with r->refusal filled. */
 static bool find_client(srv_request *r, const srv_head *head)
 {
     snprintf(r->client.address, sizeof r->client.address, "%s",
@@ -192,7 +193,8 @@ static api_metrics *metrics_of(const srv_request *r)
     return api_metrics_of(r->http->options.service);
 }
 
-/* Fills r->refusal, and r->close where the connection is in the way rather than the request. */
+/* Returns false with r->refusal filled, and with r->close set if the reason is the connection
+ * rather than the request. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     srv_http *http = r->http;
@@ -211,8 +213,8 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     return srv_admit(http->options.policy, head, framing, &r->client, &r->cors, &r->refusal);
 }
 
-/* The values of headers are libmicrohttpd's, which keeps them until the request has completed, or
- * those of r->joined. The exchange is freed, or has become a job that has copies, before that. */
+/* The values of headers belong to libmicrohttpd, which keeps them until the request has completed,
+ * or to r->joined. Before that the exchange is freed, or has become a job that copied them. */
 static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {
@@ -239,8 +241,8 @@ static void begin_exchange(srv_request *r, const srv_head *head, const srv_frami
     }
 }
 
-/* The answer is known while the body is not here. A small one is let in and forgotten, so that the
- * connection can be used again; a client that asks before it sends hears at once. */
+/* The answer is known before the body arrived. A small body is read and discarded, so that the
+ * connection can be used again; a client that waits for 100 Continue gets the answer at once. */
 static bool answer_early(srv_request *r, bool expects)
 {
     if (r->whole || (!expects && r->announced <= SWALLOW)) {
@@ -287,7 +289,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     bool known = find_client(r, &head);
     if (is_faulty(r, &r->refusal) ||
         !srv_framing_read(&head, r->client.scheme == SRV_SCHEME_HTTPS, &framing, &r->refusal)) {
-        /* Where the body ends is not known, so it cannot be passed over. */
+        /* The end of the body is unknown, so it cannot be skipped. */
         r->step = API_READY;
         r->announced = UINT64_MAX;
         return answer_early(r, true);
@@ -297,7 +299,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     r->path = framing.path;
     char *mark = strchr(r->target, '?');
     if (mark != NULL) {
-        *mark = '\0'; /* now the path ends where the query begins */
+        *mark = '\0'; /* ends the path where the query begins */
     }
     bool ok = known && admit(r, &head, &framing);
     if (ok && r->cors != NULL && strcmp(method, "OPTIONS") == 0 &&
@@ -314,7 +316,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
-/* What is swallowed of a body counts for its client too. */
+/* Skipped bytes of a body count against the client's limit, too. */
 static void charge(const srv_request *r, uint64_t bytes)
 {
     if (r->exchange != NULL) {
@@ -331,7 +333,7 @@ static void refuse_fault(srv_request *r)
     r->socket->drain = true;
 }
 
-/* `size` goes down to what of the bytes is to come again. */
+/* Reduces `size` to the bytes that must be passed again. */
 static bool read_body(srv_request *r, const char *bytes, size_t *size)
 {
     if (is_faulty(r, NULL)) {

@@ -4,12 +4,12 @@
 
 #include <string.h>
 
-/* The lines of one header: how many, and their bytes with a comma or a 0 after each. */
+/* Of all lines of one header: their number, and their bytes with a comma or a NUL after each. */
 typedef struct line_sum {
     size_t count, bytes;
 } line_sum;
 
-/* Returns what follows the joined value. */
+/* Returns the position after the joined value. */
 static char *join(const srv_head *head, api_request_header header, char *out)
 {
     for (size_t i = 0; i < head->field_count; i++) {

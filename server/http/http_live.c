@@ -14,12 +14,12 @@ enum { GONE_AT_ONCE = 64, LONGEST_MILLIS = 60 * 1000 };
 
 struct srv_live {
     uint64_t heartbeat; /* microseconds */
-    int watch;          /* an epoll set: the streams' sockets, and `changed` */
-    int changed;        /* an eventfd, which wakes the thread */
+    int watch;          /* an epoll set of the streams' sockets and `changed` */
+    int changed;        /* an eventfd that wakes the thread */
     pthread_mutex_t lock;
     pthread_t thread;
-    srv_stream *first, *last; /* aside, in the order of their deadlines */
-    srv_stream *ready;        /* to be resumed */
+    srv_stream *first, *last; /* streams that are aside, in the order of their deadlines */
+    srv_stream *ready;        /* streams to resume */
     bool stopping, ending;
 };
 
@@ -65,7 +65,8 @@ static void ready_due(srv_live *live)
     }
 }
 
-/* Streams are taken out of the set under the lock, so those it names under the lock are there. */
+/* Marks streams whose clients are gone. Streams are removed from the set under the lock, so those
+ * that epoll names while the lock is held still exist. */
 static void ready_gone(srv_live *live)
 {
     struct epoll_event events[GONE_AT_ONCE];
@@ -84,7 +85,7 @@ static void ready_gone(srv_live *live)
     }
 }
 
-/* Until a stream is ready or its client has gone; for no longer than the first deadline. */
+/* Waits until a stream is ready, a client is gone, or the first deadline. */
 static void wait_for_change(srv_live *live)
 {
     struct pollfd watched = {.fd = live->watch, .events = POLLIN};
@@ -100,7 +101,7 @@ static void wait_for_change(srv_live *live)
     ready_gone(live);
 }
 
-/* A stream that was resumed may be gone at once. */
+/* Resumes each ready stream; afterwards it must not be touched, because it may be freed at once. */
 static void resume_all(srv_live *live)
 {
     srv_stream *ready = live->ready;
@@ -133,7 +134,7 @@ static void *run(void *context)
 static void wake_thread(srv_live *live)
 {
     uint64_t one = 1;
-    (void)!write(live->changed, &one, sizeof one); /* full, it is awake */
+    (void)!write(live->changed, &one, sizeof one); /* the counter is full: the thread is awake */
 }
 
 static void release(srv_live *live)
@@ -205,7 +206,8 @@ void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source
 {
     *stream = (srv_stream){
         .live = live, .source = source, .idle = idle, .resume = resume, .socket = socket};
-    /* Edge triggered: it is said once. Not watched, a dead client shows at the second heartbeat. */
+    /* Edge-triggered: it is reported once. If the socket cannot be watched, a dead client is
+     * noticed at the second heartbeat. */
     struct epoll_event closed = {.events = EPOLLRDHUP | EPOLLET, .data.ptr = stream};
     if (socket >= 0 && epoll_ctl(live->watch, EPOLL_CTL_ADD, socket, &closed) != 0) {
         stream->socket = -1;
@@ -246,7 +248,7 @@ int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
     return got;
 }
 
-/* What came while the stream was pulled makes it ready at once. */
+/* A stream that was woken while it was pulled is ready at once. */
 void srv_live_aside(srv_stream *stream)
 {
     srv_live *live = stream->live;

@@ -6,12 +6,12 @@
 #include <strings.h>
 
 typedef struct authority {
-    const char *host; /* an IPv6 address without brackets */
+    const char *host; /* an IPv6 address has no brackets here */
     size_t host_length;
     long port; /* -1: none */
 } authority;
 
-/* "host", "host:", "host:port", "[v6]:port" */
+/* Parses "host", "host:", "host:port" or "[v6]:port". */
 static bool parse_authority(const char *text, size_t length, authority *out)
 {
     const char *end = text + length, *after;
@@ -106,7 +106,7 @@ const char *srv_policy_cors(const srv_policy *policy, const char *origin)
     return NULL;
 }
 
-/* Does `origin` name the authority of Host? A missing port is the scheme's. */
+/* Does `origin` name the authority in Host? A missing port is the default of the scheme. */
 static bool is_own_origin(const char *origin, const char *host, srv_scheme scheme)
 {
     long port;

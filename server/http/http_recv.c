@@ -13,7 +13,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* Zero pages until a descriptor of their range is used. */
+/* The kernel allocates pages of this table only where descriptors are used. */
 static _Atomic(srv_connection *) watched[SRV_MAX_DESCRIPTORS];
 
 static bool fits(int socket)
@@ -21,7 +21,7 @@ static bool fits(int socket)
     return socket >= 0 && socket < SRV_MAX_DESCRIPTORS;
 }
 
-/* NULL where the socket is not watched. */
+/* Returns NULL if the socket is not watched. */
 static srv_connection *find(int socket)
 {
     return fits(socket) ? atomic_load_explicit(&watched[socket], memory_order_acquire) : NULL;
@@ -65,7 +65,7 @@ ssize_t srv_recv_checked(srv_syntax *syntax, char *buffer, size_t size,
     return got > 0 ? (ssize_t)srv_syntax_check(syntax, buffer, (size_t)got, size) : got;
 }
 
-/* The number that the kernel sends along; 0 without one. */
+/* Returns the number of bytes left that the kernel reported; 0 if it reported none. */
 static int left_to_read(struct msghdr *message)
 {
     int left = 0;
@@ -91,7 +91,7 @@ static ssize_t receive(void *context, char *buffer, size_t size)
     }
     ssize_t got = recvmsg(c->socket, &message, 0);
     if (got > 0) {
-        /* Where the kernel tells nothing, any read may have been the last. */
+        /* If the kernel does not report it, any read may have been the last. */
         c->may_have_ended = (size_t)got < size && (!c->tells_end || left_to_read(&message) > 0);
     }
     return got;
@@ -131,7 +131,7 @@ bool srv_recv_send(srv_connection *c, const char *bytes, size_t length)
                : send(c->socket, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT) == (ssize_t)length;
 }
 
-/* --- in place of the libraries' --- */
+/* --- functions that replace those of libraries --- */
 
 ssize_t recv(int socket, void *buffer, size_t size, int flags)
 {
@@ -150,7 +150,7 @@ ssize_t gnutls_record_recv(gnutls_session_t session, void *buffer, size_t size)
         srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     }
     ssize_t got = receive_watched(c, buffer, size);
-    /* What srv_recv_checked says is none of gnutls' codes. */
+    /* gnutls has codes of its own in place of -1. */
     return got == -1 ? GNUTLS_E_AGAIN : got;
 }
 

@@ -18,8 +18,8 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
     srv_connection *socket = socket_of(connection);
-    /* Counted first, whatever becomes of it, as http_syntax.h has counted it (S4). One that was not
-     * counted there came past the check. */
+    /* Counts the request first, in all cases, as http_syntax.h has counted it (S4). A request that
+     * was not counted there has bypassed the check. */
     if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
         return NULL;
     }
@@ -48,7 +48,7 @@ static void copy_text(char *out, size_t size, const char *text)
     out[length] = '\0';
 }
 
-/* An answer that goes on lasts as long as its client listens: that is not slow. */
+/* A stream lasts as long as its client listens, so it is never slow. */
 static bool is_slow(const srv_request *r, uint64_t took)
 {
     const uint64_t slow_us = srv_log_get(r->http->options.log).slow_us;
@@ -60,7 +60,7 @@ static void tell_log(srv_request *r, uint64_t now)
 {
     srv_log *log = r->http->options.log;
     const bool slow = is_slow(r, now - r->started);
-    srv_access access; /* not zeroed: most of it is room for a long path */
+    srv_access access; /* not zeroed: most of it is space for a long path */
     if (!slow && !srv_log_get(log).requests) {
         return;
     }
@@ -116,7 +116,7 @@ void srv_request_end(srv_request *r)
 {
     srv_http *http = r->http;
     uint64_t now = st_clock_micros();
-    /* What has come of the next request waits in libmicrohttpd's buffer. */
+    /* Bytes of the next request may already be in libmicrohttpd's buffer. */
     bool begun = r->socket != NULL && r->socket->syntax.requests > r->socket->requests;
     srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
@@ -127,7 +127,7 @@ void srv_request_end(srv_request *r)
         tell_log(r, now);
     }
     bool counted = r->counted;
-    srv_request_resumed(r); /* a client who was lost while it was suspended comes here at once */
+    srv_request_resumed(r); /* a client that was lost during suspension leads directly here */
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);
         st_memory_count(-(int64_t)r->block);

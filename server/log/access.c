@@ -7,13 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Written without the C library's formats: at the highest rates a line takes its time from the
- * requests. */
+/* Written without printf, because at high rates formatting takes time from requests. */
 
 static const char *const part_names[SRV_PARTS] = {"receive", "queue", "lock",
                                                   "work",    "store", "send"};
 
-/* Everything but printable ASCII is escaped byte by byte: what is logged was never decoded. */
+/* Escapes every byte that is not printable ASCII: the logged text was never decoded. */
 static void append_text(char line[SRV_ACCESS_LINE], size_t *at, const char *text)
 {
     for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
@@ -26,7 +25,7 @@ static void append_text(char line[SRV_ACCESS_LINE], size_t *at, const char *text
     }
 }
 
-/* What is known to fit and to need no escapes. */
+/* Appends text that fits and needs no escapes. */
 static void append(char line[SRV_ACCESS_LINE], size_t *at, const char *text)
 {
     size_t length = strlen(text);
@@ -49,7 +48,7 @@ static void append_number(char line[SRV_ACCESS_LINE], size_t *at, const char *ke
     *at += he_i64_print(value, line + *at);
 }
 
-/* "12.345": milliseconds, to the microsecond. */
+/* Appends milliseconds with microseconds as decimals: "12.345". */
 static void append_millis(char line[SRV_ACCESS_LINE], size_t *at, uint64_t micros)
 {
     const unsigned rest = (unsigned)(micros % 1000);
@@ -97,7 +96,7 @@ static size_t end_line(char line[SRV_ACCESS_LINE], size_t at)
     return at;
 }
 
-/* 2026-01-31T12:00:00.000Z info ::1 GET /v1/meshes 200 */
+/* Appends 2026-01-31T12:00:00.000Z info ::1 GET /v1/meshes 200. */
 static void append_readable(char line[SRV_ACCESS_LINE], size_t *at, const srv_access *access,
                             const char *kind)
 {
@@ -127,8 +126,8 @@ static void append_ids(char line[SRV_ACCESS_LINE], size_t *at, const srv_access 
     }
 }
 
-/* The fields are bounded so that SRV_ACCESS_LINE holds a path of escapes only; a request id has
- * been checked and a method is a token. */
+/* The fields are bounded so that SRV_ACCESS_LINE holds even a path in which every byte is escaped;
+ * a request id was checked, and a method is a token. */
 size_t srv_access_format(const srv_access *access, bool json, char line[SRV_ACCESS_LINE])
 {
     size_t at = 0;

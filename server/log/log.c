@@ -20,12 +20,12 @@ enum {
     ENDING_MILLIS = 500
 };
 
-/* A line of the daemon's own, or the record of a request. */
+/* A line of the daemon itself, or the record of a request. */
 typedef struct entry {
-    char *line; /* owned by the ring; NULL: `access` */
+    char *line; /* owned by the ring; NULL: `access` is used */
     size_t length;
     srv_access access;
-    bool usual, slow; /* its lines */
+    bool usual, slow; /* which of its two lines to write */
 } entry;
 
 struct srv_log {
@@ -36,17 +36,16 @@ struct srv_log {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     _Atomic bool ending;
-    bool urgent; /* a line of the daemon's own waits: nothing is gathered */
+    bool urgent; /* a line of the daemon itself is waiting: do not gather */
     entry *ring;
     size_t capacity, first, count;
     uint64_t dropped;
-    int waited; /* polls in vain while it ends; the thread's own */
+    int waited; /* polls without success since the end began; used by the thread only */
     pthread_t thread;
 };
 
-/* A log that cannot be written to is not a reason to stop serving, and a reader that takes nothing
- * is none to go on for ever: once the log ends, it has a moment. A pipe that is ready takes
- * PIPE_BUF bytes without blocking. */
+/* If the log cannot be written to, the server goes on. If its reader takes nothing, the end of the
+ * log waits for it only briefly. A pipe that is ready takes PIPE_BUF bytes without blocking. */
 static void write_all(srv_log *log, const char *bytes, size_t length)
 {
     while (length > 0 && log->waited < ENDING_MILLIS / POLL_MILLIS) {
@@ -81,7 +80,8 @@ static void write_dropped(srv_log *log, uint64_t dropped)
 }
 
 /* Waking a thread costs a request more than its record does, so the thread is woken for the first
- * one and then lets others gather. Under the lock; false when all is written and the log ends. */
+ * record and then lets others gather. The lock is held. Returns false when everything is written
+ * and the log ends. */
 static bool wait_for_entries(srv_log *log)
 {
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
@@ -97,8 +97,8 @@ static bool wait_for_entries(srv_log *log)
     return log->count > 0 || log->dropped > 0;
 }
 
-/* Lines of the daemon's own are as long as they are; those of requests are formatted into `room`,
- * for two. */
+/* Lines of the daemon itself are written directly; those of requests are formatted into `room`,
+ * which holds two. */
 static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], size_t *at)
 {
     const bool json = atomic_load(&log->json);
@@ -114,7 +114,7 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
     *at += e->slow ? srv_access_format_slow(&e->access, json, room + *at) : 0;
 }
 
-/* What is in the ring is not touched by others until `count` says that it was taken. */
+/* Other threads do not touch entries in the ring until `count` is reduced. */
 static void *run(void *context)
 {
     srv_log *log = context;
@@ -202,7 +202,7 @@ srv_log_settings srv_log_get(const srv_log *log)
     };
 }
 
-/* A free entry, or NULL: then one more was dropped. Under the lock. */
+/* Returns a free entry, or NULL and counts a dropped one. The lock is held. */
 static entry *take_entry(srv_log *log)
 {
     if (log->count == log->capacity) {
@@ -219,7 +219,7 @@ static void wake(srv_log *log)
     }
 }
 
-/* Takes the text, which is a whole line or failed for memory. */
+/* Takes the text, which is a whole line or failed for lack of memory. */
 static void add_line(srv_log *log, api_text *text)
 {
     pthread_mutex_lock(&log->lock);

@@ -11,7 +11,7 @@ void srv_spans_init(srv_spans *spans)
     atomic_init(&spans->next, 1);
 }
 
-/* SplitMix64 (Steele, Lea, Flood 2014): a bijection, so that no two numbers give the same id. */
+/* SplitMix64 (Steele, Lea, Flood 2014): a bijection, so two numbers never give the same id. */
 static uint64_t mix(uint64_t z)
 {
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -19,7 +19,7 @@ static uint64_t mix(uint64_t z)
     return z ^ z >> 31;
 }
 
-/* 16 digits that are not all zero: those name nothing. */
+/* Makes 16 digits that are not all zero, which would be invalid. */
 static void put_new_id(srv_spans *spans, char out[SRV_SPAN_ID])
 {
     uint64_t id = 0;
@@ -47,7 +47,7 @@ static bool is_zero(const char *text, size_t count)
     return strspn(text, "0") >= count;
 }
 
-/* The offsets of a traceparent of version 00. */
+/* Offsets in a traceparent of version 00. */
 enum { TRACE_AT = 3, PARENT_AT = 36, FLAGS_AT = 53 };
 
 static bool is_well_formed(const char *value, size_t length)
@@ -73,7 +73,7 @@ void srv_trace_read(srv_spans *spans, const char *value, size_t count, srv_trace
     if (count == 1 && is_well_formed(value, strlen(value))) {
         memcpy(out->trace_id, value + TRACE_AT, SRV_TRACE_ID);
         memcpy(out->parent_id, value + PARENT_AT, SRV_SPAN_ID);
-        /* Version 00 knows the lowest bit of the flags; others must not be passed on. */
+        /* Version 00 defines only the lowest bit of the flags; the others must not be copied. */
         flag = strchr("13579bdf", value[FLAGS_AT + 1]) != NULL ? '1' : '0';
     } else {
         put_new_id(spans, out->trace_id);

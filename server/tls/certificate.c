@@ -15,7 +15,7 @@ const char srv_tls_priorities[] =
     "-MAC-ALL:+AEAD:%SERVER_PRECEDENCE";
 
 struct srv_certificate {
-    _Atomic size_t holders; /* being in force is one */
+    _Atomic size_t holders; /* references; being in force is one */
     gnutls_pcert_st chain[SRV_MAX_CHAIN];
     unsigned int length;
     gnutls_privkey_t key;
@@ -23,7 +23,7 @@ struct srv_certificate {
 
 struct srv_certificates {
     pthread_mutex_t lock;
-    srv_certificate *current; /* NULL: none was read yet */
+    srv_certificate *current; /* NULL: no pair was read yet */
 };
 
 /* --- reading --- */
@@ -57,7 +57,7 @@ static bool load(file *f, char *message, size_t size)
     return ok;
 }
 
-/* The key is not left in memory that others are given. */
+/* Overwrites the bytes, so that the key does not stay in freed memory. */
 static void unload(file *f)
 {
     if (f->text != NULL) {
@@ -145,7 +145,7 @@ static srv_certificate *read_pair(const char *certificate_path, const char *key_
     return pair;
 }
 
-/* --- holding --- */
+/* --- references --- */
 
 void srv_certificate_release(srv_certificate *certificate)
 {

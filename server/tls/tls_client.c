@@ -2,7 +2,7 @@
 
 #include "server/tls/tls_record.h"
 
-/* A timeout of the socket shows as GNUTLS_E_AGAIN. */
+/* gnutls reports a timeout of the socket as GNUTLS_E_AGAIN. */
 static bool goes_on(ssize_t code)
 {
     return code == GNUTLS_E_INTERRUPTED ||
@@ -29,7 +29,7 @@ static size_t exchange(gnutls_session_t session, const char *request, size_t len
     do {
         code = gnutls_record_send(session, request, length);
     } while (goes_on(code));
-    /* Less than a record, it is sent whole or not at all. */
+    /* A request shorter than a record is sent whole or not at all. */
     while (code > 0 && got < size) {
         do {
             code = srv_tls_receive(session, answer + got, size - got);

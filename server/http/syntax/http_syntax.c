@@ -7,16 +7,16 @@
 
 typedef enum state {
     START,
-    START_LF, /* of an empty line before a request */
+    START_LF, /* expects the LF of an empty line before a request */
     METHOD,
     TARGET,
     VERSION,
     LINE_LF,
-    FIELD, /* where a header begins, or the empty line */
+    FIELD, /* expects a header or the empty line */
     NAME,
     VALUE,
     VALUE_LF,
-    HEAD_LF, /* of the empty line after headers or trailers */
+    HEAD_LF, /* expects the LF of the empty line after headers or trailers */
     BODY,
     CHUNK_SIZE,
     CHUNK_EXTENSION,
@@ -26,7 +26,7 @@ typedef enum state {
     CHUNK_END_LF
 } state;
 
-/* The headers that are looked at. */
+/* The headers that are checked. */
 typedef enum field { OTHER, HOST, ORIGIN, AUTHORIZATION, LENGTH, CODING } field;
 
 typedef enum phase { BEFORE, WITHIN, AFTER } phase;
@@ -44,7 +44,7 @@ static char *fail(srv_syntax *s, char *at, srv_fault fault)
     return at;
 }
 
-/* A line feed where none may be is a fault of its own. */
+/* A line feed in the wrong place is a fault of its own. */
 static srv_fault line_fault(char c, srv_fault otherwise)
 {
     return c == '\n' ? SRV_FAULT_BARE_LF : otherwise;
@@ -180,7 +180,7 @@ static bool is_named(const srv_syntax *s, const char *name)
     return s->text_length == strlen(name) && memcmp(s->text, name, s->text_length) == 0;
 }
 
-/* Which header it is, known at its colon. False when it is one too many. */
+/* Identifies the header at its colon. Returns false if it must not appear again. */
 static bool choose_field(srv_syntax *s)
 {
     s->field = OTHER;
@@ -202,7 +202,7 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
-/* How far headers may go on: to the end of what came, or to their limit. */
+/* Returns how far headers may be read: to the end of the bytes or to their limit. */
 static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
 {
     size_t room = s->limit > s->head ? s->limit - s->head : 0;
@@ -261,7 +261,8 @@ static srv_fault add_host(const srv_syntax *s, char c)
     return srv_is_host(c) && s->phase != AFTER ? SRV_FAULT_NONE : SRV_FAULT_HOST;
 }
 
-/* The codings that are named, blanks between them as one. What does not fit is not chunked. */
+/* Collects the names of codings, with one blank for several. A text that does not fit is not
+ * "chunked". */
 static srv_fault add_coding(srv_syntax *s, char c)
 {
     if (s->phase == AFTER && s->text_length < SRV_SYNTAX_TEXT) {
@@ -290,8 +291,8 @@ static srv_fault add_character(srv_syntax *s, char c)
     return SRV_FAULT_NONE;
 }
 
-/* RFC 9112, 6.1 and 6.3: what ends in chunked but has other codings before it is not understood;
- * where chunked is not last, or is given twice, nobody knows where the body ends. */
+/* RFC 9112, 6.1 and 6.3: a coding before chunked is not supported. If chunked is not last, or is
+ * given twice, the end of the body is unknown. */
 static srv_fault coding_fault(const srv_syntax *s)
 {
     static const char chunked[] = "chunked";
@@ -313,7 +314,7 @@ static srv_fault coding_fault(const srv_syntax *s)
     return is_last ? SRV_FAULT_OTHER_CODING : SRV_FAULT_CODING;
 }
 
-/* The value of a header that the machine reads, up to its CR. */
+/* Reads the value of a header that is checked, up to its CR. */
 static char *read_known_value(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -335,7 +336,7 @@ static char *read_known_value(srv_syntax *s, char *at, const char *end)
     return at;
 }
 
-/* The value of any other header, up to its CR. */
+/* Reads the value of any other header, up to its CR. */
 static char *read_other_value(srv_syntax *s, char *at, const char *end)
 {
     const char *stop = stop_of(s, at, end);
@@ -543,8 +544,8 @@ static char *move(srv_syntax *s, char *at, const char *end)
 
 /* --- faults --- */
 
-/* S3. The data of a chunk that was announced is one byte: more would only be waited for, and with
- * the first the handler is called. */
+/* S3. If a chunk was announced, one byte of data follows: more would make libmicrohttpd wait, and
+ * with the first byte it calls the handler. */
 static const char *ending_of(const srv_syntax *s)
 {
     switch ((state)s->state) {
@@ -559,7 +560,7 @@ static const char *ending_of(const srv_syntax *s)
     case VERSION:
         return version + s->digits;
     case NAME:
-        return "-: \r\n\r\n"; /* so that it is no name that means anything */
+        return "-: \r\n\r\n"; /* a name without a meaning */
     case VALUE:
         return s->field == LENGTH && s->phase == BEFORE ? "0\r\n\r\n" : "\r\n\r\n";
     case LINE_LF:
@@ -584,7 +585,7 @@ static const char *ending_of(const srv_syntax *s)
         return "\n0\r\n\r\n";
     case BODY:
     case CHUNK_DATA:
-        break; /* have no faults */
+        break; /* these states have no faults */
     }
     return "";
 }
