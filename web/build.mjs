@@ -52,7 +52,7 @@ if (unused.size > 0) {
 }
 await writeFile(path.join(out, 'assets/LICENSES.txt'), await licenses(metafile.inputs));
 
-// A page with each source replaced by the file made from it.
+// A page with each source replaced by the bundled file.
 async function page(name) {
     const html = await readFile(path.join(here, name), 'utf8');
     return html.replaceAll(/"(src\/[^"]*)"/g, (quoted, source) => {
@@ -64,7 +64,7 @@ async function page(name) {
     });
 }
 
-// The project's own licence, then that of each package a bundled file comes from.
+// The project's own licence, then the licence of each package from which a file was bundled.
 async function licenses(inputs) {
     const packages = new Set();
     for (const input of Object.keys(inputs)) {

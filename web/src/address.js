@@ -1,4 +1,5 @@
-// address.js - what is shown is in the page's address, and an address shows it again; see link.js.
+// address.js - writes what is shown into the page's address, and shows what an address says; see
+// link.js.
 
 import { formatLink, parseLink } from './link.js';
 
@@ -11,7 +12,7 @@ export class Address {
         this.#stage = stage;
     }
 
-    // Moving the camera makes no entry in the browser's history.
+    // Moving the camera adds no entry to the browser's history.
     write() {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {
@@ -21,7 +22,7 @@ export class Address {
         }
     }
 
-    // Show what the address says.
+    // Shows what the address says.
     async follow() {
         const { mesh, kind, id, camera } = parseLink(window.location.hash);
         const session = this.#session;

@@ -1,13 +1,13 @@
-// affine.js - the matrix of an affine map, put together of what people think in. Pure.
+// affine.js - the matrix of an affine map, made from scaling, rotation and translation. Pure.
 //
-// 16 numbers, row-major; a point is a column at its right.
+// 16 numbers, row-major; the matrix is multiplied with a column vector at its right.
 
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 const translation = ([x, y, z]) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
 const scaling = ([x, y, z]) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1];
 
-// First what is at the right.
+// The map at the right is applied first.
 function multiply(a, b) {
     return IDENTITY.map((_, at) => {
         const [row, column] = [4 * Math.floor(at / 4), at % 4];
@@ -15,7 +15,7 @@ function multiply(a, b) {
     });
 }
 
-// [cosine, sine] of an angle in degrees, exact for quarter turns.
+// Returns [cosine, sine] of an angle in degrees, exact for quarter turns.
 function turnOf(degrees) {
     const quarters = (((degrees / 90) % 4) + 4) % 4;
     const exact = [[1, 0], [0, 1], [-1, 0], [0, -1]][quarters];
@@ -23,7 +23,7 @@ function turnOf(degrees) {
     return exact ?? [Math.cos(angle), Math.sin(angle)];
 }
 
-// Around one axis, 0 to 2, counter-clockwise seen from its tip.
+// A rotation around one axis, 0 to 2, counter-clockwise seen from its tip.
 function rotation(axis, degrees) {
     const [cosine, sine] = turnOf(degrees);
     const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -35,7 +35,8 @@ function rotation(axis, degrees) {
     return matrix;
 }
 
-// Scale and then rotate about a point, around x, y and z one after another in degrees, then move.
+// Scales and then rotates about a point (around x, y and z one after another, in degrees), then
+// moves.
 export function compose({ scale, rotate, translate, about }) {
     const there = about.map((value) => -value);
     return [
@@ -47,7 +48,7 @@ export function compose({ scale, rotate, translate, about }) {
     ].reduce((done, next) => multiply(next, done), IDENTITY);
 }
 
-// The same as four lines of text.
+// Writes the matrix as four lines of text.
 export function textOf(matrix) {
     return [0, 4, 8, 12].map((row) => matrix.slice(row, row + 4).join(' ')).join('\n');
 }

@@ -7,14 +7,14 @@ import { renewToken, token } from './token.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
-// Entries of the history in one answer.
+// Entries of the history per request.
 const HISTORY_PAGE = 20;
 
-// How often a job is looked at, in milliseconds: soon at first, then less.
+// Milliseconds between requests for a job's state: often at first, then less.
 const JOB_SOON = 60;
 const JOB_LATEST = 1000;
 
-// Media types by the end of a file's name; what is not here the server is asked to refuse.
+// Media types by file name extension; the server refuses others.
 const MEDIA_TYPES = {
     obj: 'model/obj',
     off: 'model/x-off',
@@ -25,7 +25,7 @@ const MEDIA_TYPES = {
     json: 'application/json',
 };
 
-// What the server (or the way to it) refused: an RFC 9457 problem.
+// An error of the server, or of a proxy before it: an RFC 9457 problem.
 export class Problem extends Error {
     constructor({ status = 0, title = '', detail = '', code = '', pointer = '', repair = [] }) {
         super(detail || title);
@@ -45,7 +45,7 @@ function unreachable() {
     });
 }
 
-// The problem in an answer's text, or one made of its status where there is none.
+// Returns the problem in an answer's text, or makes one from the status.
 function problemOf(status, text) {
     try {
         const problem = JSON.parse(text);
@@ -53,7 +53,7 @@ function problemOf(status, text) {
             return new Problem({ ...problem, status });
         }
     } catch {
-        // Not JSON: some gateway answered.
+        // Not JSON: a gateway answered.
     }
     const detail = `The server answered with status ${status}.`;
     return new Problem({ status, title: 'Request failed', detail });
@@ -84,8 +84,8 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
-// The answer of a POST, null where it has no body. What the server goes on with after it has
-// answered is waited for: see finish().
+// Returns the answer of a POST, null if it has no body. If the server answers with a job, waits for
+// its result: see finish().
 async function postJson(path, body, work = null) {
     const headers = { 'Content-Type': 'application/json' };
     if (work !== null) {
@@ -102,17 +102,18 @@ function meshPath(mesh) {
     return `v1/meshes/${encodeURIComponent(mesh)}`;
 }
 
-// Who one is: {name, role, prefixes, expires}; `name` is null where the server asks for no tokens.
+// Returns the present token: {name, role, prefixes, expires}; `name` is null if the server asks for
+// no tokens.
 export function getToken() {
     return getJson('v1/token');
 }
 
-// The server's own OpenAPI document.
+// Returns the server's OpenAPI document.
 export function getDescription() {
     return getJson('v1/openapi.json');
 }
 
-// One page of the list: {items, next}; `next` is the cursor of the page after it, or null.
+// Returns one page of the list: {items, next}; `next` is the cursor of the next page, or null.
 export function listMeshes(cursor = null) {
     const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
     return getJson(`v1/meshes?limit=200${after}`);
@@ -122,8 +123,8 @@ export function getSummary(mesh, signal) {
     return getJson(meshPath(mesh), signal);
 }
 
-// One page of the history, the newest first: {revision, entries, undo, redo, next}; undo and redo
-// are how many steps there are, `next` the cursor of the page after it, or null.
+// Returns one page of the history, newest first: {revision, entries, undo, redo, next}. undo and
+// redo are numbers of steps, `next` is the cursor of the next page, or null.
 export function getHistory(mesh, cursor = null, signal = undefined) {
     const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
     return getJson(`${meshPath(mesh)}/edits?limit=${HISTORY_PAGE}${after}`, signal);
@@ -133,27 +134,29 @@ export function getElement(mesh, kind, id) {
     return getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}`);
 }
 
-// Many questions of one revision, answered in order; a failed one by its problem.
+// Asks several questions about one revision and returns the answers in order; the answer to a
+// failed question is its problem.
 export async function query(mesh, queries) {
     return (await postJson(`${meshPath(mesh)}/query`, { queries })).results;
 }
 
-// {revision, loops: [{halfedges, vertices, ...}]}
+// Returns {revision, loops: [{halfedges, vertices, ...}]}.
 export function getBoundaries(mesh, signal) {
     return getJson(`${meshPath(mesh)}/boundaries`, signal);
 }
 
-// {revision, attributes: [{domain, name, labels, ...}]}
+// Returns {revision, attributes: [{domain, name, labels, ...}]}.
 export function getAttributes(mesh, signal) {
     return getJson(`${meshPath(mesh)}/attributes`, signal);
 }
 
-// {revision, materials: [{name, base_color, ...}]}; 410 where the revision is gone.
+// Returns {revision, materials: [{name, base_color, ...}]}; fails with 410 if the revision is gone.
 export function getMaterials(mesh, revision, signal) {
     return getJson(`${meshPath(mesh)}/materials?revision=${revision}`, signal);
 }
 
-// The values of an attribute that faces have labels in: a Uint32Array, by id. 410 likewise.
+// Returns the values of a label attribute of faces, by id, as a Uint32Array; fails with 410 if the
+// revision is gone.
 export async function getFaceLabels(mesh, name, revision, signal) {
     const path = `${meshPath(mesh)}/attributes/faces/${encodeURIComponent(name)}`;
     const headers = { Accept: 'application/octet-stream', Prefer: 'wait=30' };
@@ -161,34 +164,35 @@ export async function getFaceLabels(mesh, name, revision, signal) {
     return new Uint32Array(await answer.arrayBuffer());
 }
 
-// The operation table: [{name, doc, params, ...}].
+// Returns the table of operations: [{name, doc, params, ...}].
 export async function getOperations() {
     return (await getJson('v1/operations')).operations;
 }
 
-// The ids of the elements of another kind beside one, such as the faces of a vertex.
+// Returns the ids of neighbours of another kind, such as the faces of a vertex.
 export async function getAdjacent(mesh, kind, id, relation) {
     return (await getJson(`${meshPath(mesh)}/${KINDS[kind]}/${id}/${relation}`)).ids;
 }
 
-// The half-edge from one vertex to another, null when there is none.
+// Returns the half-edge from one vertex to another, or null.
 export async function findHalfedge(mesh, from, to) {
     const [{ halfedge }] = await query(mesh, [{ find: 'halfedge', vertices: [from, to] }]);
     return halfedge;
 }
 
-// The arrays to draw a mesh from, as an ArrayBuffer; `onProgress` gets the part that has come, 0 to
-// 1.
+// Returns the arrays to draw a mesh as an ArrayBuffer; calls `onProgress` with the fraction read, 0
+// to 1.
 export function getGeometry(mesh, onProgress, signal) {
     return readArrays(`${meshPath(mesh)}/geometry`, onProgress, signal);
 }
 
-// What they have become since a revision with a layout, or all of them: see geometry_delta.js.
+// Returns the changes of the arrays since a revision with a layout, or all of them: see
+// geometry_delta.js.
 export function getGeometryChanges(mesh, { revision, layout }) {
     return readArrays(`${meshPath(mesh)}/geometry?since=${revision}&layout=${layout}`, () => {});
 }
 
-// The header says how long an answer is: Content-Length may be that of a compressed body.
+// The header contains the length of the answer: Content-Length may be that of a compressed body.
 async function readArrays(path, onProgress, signal) {
     const answer = await request(path, { signal });
     const reader = answer.body.getReader();
@@ -226,9 +230,10 @@ async function readArrays(path, onProgress, signal) {
     return whole.buffer;
 }
 
-// The mesh from coarse to fine: `onBytes` gets what comes as it comes, see progressive.js.
+// Reads the mesh from coarse to fine; calls `onBytes` with the bytes as they arrive, see
+// progressive.js.
 export async function getProgressive(mesh, onBytes, signal) {
-    // As bytes, however long they take to make: not as a job.
+    // As bytes, however long it takes to make them: not as a job.
     const headers = { Prefer: 'wait=30' };
     const answer = await request(`${meshPath(mesh)}/progressive`, { signal, headers });
     const reader = answer.body.getReader();
@@ -247,9 +252,9 @@ async function readOn(reader) {
 
 // --- events ---
 
-// Listen to what happens to a mesh after an event's id or a revision, null: from now on. onEvent
-// gets an event's name, its data and its id; onError, once, that the stream has ended. Returns an
-// object that is closed by close().
+// Listens to events of a mesh after an event's id or a revision; null: from now on. Calls onEvent
+// with an event's name, its data and its id, and onError, once, when the stream has ended. Returns
+// an object with close().
 export function listen(mesh, since, { onOpen, onEvent, onError }) {
     const closing = new AbortController();
     follow(`${meshPath(mesh)}/events`, since, { onOpen, onEvent }, closing.signal)
@@ -280,17 +285,18 @@ async function follow(path, since, { onOpen, onEvent }, signal) {
 
 // --- edits ---
 //
-// They name the revision they were meant for: 412 when the mesh has moved on.
+// An edit names the revision it is meant for; the server answers 412 if the mesh has changed.
 //
-// `work`, not null, wants to hear of what takes long: work.begin(cancel), where calling
-// `cancel` gives it up, and work.show(job) of the server's job.
+// `work`, if not null, shows long work: work.begin(cancel) is called when it begins, where `cancel`
+// cancels it, and work.show(job) with the state of the server's job.
 
 export function edit(mesh, operation, revision, work = null) {
     const body = { expected_revision: revision, ops: [operation] };
     return postJson(`${meshPath(mesh)}/edits`, body, work);
 }
 
-// What an edit of the mesh as it is now would do; nothing is changed. Null where that takes long.
+// Returns what an edit of the present mesh would do, without changing anything; null if that takes
+// long.
 export async function tryEdit(mesh, operation, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',
@@ -301,7 +307,7 @@ export async function tryEdit(mesh, operation, signal) {
     return answer.status === 200 ? answer.json() : null;
 }
 
-// The last step, or all that were done since a revision.
+// Undoes the last step, or all steps since a revision.
 export function undo(mesh, revision, to = undefined) {
     const body = { expected_revision: revision, to_revision: to };
     return postJson(`${meshPath(mesh)}/undo`, body);
@@ -317,7 +323,7 @@ function cancelled() {
     return new Problem({ title: 'Cancelled', detail: 'Nothing was changed.', code: 'cancelled' });
 }
 
-// Wait for a job that the server answered with: its result, or its problem is thrown.
+// Waits for a job: returns its result or throws its problem.
 async function finish(first, work) {
     const path = `v1/jobs/${first.id}`;
     let stop = () => {};
@@ -325,7 +331,7 @@ async function finish(first, work) {
         stop = resolve;
     });
     work?.begin(async () => {
-        // One that has ended would be forgotten with its result.
+        // DELETE of a job that has ended would delete its result.
         if ((await getJson(path)).finished === null) {
             await request(path, { method: 'DELETE' });
         }
@@ -346,9 +352,9 @@ async function finish(first, work) {
     return job.result ?? null;
 }
 
-// Create a mesh of a file and those `beside` it; `onProgress` gets the sent part, 0 to 1; `repairs` are to be applied.
-// Returns the new mesh's summary.
-// fetch cannot tell how much was sent, hence XMLHttpRequest.
+// Creates a mesh from a file and the files `beside` it, with `repairs` applied; calls `onProgress`
+// with the fraction sent, 0 to 1. Returns the new mesh's summary. Uses XMLHttpRequest because fetch
+// does not report how much was sent.
 export async function upload(batch, onProgress, work, repairs = []) {
     const bearer = token();
     const { status, answer } = await send(batch, onProgress, work, repairs, bearer);
@@ -362,14 +368,14 @@ export async function upload(batch, onProgress, work, repairs = []) {
     return status === 202 ? finish(answer, work) : answer;
 }
 
-// Several files as a form has them.
+// Makes a form of several files.
 function formOf(files) {
     const form = new FormData();
     files.forEach((file) => form.append('files', file, file.name));
     return form;
 }
 
-// 401 is an answer too.
+// Resolves for a 401, too.
 function send({ file, beside }, onProgress, work, repairs, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;

@@ -1,5 +1,5 @@
-// around.js - what lies around an element and what can be measured there, beyond its own members.
-// Pure but for `ask`, which sends the server a list of questions and gives their answers in order.
+// around.js - the neighbours and measures of an element, in addition to its own members. Pure
+// except for `ask`, which sends the server a list of questions and returns the answers in order.
 //
 //   rings      [{name, kind, ids}]   in the server's order
 //   measures   [{name, value}]       text
@@ -8,7 +8,7 @@
 
 import { formatMeasure } from './dom.js';
 
-// Arrows of one selection.
+// Maximum of arrows for one selection.
 const MOST = 64;
 
 const subtract = (a, b) => a.map((value, i) => value - b[i]);
@@ -22,14 +22,15 @@ function cross(a, b) {
     });
 }
 
-// Between two vectors, in degrees.
+// Returns the angle between two vectors, in degrees.
 export function angleBetween(a, b) {
-    // Longest component 1 first, or products could overflow.
+    // Scaled to a longest component of 1, since products could overflow.
     const scaled = [a, b].map((v) => v.map((value) => value / (Math.max(...v.map(Math.abs)) || 1)));
     return (Math.atan2(length(cross(...scaled)), dot(...scaled)) * 180) / Math.PI;
 }
 
-// Between the normals of the faces left and right of an edge: positive on a ridge.
+// Returns the angle between the normals of the faces left and right of an edge: positive on a
+// ridge.
 export function foldAngle(left, right, direction) {
     const angle = angleBetween(left, right);
     return dot(cross(left, right), direction) < 0 ? -angle : angle;
@@ -37,7 +38,7 @@ export function foldAngle(left, right, direction) {
 
 const degrees = (value) => `${formatMeasure(value)}\u00b0`;
 
-// A question failed where the mesh has changed meanwhile.
+// A question fails if the mesh has changed meanwhile.
 const lives = (answer) => answer !== undefined && !('status' in answer);
 
 async function ids(ask, relations, of) {
@@ -45,7 +46,7 @@ async function ids(ask, relations, of) {
     return answers.map((answer) => (lives(answer) ? answer.ids : []));
 }
 
-// Half-edges by id with their roles, as arrows want them. The face across is that of the twin.
+// Reads half-edges with their roles, for arrows. The face across is the face of the twin.
 async function halfedgesOf(ask, roles) {
     const wanted = [...roles.keys()].slice(0, MOST);
     const answers = await ask(
@@ -59,7 +60,7 @@ async function halfedgesOf(ask, roles) {
         });
 }
 
-// Ids of one role; the first role an id gets stays.
+// Maps ids to roles; if an id has several roles, the first one stays.
 function rolesOf(...groups) {
     const roles = new Map();
     for (const [role, list] of groups) {

@@ -4,23 +4,23 @@
 //                 ======>
 //              (the face)
 //
-// An arrow is as long as its edge, but its thickness stops growing where the edge is long on the
-// screen. So each point is a place on the edge and a `spread` from there, which is drawn at a scale
-// from 0 to 1.
+// An arrow is as long as its edge, but its thickness stops growing when the edge is long on the
+// screen. So each point is a place on the edge plus a `spread`, which is multiplied by a scale from
+// 0 to 1.
 
 import { normalOfFace, pointAt } from './geometry.js';
 
-// Along the edge in parts of its length.
+// Positions along the edge, as parts of its length.
 const START = 0.16;
 const END = 0.84;
-// The rest in parts of that too, or of less where the face is thin.
+// Widths, as parts of its length too, or of less if the face is thin.
 const OFFSET = 0.1;
 const HEAD = 0.15;
 const BODY_WIDTH = 0.022;
 const HEAD_WIDTH = 0.068;
-const THIN = 2.2; // of the face's mean width
+const THIN = 2.2; // as a part of the face's mean width
 
-// Arrows are no thicker than that of an edge of so many pixels.
+// An arrow is at most as thick as that of an edge with this many pixels.
 export const MOST_PIXELS = 130;
 
 const subtract = (a, b) => a.map((value, i) => value - b[i]);
@@ -38,9 +38,9 @@ function unit(a) {
     return length > 0 ? a.map((value) => value / length) : null;
 }
 
-// Nine points a half-edge, three triangles, as {size, places, spreads}; null where there is no
-// length or no plane. `halfedge` is {origin, target, face, across}, where `across` is the face of
-// its twin: a boundary half-edge lies in that one's plane.
+// Returns nine points per half-edge, three triangles, as {size, places, spreads}; null if the edge
+// has no length or its face no plane. `halfedge` is {origin, target, face, across}; `across` is the
+// face of its twin, in whose plane a boundary half-edge is drawn.
 export function arrowOf(geometry, { origin, target, face, across }) {
     const from = pointAt(geometry, origin);
     const edge = subtract(pointAt(geometry, target), from);
@@ -77,12 +77,12 @@ export function arrowOf(geometry, { origin, target, face, across }) {
     };
 }
 
-// The points of an arrow at a scale.
+// Returns the points of an arrow at a scale.
 export function pointsOf({ places, spreads }, scale) {
     return places.map((place, i) => along(place, spreads[i], scale));
 }
 
-// Where the middle of an arrow's body is, for whoever looks for its colour.
+// Returns the middle of an arrow's body, where tests look for its colour.
 export function middleOf(arrow, scale) {
     const [first, , third] = pointsOf(arrow, scale);
     return along(first, subtract(third, first), 0.5);

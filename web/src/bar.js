@@ -1,4 +1,4 @@
-// bar.js - the name of the open mesh, which buttons may be pressed now, and what hinders.
+// bar.js - the bar with the name of the open mesh, its buttons, and problems with the connection.
 
 import { byId, enable } from './dom.js';
 
@@ -28,7 +28,7 @@ export function isReady({ mesh, busy, connection }, mayEdit) {
     return mayEdit && mesh !== null && !busy && connection !== 'gone';
 }
 
-// `ready` where it may be edited now, `isDrawn` where there is a view at all.
+// `ready`: the mesh may be edited now; `isDrawn`: there is a view.
 export function showState(session, ready, isDrawn) {
     const { mesh, split } = session;
     const steps = session.shown?.history;
@@ -46,7 +46,7 @@ export function showState(session, ready, isDrawn) {
     showLoading(session);
 }
 
-// What the stream of events is like, said where that is a hindrance.
+// Shows the state of the event stream if it has a problem.
 function showConnection({ connection }) {
     const box = byId('connection');
     const text = CONNECTIONS[connection] ?? '';

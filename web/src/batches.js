@@ -1,4 +1,4 @@
-// batches.js - which of the files that were chosen together belong in one upload.
+// batches.js - which of the chosen files belong to one upload.
 
 const MESHES = ['obj', 'off', 'ply', 'stl', 'glb', 'gltf', 'json'];
 const REFERRING = ['obj', 'glb', 'gltf'];
@@ -16,10 +16,10 @@ function names(text, file) {
     return text.includes(file.name) || text.includes(encodeURI(file.name));
 }
 
-// What goes in each request: `[{ file, beside }]`, a file that the server is to read and those that
-// it refers to. A mesh alone gets all that came with it; of several each gets what it names. Images,
-// which no mesh holds, stay behind. What belongs to no mesh is sent alone, for the server to say why
-// it is none.
+// Returns one `{ file, beside }` per request: a file for the server to read and the files that it
+// refers to. A single mesh gets all other files; of several meshes each gets the files that it
+// names. Images, which no mesh contains, are left out. A file that belongs to no mesh is sent
+// alone, so that the server says what is wrong with it.
 export async function batchesOf(files) {
     const meshes = files.filter((file) => has(MESHES, file));
     const referring = meshes.filter((file) => has(REFERRING, file));

@@ -1,8 +1,9 @@
-// chooser.js - the list of the server's operations, by what they work on, and the search in it.
+// chooser.js - the list of the server's operations, grouped by the kind of element, with a search.
 
 import { make } from './dom.js';
 
-// What operations begin with, as groups of the list; what begins otherwise is of the whole mesh.
+// Groups of the list by the first word of operations; all others belong to the group of the whole
+// mesh.
 const GROUPS = { vertex: 'Vertex', edge: 'Edge', face: 'Face', loop: 'Loop', hole: 'Loop' };
 const GROUP_NAMES = [...new Set(Object.values(GROUPS)), 'Mesh'];
 
@@ -12,15 +13,15 @@ export class Chooser {
     #onChange;
     #operations = [];
 
-    // `onChange(isChosen)` is called when another operation is the current one, `isChosen` where a
-    // visitor took it from the list; `onEnter(name)` when the search is over.
+    // `onChange(isChosen)` is called when the current operation changes; `isChosen`: the user chose
+    // it in the list. `onEnter(name)` is called when the search is confirmed.
     constructor({ select, search }, { onChange, onEnter }) {
         [this.#select, this.#search, this.#onChange] = [select, search, onChange];
         select.addEventListener('change', () => onChange(true));
         search.addEventListener('input', () => this.#list());
         search.addEventListener('keydown', (event) => {
             if (event.key === 'Enter' && this.operation !== undefined) {
-                event.preventDefault(); // the key would apply what it opens
+                event.preventDefault(); // otherwise the key would also apply the form that it opens
                 onEnter(this.operation.name);
             }
         });
@@ -35,24 +36,24 @@ export class Chooser {
         return this.#operations;
     }
 
-    // That of a name, undefined where the server has none.
+    // Returns the operation with a name, or undefined.
     find(name) {
         return this.#operations.find((operation) => operation.name === name);
     }
 
-    // The current one, undefined where nothing is found.
+    // Returns the current operation, or undefined if the search finds none.
     get operation() {
         return this.find(this.#select.value);
     }
 
-    // Make one that there is the current one, whatever is searched for.
+    // Makes an existing operation current, whatever the search text is.
     set(name) {
         this.#search.value = '';
         this.#fill(this.#operations);
         this.#select.value = name;
     }
 
-    // Those that what is searched for is in.
+    // Lists the operations that match the search.
     #list() {
         const text = this.#search.value.trim().toLowerCase();
         const words = text.split(/\s+/);
@@ -78,7 +79,8 @@ export class Chooser {
     }
 }
 
-// What is named as the text comes before what speaks of it, and what there was before the first.
+// Operations whose name contains the text come before those that only mention it, and the previous
+// operation comes before the first of them.
 function bestOf(operations, text, words, before) {
     const names = operations.map(({ name }) => name);
     const named =

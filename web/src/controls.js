@@ -1,18 +1,18 @@
-// controls.js - what the value of a parameter is put in with. A control has
+// controls.js - form controls for the values of parameters. A control has
 //
 //   node      the element for the form
-//   main      the element that its label is of, and that has the focus first
-//   isSaid    is anything put in?
+//   main      the element that its label belongs to, and that gets the focus first
+//   isSaid    does it have a value?
 //   clear()
-//   read()    the value, undefined where nothing is put in; throws a Problem for a slip
+//   read()    returns the value, undefined if there is none; throws a Problem for a mistake
 //
-// and where elements or places go in by clicks, take(id, place). See fields.js for which parameter
-// has which.
+// and take(id, place) if clicks can fill it with elements or places. fields.js chooses the control
+// of a parameter.
 
 import { make } from './dom.js';
 import { numbersOf, slip, toggleWord, wordsOf } from './numbers.js';
 
-// An element with a text, "" where nothing is put in.
+// A text field; "" means no value.
 class Field {
     constructor(node) {
         this.node = node;
@@ -35,7 +35,7 @@ class Field {
     }
 }
 
-// A choice of some texts: [value, text] each.
+// A choice of texts: an array of [value, text].
 export class Choice extends Field {
     constructor(options, value) {
         super(make('select'));
@@ -69,7 +69,7 @@ export class Flag {
     }
 }
 
-// A flag that may be left as it is.
+// A flag that may be left out.
 export class Whether extends Choice {
     constructor() {
         super([['', 'as it is'], ['yes', 'yes'], ['no', 'no']], '');
@@ -86,7 +86,7 @@ export class Text extends Field {
     }
 }
 
-// Red, green and blue, and an opacity where `most` is four: numbers in one field.
+// Red, green and blue, and an opacity if `most` is four: numbers in one field.
 export class Color extends Text {
     #name;
     #most;
@@ -110,7 +110,7 @@ export class Color extends Text {
     }
 }
 
-// Ids of elements; `isList` takes several, `isNullable` none.
+// Ids of elements; `isList` allows several, `isNullable` none.
 export class Ids {
     node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
     #name;
@@ -141,7 +141,7 @@ export class Ids {
         this.node.value = ids.join(' ');
     }
 
-    // Those that can be read of it.
+    // Returns the valid ids in the text.
     get ids() {
         return wordsOf(this.node.value).filter((word) => /^\d{1,9}$/.test(word)).map(Number);
     }
@@ -150,7 +150,7 @@ export class Ids {
         this.node.value = this.#isList ? toggleWord(this.node.value, id) : `${id}`;
     }
 
-    // An id, null for none, or an array where it takes several.
+    // Returns an id, null for none, or an array if it takes several.
     read() {
         const text = this.node.value.trim();
         if (this.#isNullable && (text === '' || text === 'none')) {
@@ -171,7 +171,7 @@ export class Ids {
     }
 }
 
-// A number, empty where it is left out.
+// A number; empty if it is left out.
 export class Numeral {
     node;
     #name;
@@ -180,7 +180,7 @@ export class Numeral {
     constructor(name, placeholder, step = 'any') {
         this.#name = name;
         this.node = make('input', { type: 'number', step, placeholder });
-        // Else the wheel would change it while one scrolls on.
+        // Otherwise scrolling with the wheel over the field would change it.
         this.node.addEventListener('wheel', () => this.node.blur(), { passive: true });
     }
 
@@ -210,15 +210,16 @@ export class Numeral {
 
 const AXES = ['x', 'y', 'z'];
 
-// A point or a vector: three numbers, which can be pasted into any of the fields together. `usual`
-// is what a field stands for that is left empty while another is not, undefined: it must not be.
+// A point or a vector: three numbers, which can be pasted into one of the fields together. `usual`
+// is the value of a field that is left empty while others are not; if it is undefined, no field may
+// be empty.
 export class Vector {
     node;
     #name;
     #usual;
     #fields;
 
-    // `onMore(numbers)` is called when more are pasted than there is room for.
+    // `onMore(numbers)` is called if more numbers are pasted than there are fields.
     constructor(name, { usual, onMore = () => {} } = {}) {
         [this.#name, this.#usual] = [name, usual];
         this.#fields = AXES.map((axis) => new Numeral(`${name} ${axis}`, axis));
@@ -266,7 +267,7 @@ export class Vector {
         });
     }
 
-    // Several numbers at once: all three, or those from the field on that they are pasted into.
+    // Pastes several numbers: all three, or those from this field on.
     #paste(event, at, onMore) {
         const words = wordsOf(event.clipboardData.getData('text'));
         if (words.length < 2) {
@@ -284,8 +285,8 @@ export class Vector {
     }
 }
 
-// Fields that most want, or the same as text: a button goes from one to the other. `easy` is a
-// control, `write()` gives what it says as text and `parse(text)` what the text means.
+// Simple fields, or a text for everything else; a button switches between them. `easy` is a
+// control, `write()` returns its value as text and `parse(text)` the value of a text.
 export class WithText {
     node;
     #easy;
@@ -295,7 +296,7 @@ export class WithText {
     #write;
     #labels;
 
-    // `labels` of the button: what it goes to, text or fields.
+    // `labels` of the button: to the text, to the fields.
     constructor(easy, { name, placeholder, write, parse, labels }) {
         [this.#easy, this.#parse, this.#write, this.#labels] = [easy, parse, write, labels];
         this.#text = make('textarea', {
@@ -322,7 +323,7 @@ export class WithText {
         return !this.#text.hidden;
     }
 
-    // Show the text, at first that of what the fields say, or the fields as they were left.
+    // Shows the text (at first the value of the fields), or the fields as they were left.
     showText(isText, text = isText ? this.#write() : '') {
         this.#text.value = text;
         this.#text.hidden = !isText;
@@ -357,7 +358,7 @@ export class WithText {
     }
 }
 
-// One vector for all, or as text a list with one for each.
+// One vector for all elements, or as text a list with one vector for each.
 export function vectors(name) {
     const parse = (text) => {
         const numbers = numbersOf(text, name);

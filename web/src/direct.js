@@ -1,9 +1,9 @@
-// direct.js - tools used in the view itself: armed by a key or a button, then a drag shows what it
-// will do, and letting go does it. A click does the usual; Esc gives up.
+// direct.js - tools that work in the view: a key or a button selects a tool, a drag shows what it
+// would do, and releasing the pointer does it. A click applies a default amount; Esc cancels.
 
 import { enable } from './dom.js';
 
-// A pointer that moved no further than this between down and up has clicked.
+// A pointer that moved at most this far between down and up has clicked.
 const CLICK_PIXELS = 4;
 
 const HINTS = {
@@ -18,18 +18,18 @@ export class Direct {
     #acts;
     #tool = null;
     #gesture = null;
-    #down = null; // where and with which pointer the drag began
+    #down = null; // position and id of the pointer when the drag began
     #isEnabled = false;
 
-    // `note` holds `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool.
-    // `begin(tool)` gives a gesture or null, `drag(gesture, moved)` what it comes to (see
-    // gesture.js), `onShow(lines)` shows lines (null: none) and `onRun(operation)` does it.
+    // `note` contains `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool.
+    // `begin(tool)` returns a gesture or null, `drag(gesture, moved)` its result (see gesture.js),
+    // `onShow(lines)` shows lines (null: none) and `onRun(operation)` runs it.
     constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };
         this.#acts = acts;
         giveUp.addEventListener('click', () => this.cancel());
-        // Before all others that listen: to them it is as if nothing had happened.
+        // Listens in the capture phase, so that other listeners do not see the events of a drag.
         const listen = (type, act) =>
             canvas.addEventListener(type, (event) => act(event), { capture: true });
         listen('pointerdown', (event) => this.#press(event));
@@ -42,7 +42,7 @@ export class Direct {
         return this.#gesture !== null;
     }
 
-    // False when the tool does not fit what is selected.
+    // Selects a tool; returns false if it does not fit the selection.
     arm(tool) {
         this.cancel();
         const gesture = this.#isEnabled ? this.#acts.begin(tool) : null;
@@ -59,7 +59,7 @@ export class Direct {
         return true;
     }
 
-    // Press a tool's button: arm it, or give it up.
+    // A tool's button was pressed: selects the tool, or cancels it.
     toggle(tool) {
         const isOn = this.#tool === tool;
         this.cancel();
@@ -75,7 +75,7 @@ export class Direct {
         }
     }
 
-    // The mesh has changed: go on with what is selected as it is now.
+    // The mesh has changed: continues with the present selection.
     refresh() {
         const gesture = this.#gesture && this.#acts.begin(this.#tool);
         if (gesture === null) {
@@ -127,7 +127,7 @@ export class Direct {
         }
     }
 
-    // How far the pointer has moved, null for a click.
+    // Returns how far the pointer has moved, null for a click.
     #movedTo({ clientX, clientY }) {
         const moved = [clientX - this.#down.x, clientY - this.#down.y];
         return Math.hypot(...moved) > CLICK_PIXELS ? moved : null;

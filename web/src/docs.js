@@ -1,11 +1,11 @@
-// docs.js - the manual at /docs: the OpenAPI document of this very server, set as a page. It has a
-// section for each endpoint, id its operationId, and one for each schema, id schema-NAME.
+// docs.js - the manual at /docs: this server's OpenAPI document as a page. Each endpoint has a
+// section whose id is its operationId, and each schema one whose id is schema-NAME.
 
 import { getDescription } from './api.js';
 import { make } from './dom.js';
 import { alternatives, typeOf } from './schema.js';
 
-// Types as text, with names of schemas as links.
+// Returns types as text, with names of schemas as links.
 function typeNodes(schema) {
     return typeOf(schema).map((part) =>
         typeof part === 'string' ? part : make('a', { href: `#schema-${part.ref}` }, part.ref),
@@ -18,7 +18,7 @@ function cells(tag, ...contents) {
 
 function table(heads, rows) {
     const head = make('thead', {}, cells('th', ...heads.map((text) => [text])));
-    // It may be wider than the page; the keyboard can then move it.
+    // The table may be wider than the page; the focus lets the keyboard scroll it.
     return make(
         'div',
         { className: 'table', tabIndex: 0, role: 'group', 'aria-label': heads[0] },
@@ -30,7 +30,7 @@ function code(text) {
     return make('code', {}, text);
 }
 
-// JSON is set with one member a line, other text as it is.
+// Shows JSON with one member per line, other text unchanged.
 function example(body) {
     const text = typeof body === 'string' ? body : JSON.stringify(body, null, 2);
     // Short arrays, such as ids and points, are easier to read in one line.
@@ -40,7 +40,7 @@ function example(body) {
     return make('pre', { tabIndex: 0 }, code(flat.trimEnd()));
 }
 
-// Words between backticks are code.
+// Shows words between backticks as code.
 function prose(text) {
     return text.split('`').map((part, i) => (i % 2 === 1 ? code(part) : part));
 }
@@ -61,7 +61,7 @@ function membersTable({ properties, required = [] }) {
     return table(['Member', 'Type', 'Meaning'], rows);
 }
 
-// What a schema says, below its heading.
+// Returns the contents of a schema, below its heading.
 function schemaNodes(schema) {
     const nodes = note(schema.description);
     const choices = alternatives(schema);
@@ -195,7 +195,7 @@ function show({ info, paths, components }) {
             make('h2', {}, 'Schemas'),
             ...schemas.map(schemaSection),
         );
-    // The browser looked for the place before it was there.
+    // The browser looked for the anchor before it existed.
     document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 

@@ -1,7 +1,7 @@
-// dom.js - building elements. Text is always text: nothing here reads HTML, so a mesh may be named
-// anything.
+// dom.js - building elements. Text is always inserted as text, never parsed as HTML, so a mesh may
+// have any name.
 
-// What the page has under an id.
+// Returns the page's element with an id.
 export function byId(id) {
     return document.getElementById(id);
 }
@@ -23,8 +23,8 @@ export function make(tag, properties = {}, ...children) {
 
 const leftBehind = new WeakSet();
 
-// Enable a button, or disable it. One that loses the focus by that has it again afterwards, unless
-// that has gone elsewhere: who works by keys presses it again.
+// Enables a button, or disables it. If that takes the focus from it, it gets the focus again when
+// enabled, unless the focus is elsewhere by then: so a keyboard user can press it again.
 export function enable(button, isEnabled) {
     if (!isEnabled && document.activeElement === button) {
         leftBehind.add(button);
@@ -39,26 +39,26 @@ function isNowhere(element) {
     return element === null || element === document.body || element.disabled === true;
 }
 
-// What is between backquotes is code.
+// Shows text between backticks as code.
 export function prose(text) {
     return text.split('`').map((part, i) => (i % 2 === 1 ? make('code', {}, part) : part));
 }
 
 const counts = new Intl.NumberFormat('en');
 
-// 1,234,567
+// Formats as 1,234,567.
 export function formatCount(value) {
     return counts.format(value);
 }
 
 const about = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
-// 12,345 or 1.2M, where room is short.
+// Formats as 12,345 or 1.2M, where space is short.
 export function formatAbout(value) {
     return value < 100000 ? formatCount(value) : about.format(value);
 }
 
-// So many significant digits at most, for what is measured. JSON has null where a double
+// Formats a measure with at most `digits` significant digits. JSON has null for a value that
 // overflowed.
 export function formatMeasure(value, digits = 6) {
     if (value === null) {

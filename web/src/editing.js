@@ -1,4 +1,4 @@
-// editing.js - edits from the page: the form of an operation, which is tried before it is sent, the
+// editing.js - editing in the page: the form of an operation, with a dry run before it is sent, the
 // tools of the view, and keys.
 
 import * as api from './api.js';
@@ -10,20 +10,21 @@ import { Tools } from './tools.js';
 import { Trial, wordsOf } from './trial.js';
 import { Work } from './work.js';
 
-// What works on all of a mesh is not tried beforehand on one of more faces.
+// An operation on the whole mesh gets no dry run if the mesh has more faces.
 const MOST_TRIED = 100000;
 
-// More elements than this in the fields of a form are not marked in the view.
+// If a form's fields contain more elements than this, the view does not mark them.
 const MOST_MARKED = 1000;
 
-// The tools of the view, and the form of each for what is selected, where it is not used there.
+// The tools of the view, and the form to show if a tool cannot be used on the selection in the
+// view.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
-// What is to be clicked, one or several.
+// What the user has to click, one or several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
-// What X does to what is selected.
+// The operation of the X key for each kind of element.
 const REMOVALS = {
     vertex: 'vertex_delete',
     halfedge: 'edge_collapse',
@@ -40,9 +41,9 @@ export class Editing {
     #trial;
     #work;
     #onPicking;
-    #marking = 0; // how often the elements in the fields were asked for
+    #marking = 0; // number of requests for the elements in the fields
 
-    // `onPicking()` when a field waits for what is clicked.
+    // `onPicking()` is called when a field waits for a click.
     constructor(canvas, session, stage, toasts, onPicking) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
         this.#onPicking = onPicking;
@@ -106,7 +107,7 @@ export class Editing {
         }
     }
 
-    // The server's table of operations.
+    // Takes the server's table of operations.
     setOperations(operations) {
         this.#tools.setOperations(operations);
     }
@@ -120,7 +121,7 @@ export class Editing {
         enable(byId('remove'), isEnabled && last !== undefined);
     }
 
-    // What is selected, or the mesh itself, has changed: see Session for `what`.
+    // The selection or the mesh has changed: see Session for `what`.
     follow(what) {
         this.#tools.setSelection(this.#session.selection.chosen);
         if (what === 'mesh' || what === 'selection') {
@@ -177,7 +178,7 @@ export class Editing {
         }
     }
 
-    // Delete or collapse what is selected: the last one where the operation takes only one.
+    // Deletes or collapses the selection; only its last element if the operation takes one.
     async remove() {
         const { chosen, last } = this.#session.selection;
         if (last !== undefined) {
@@ -187,7 +188,7 @@ export class Editing {
 
     // --- clicks and tools of the view ---
 
-    // What a click chose, see choose(): for the field that waits for it, else it is selected.
+    // Handles what a click chose, see choose(): fills the field that waits for it, or selects it.
     async pick(chosen, also) {
         if (this.#tools.isArmed) {
             await this.#giveToField(chosen);
@@ -196,7 +197,7 @@ export class Editing {
         }
     }
 
-    // A field waits for what is clicked, see Tools; undefined: none does.
+    // Shows that a field waits for a click, see Tools; undefined: none does.
     #showPicking(wanted) {
         byId('pick-note').hidden = wanted === undefined;
         if (wanted !== undefined) {
@@ -230,7 +231,7 @@ export class Editing {
         }
     }
 
-    // Show where the elements are that are in the fields and not selected.
+    // Marks the elements that are in the fields and not selected.
     async #markField() {
         const { mesh, shown: content, selection } = this.#session;
         const isSelected = ({ kind, id }) =>
@@ -247,8 +248,8 @@ export class Editing {
         }
     }
 
-    // Arm a tool of the view, or show the form where nothing is selected that it fits. The form of
-    // what is selected is shown beside it, for who wants numbers.
+    // Starts a tool of the view, or shows its form if it does not fit the selection. The form of
+    // the operation is also shown beside the tool, for exact numbers.
     start(tool, isKey) {
         const name = FORMS[tool];
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
@@ -272,7 +273,7 @@ export class Editing {
         }
     }
 
-    // What Esc gives up: the nearest to hand.
+    // Esc: cancels the tool, else the field that waits for a click, else clears the selection.
     giveUp() {
         if (this.#direct.isArmed) {
             this.#direct.cancel();

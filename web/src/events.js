@@ -1,14 +1,14 @@
-// events.js - text/event-stream as it comes: text in, events out. EventSource sends no Authorization,
-// so that the stream is fetched like everything else.
+// events.js - a parser for text/event-stream: text in, events out. EventSource cannot send
+// Authorization, so the stream is fetched like other requests.
 
 export class EventReader {
-    id = ''; // of the last event that had one
+    id = ''; // id of the last event that had one
 
-    #rest = ''; // of a line that has not ended
+    #rest = ''; // an incomplete line
     #name = '';
     #data = [];
 
-    // What a piece of the stream ends: [{name, data, id}, ...].
+    // Returns the events that a piece of the stream completes: [{name, data, id}, ...].
     take(text) {
         const lines = (this.#rest + text).split('\n');
         this.#rest = lines.pop();

@@ -1,4 +1,4 @@
-// fields.js - which control a parameter of an operation has, and what the form then says of it.
+// fields.js - which control a parameter of an operation gets, and what the form says about it.
 
 import { Choice, Color, Flag, Ids, Numeral, Text, Vector, vectors, Whether } from './controls.js';
 import { matrix } from './matrix.js';
@@ -6,10 +6,10 @@ import { matrix } from './matrix.js';
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
 export const KINDS = Object.values(PLURALS);
 
-// Those filled with the place of a vertex that is clicked.
+// Parameters filled with the position of a clicked vertex.
 const PLACES = ['point', 'points'];
 
-// The kind of element that a click gives a parameter, null where clicks give nothing.
+// Returns the kind of element that a click fills in, or null.
 export function kindOf({ type }) {
     const kind = PLURALS[type] ?? type;
     if (PLACES.includes(type)) {
@@ -27,8 +27,8 @@ export function isList({ plural, type }) {
     return plural !== undefined || type in PLURALS;
 }
 
-// `meshes()` gives the list of meshes, as a promise; `pickable(param, control)` a control's node
-// with a button that lets a click fill it.
+// `meshes()` returns a promise of the list of meshes; `pickable(param, control)` returns the
+// control's node with a button that lets a click fill it.
 export function controlFor(param, meshes, pickable) {
     const { name, type, choices, default: usual, nullable = false } = param;
     if (type === 'flag') {
@@ -60,12 +60,12 @@ export function controlFor(param, meshes, pickable) {
     return new Ids(name, isList(param), nullable);
 }
 
-// What stands in an empty field. A number that is left out is the server's to choose.
+// The placeholder of an empty field. The server chooses the value of a number that is left out.
 function hintFor({ default: usual, required }) {
     return usual === undefined ? (required ? 'number' : 'left out') : `${usual}`;
 }
 
-// What is to know of a parameter beside its name.
+// Returns notes on a parameter: type, range, whether it is required.
 export function marksOf({ type, required, min, max, exclusive }) {
     const marks = type === 'integer' ? ['whole'] : [];
     if (min !== undefined || max !== undefined) {
@@ -78,7 +78,7 @@ export function marksOf({ type, required, min, max, exclusive }) {
     return marks.join(', ');
 }
 
-// Is something said, or does the parameter need nothing said? Of a group one is enough.
+// Does the parameter have a value, or need none? One of a group is enough.
 export function isComplete(fields) {
     return fields.every(
         (field) =>
@@ -93,8 +93,8 @@ export function isComplete(fields) {
     );
 }
 
-// [member, value] of a field; undefined where it is left out. The server judges what is missing or
-// out of range: it knows better and says why.
+// Returns [member, value] of a field; undefined if it is left out. The server checks missing values
+// and ranges, since it can say what is wrong.
 export function readField({ param, control }) {
     const value = control.read();
     if (Array.isArray(value) && param.plural !== undefined) {
@@ -103,7 +103,7 @@ export function readField({ param, control }) {
     return [param.name, value];
 }
 
-// The fields that a pointer of a problem, such as /ops/0/faces/3, is about.
+// Returns the fields that a problem's pointer, such as /ops/0/faces/3, refers to.
 export function isAbout({ param }, pointer) {
     const member = pointer.split('/')[3];
     return member !== undefined && (member === param.name || member === param.plural);

@@ -1,15 +1,14 @@
-// framing.js - where the camera should go to show what is selected. Pure.
+// framing.js - where the camera should go to show the selection. Pure.
 
 import { normalOfFace, pointAt } from './geometry.js';
 import { middleOf, reachFrom } from './view.js';
 
-// A sum of unit normals shorter than this has no direction: they look to all sides.
+// If the sum of unit normals is shorter than this, the faces look in all directions.
 const NOWHERE = 1e-3;
 
-// {center, radius, normal} of the selected elements, with what is around it where that is a single
-// vertex; null where nothing is selected. `selection` is a Selection.
-// The normal is where the selected faces look to, or those beside what is selected, null where that
-// is nowhere.
+// Returns {center, radius, normal} of the selected elements, for a single vertex with its
+// surroundings; null if nothing is selected. `selection` is a Selection. The normal is that of the
+// selected faces, or of the faces beside the selection; null if they look in all directions.
 export function framing(geometry, selection) {
     const marks = selection.marksIn(geometry);
     const arrows = selection.arrowsIn(geometry);

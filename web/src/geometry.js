@@ -1,27 +1,28 @@
-// geometry.js - the arrays a mesh is drawn from, as GET .../geometry sends them. Pure: no page, no
-// network, no WebGL.
+// geometry.js - the arrays from which a mesh is drawn, as GET .../geometry sends them. Pure: no
+// page, no network, no WebGL.
 //
 //   vertices   4 floats each:  x, y, z, state (0 dead, VERTEX_USED or VERTEX_ISOLATED)
 //   triangles  4 words each:   corners a, b, c, and face | sides << 29
 //
-// Both arrays are as long as a texture of ROW texels across: the renderer uploads them as they are.
-// What lies beyond vertexCount and triangleCount is zero.
+// Both arrays fill a texture that is ROW texels wide, so that the renderer uploads them unchanged.
+// Entries beyond vertexCount and triangleCount are zero.
 //
 //            c              bit 29: a -> b is an edge of the polygon
 //           / \             bit 30: b -> c
 //          a---b            bit 31: c -> a
 //                           a bit that is clear marks a diagonal, which is not drawn
 //
-// A vertex's place is its id. The triangles of a face lie side by side, in no order of faces; a
-// slot without a face is four zeros. The server has moved and scaled positions into the unit ball
-// ("view coordinates") before it rounded them to floats, so that a mesh far from the origin or of
-// any size draws the same; `frame` says how. Within a `layout` faces keep their slots and the frame
-// stays, so that a change can be put into the arrays: see geometry_delta.js.
+// The index of a vertex is its id. The triangles of a face are consecutive; faces are in no
+// particular order; a slot without a face is four zeros. The server moves and scales positions into
+// the unit ball ("view coordinates") before rounding them to floats, so that meshes far from the
+// origin or of any size are drawn correctly; `frame` has the offset and the scale. Within a
+// `layout` faces keep their slots and the frame stays, so that changes can be applied to the
+// arrays: see geometry_delta.js.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
 
-// Texels in a row of a texture; every WebGL2 has 2048.
+// Texels in a row of a texture; every WebGL2 allows 2048.
 export const ROW = 2048;
 
 export const HEADER_BYTES = 96;
@@ -29,9 +30,9 @@ const VERSION = 2;
 const SIDE_SHIFT = 29;
 const FACE_MASK = 2 ** SIDE_SHIFT - 1;
 
-// {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer of
-// which only the header is read: a base of 0 says that it holds all rows, and `length` how many
-// bytes it has. Throws a RangeError where it is no header.
+// Returns {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer
+// of which only the header is read. A base of 0 means that it contains all rows; `length` is the
+// number of its bytes. Throws a RangeError if the header is invalid.
 export function headerOf(buffer) {
     const view = new DataView(buffer);
     const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
@@ -46,9 +47,9 @@ export function headerOf(buffer) {
     return { revision, base, layout, vertexCount, triangleCount, length };
 }
 
-// An answer of all rows, an ArrayBuffer, as {revision, layout, frame, vertices, vertexCount,
-// triangles, triangleCount, firstOf, hasIsolated}. Throws a RangeError where it is not what it
-// should be.
+// Returns an answer with all rows, an ArrayBuffer, as {revision, layout, frame, vertices,
+// vertexCount, triangles, triangleCount, firstOf, hasIsolated}. Throws a RangeError if it is
+// invalid.
 export function unpack(buffer) {
     const { revision, base, layout, vertexCount, triangleCount, length } = headerOf(buffer);
     const trianglesAt = HEADER_BYTES + 16 * vertexCount;
@@ -76,7 +77,7 @@ export function unpack(buffer) {
 
 const isLengthOf = (buffer) => (length) => length === buffer.byteLength;
 
-// A copy that fills the rows of a texture, of which there is one at least.
+// Returns a copy extended to whole rows of a texture, at least one.
 export function wholeRows(array) {
     const rows = Math.max(Math.ceil(array.length / (4 * ROW)), 1);
     const whole = new array.constructor(4 * ROW * rows);
@@ -84,8 +85,8 @@ export function wholeRows(array) {
     return whole;
 }
 
-// A ball around all live vertices: the middle of their box, and how far they reach from it. Never
-// nothing: a camera must stand further.
+// Returns a ball around all live vertices: the middle of their bounding box, and the distance to
+// the farthest. The radius is never 0, because the camera must stand outside.
 export function ballOf({ vertices }) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
@@ -121,17 +122,17 @@ function hasIsolated(vertices) {
     return false;
 }
 
-// Is this the id of a vertex that lives?
+// Is this the id of a live vertex?
 export function hasVertex({ vertices }, id) {
     return 4 * id < vertices.length && vertices[4 * id + 3] !== 0;
 }
 
-// [x, y, z] of a vertex.
+// Returns [x, y, z] of a vertex.
 export function pointAt({ vertices }, id) {
     return Array.from(vertices.subarray(4 * id, 4 * id + 3));
 }
 
-// The face of a triangle, and whether its side i is an edge of the polygon.
+// Two accessors: the face of a triangle, and whether its side i is an edge of the polygon.
 export function faceOf(triangles, triangle) {
     return triangles[4 * triangle + 3] & FACE_MASK;
 }
@@ -140,7 +141,7 @@ export function isEdge(triangles, triangle, side) {
     return ((triangles[4 * triangle + 3] >>> (SIDE_SHIFT + side)) & 1) === 1;
 }
 
-// The polygon edges on some triangles, as pairs of vertices in the direction of their face.
+// Returns the polygon edges of some triangles, as pairs of vertices in the direction of their face.
 export function edgesOfTriangles(triangles, which) {
     const edges = [];
     for (const triangle of which) {
@@ -158,8 +159,8 @@ export function edgesOfTriangles(triangles, which) {
 
 // --- where the triangles of a face are ---
 //
-// firstOf[face] is its first triangle, counted from 1. What is there may be of another face by now:
-// whoever reads it looks.
+// firstOf[face] is the number of its first triangle, counted from 1. It may be outdated: that
+// triangle may belong to another face by now, so readers check.
 
 const isLive = (triangles, triangle) => triangles[4 * triangle] !== triangles[4 * triangle + 1];
 
@@ -177,12 +178,13 @@ function firstsOf(triangles, count) {
     return firstOf;
 }
 
-// Bring `firstOf` up to date after some triangles were written; their places in rising order.
+// Updates `firstOf` after some triangles were written; `places` are their indices in ascending
+// order.
 export function findFaces(geometry, places) {
     const { triangles, triangleCount } = geometry;
-    let done = -1; // up to here
+    let done = -1; // index of the last triangle processed
     for (const place of places) {
-        // A face that lost this triangle may keep one beside it.
+        // A face that lost this triangle may still have one beside it.
         for (const at of [place - 1, place, place + 1]) {
             if (at > done && at < triangleCount && isLive(triangles, at)) {
                 done = at;
@@ -200,14 +202,14 @@ function setFirst(geometry, face, triangle) {
     }
     const isOf = (at) => at >= 0 && faceOf(triangles, at) === face && isLive(triangles, at);
     let first = geometry.firstOf[face] - 1;
-    // Where the triangles before it were found already, they need not be walked again.
+    // If the triangles before it were found already, they need not be visited again.
     if (first < 0 || first >= triangle || !isOf(first) || !isOf(triangle - 1)) {
         for (first = triangle; isOf(first - 1); first--);
     }
     geometry.firstOf[face] = first + 1;
 }
 
-// The triangles of a face, none when it does not live.
+// Returns the triangles of a face, none if it is not live.
 export function trianglesOfFace({ triangles, triangleCount, firstOf }, face) {
     const found = [];
     const isOf = (at) => faceOf(triangles, at) === face && isLive(triangles, at);
@@ -217,7 +219,7 @@ export function trianglesOfFace({ triangles, triangleCount, firstOf }, face) {
     return found;
 }
 
-// The direction a face looks to; not of length 1, and zero where it has no area.
+// Returns the direction of a face's normal; not of length 1, and zero if the face has no area.
 export function normalOfFace(geometry, face) {
     const { vertices, triangles } = geometry;
     const normal = [0, 0, 0];

@@ -1,27 +1,27 @@
-// geometry_delta.js - what changed in the arrays of geometry.js, as GET .../geometry?since=&layout=
-// sends it, put into them. Pure: no page, no network, no WebGL.
+// geometry_delta.js - applies changes, as GET .../geometry?since=&layout= sends them, to the arrays
+// of geometry.js. Pure: no page, no network, no WebGL.
 //
 //   0   "HEDG", u32 version         40  u32 vertexCount, u32 triangleCount after the change
 //   8   u64 revision                80  u64 layout, below 2^53
-//   16  u64 base                    88  u32 rows of vertices, u32 rows of triangles that follow
+//   16  u64 base                    88  u32 vertex rows, u32 triangle rows that follow
 //   24  u64 bytes of each part      96  the two parts
 //
-// A part is u32 places in rising order, zeros up to a multiple of 16 bytes, and as many rows.
-// Within a layout a triangle keeps its slot, counts never fall, and a slot without a face is four
-// zeros. A face's triangles lie side by side.
+// A part has u32 indices in ascending order, zeros up to a multiple of 16 bytes, and a row for each
+// index. Within a layout a triangle keeps its slot, counts never decrease, and a slot without a
+// face is four zeros. The triangles of a face are consecutive.
 
 import { HEADER_BYTES, headerOf } from './geometry.js';
 
 const ROW_BYTES = 16;
 
-// Put the changes into `geometry`: {revision, layout, vertices, vertexCount, triangles,
-// triangleCount}, whose arrays may be longer than their counts say. An array that is too short is
-// replaced by one with room for an eighth more, a multiple of `rowTexels` rows.
+// Applies changes to `geometry`: {revision, layout, vertices, vertexCount, triangles,
+// triangleCount}, whose arrays may be longer than their counts. An array that is too short is
+// replaced by one that is an eighth longer than needed, a multiple of `rowTexels` rows.
 //
-// Returns {vertices, triangles, grown}: the places of the rows that changed, as Uint32Arrays, and
-// whether an array was replaced. Null, with nothing done, where the answer holds all rows and the
-// geometry must be made of it afresh. Throws a RangeError, with nothing done, where it is no change
-// of this geometry: then everything must be fetched.
+// Returns {vertices, triangles, grown}: the indices of the changed rows, as Uint32Arrays, and
+// whether an array was replaced. Returns null, and does nothing, if the answer contains all rows
+// and the geometry must be made from it again. Throws a RangeError, and does nothing, if the answer
+// is no change of this geometry: then everything must be fetched.
 export function applyDelta(geometry, buffer, rowTexels = 2048) {
     const header = headerOf(buffer);
     if (header.base === 0) {

@@ -1,28 +1,29 @@
-// gesture.js - what a drag means for the elements that are selected: lines that show it and the
-// edit it comes to. Pure.
+// gesture.js - what a drag does to the selected elements: lines that show it and the edit that
+// results. Pure.
 //
-// Places are in view coordinates (see geometry.js); the edit is in those of the mesh.
+// Places are in view coordinates (see geometry.js); the edit is in coordinates of the mesh.
 
 import { edgesOfTriangles, hasVertex, normalOfFace, pointAt, trianglesOfFace } from './geometry.js';
 import { middleOf, pixelAtOne, reachFrom } from './view.js';
 
-// Of what is selected, where a tool is used by a click and not by a drag.
+// The amount of a tool that is clicked rather than dragged, as a part of the selection's size.
 const USUAL = 0.2;
 
-// How far an inset goes at most and at least, of the way to the middle.
+// The least and the greatest inset, as parts of the way to the middle.
 const INSET = [0.01, 0.99];
 
-// A normal of which less than this is across the view is drawn along by dragging upwards.
+// If a smaller part of a normal of length 1 is across the view, the normal looks almost at the
+// viewer, and dragging upwards follows it.
 const LEAST_ACROSS = 0.3;
 
-// More lines than this are not shown.
+// At most this many lines are shown.
 const MOST_LINES = 20000;
 
 const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
 const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
 const unit = (a) => a.map((value) => value / (Math.hypot(...a) || 1));
 
-// The operation of the server's table that a tool comes to for a kind of element.
+// The operation that a tool runs for each kind of element.
 const OPERATIONS = {
     move: {
         vertex: 'vertex_move',
@@ -34,8 +35,8 @@ const OPERATIONS = {
     inset: { face: 'face_inset' },
 };
 
-// A tool, 'move', 'extrude' or 'inset', put to what is chosen (see Selection): what drag() needs,
-// or null where it does not fit.
+// Starts a tool, 'move', 'extrude' or 'inset', on the selection (see Selection): returns what
+// drag() needs, or null if the tool does not fit.
 export function begin(tool, chosen, geometry) {
     const kind = chosen.at(-1)?.kind;
     const op = OPERATIONS[tool][kind];
@@ -63,9 +64,10 @@ function endsOf({ kind, id, element }) {
     return kind === 'halfedge' ? [element.origin, element.target] : element.vertices;
 }
 
-// The polygon edges on all triangles at some vertices.
+// Returns the polygon edges of all triangles at some vertices.
 function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
-    const wanted = new Uint8Array(vertexCount); // of millions of triangles each is looked at
+    // fast lookup, since millions of triangles are checked
+    const wanted = new Uint8Array(vertexCount);
     vertices.forEach((id) => {
         wanted[id] = 1;
     });
@@ -78,9 +80,9 @@ function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
     return edgesOfTriangles(triangles, found).slice(0, MOST_LINES);
 }
 
-// What it comes to when the pointer has moved by (dx, dy) CSS pixels, or null for a click, which
-// means the usual: {operation, lines, text}, where `lines` are coordinates of ends in pairs, and
-// the operation is null where it would change nothing. `view` is what Renderer.view says.
+// Returns the result when the pointer has moved by (dx, dy) CSS pixels, or null for a click, which
+// uses the default amount: {operation, lines, text}, where `lines` are pairs of end points, and the
+// operation is null if it would change nothing. `view` is Renderer.view.
 export function drag(gesture, view, moved) {
     if (gesture.op === 'vertex_move') {
         return move(gesture, moved === null ? [0, 0, 0] : across(gesture, view, moved));
@@ -97,19 +99,19 @@ export function drag(gesture, view, moved) {
 
 // --- from pixels to places ---
 
-// How long a pixel is where the selection is.
+// Returns the length of a pixel at the depth of the selection.
 function pixelOf({ middle }, view) {
     const depth = -dot(add(middle, view.position, -1), view.back);
     return pixelAtOne(view.height) * Math.max(depth, 0);
 }
 
-// In the plane of the view.
+// A movement in the plane of the view.
 function across(gesture, view, [dx, dy]) {
     const pixel = pixelOf(gesture, view);
     return add(view.right.map((value) => dx * pixel * value), view.up, -dy * pixel);
 }
 
-// Along the normal of the faces, so that it follows the pointer.
+// The distance along the normal of the faces for which they follow the pointer.
 function along(gesture, view, [dx, dy]) {
     const sum = gesture.chosen
         .map(({ id }) => unit(normalOfFace(gesture.geometry, id)))
@@ -128,7 +130,7 @@ function inwards(gesture, view, [dx, dy]) {
     return Math.min(Math.max(part, INSET[0]), INSET[1]);
 }
 
-// --- what it comes to ---
+// --- results ---
 
 const inMesh = ({ geometry }, vector) => vector.map((value) => value / geometry.frame.scale);
 const textOf = (numbers) => numbers.map((value) => Number(value.toPrecision(3))).join(' ');
@@ -163,7 +165,7 @@ function drawOut(gesture, by) {
     };
 }
 
-// Faces that share an edge move as one, as the operation's `region` says.
+// Faces that share an edge move together, as the operation's `region` does.
 function pull(gesture, length) {
     const { geometry, chosen, op } = gesture;
     const [distance] = inMesh(gesture, [length]);
@@ -191,7 +193,7 @@ function shrink(gesture, factor) {
     return { operation, lines, text: `${textOf([100 * factor])} % of the way` };
 }
 
-// The sides of a face where `place` puts them, and lines from there to where they are.
+// Returns the sides of a face moved by `place`, and lines from there to the original corners.
 function linesOfFace(geometry, face, place) {
     return sidesOf(geometry, edgesOfFace(geometry, face), place);
 }
@@ -211,9 +213,8 @@ function edgesOfFace(geometry, face) {
     return edgesOfTriangles(geometry.triangles, trianglesOfFace(geometry, face));
 }
 
-// Faces as sets of those that are connected across edges: {faces, rim, inner} each, where `rim` are
-// the edges beside faces that are not among them, as the face runs along them, and `inner` the
-// others, once.
+// Returns the connected sets of faces: {faces, rim, inner} for each, where `rim` are the edges to
+// faces outside, in the direction of the face, and `inner` the other edges, once each.
 export function regionsOf(geometry, faces) {
     const sides = faces.flatMap((face) =>
         edgesOfFace(geometry, face).map((edge) => ({ face, edge, key: `${edge}` })),

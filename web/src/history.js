@@ -1,4 +1,4 @@
-// history.js - the revisions of the open mesh, the newest first, to go back to by a click.
+// history.js - the list of the open mesh's revisions, newest first; a click goes back to one.
 
 import { formatCount, make } from './dom.js';
 
@@ -10,13 +10,13 @@ export class History {
     #readPage;
     #onUndo;
     #onError;
-    #shown = null; // the history whose entries are in the list
+    #shown = null; // the history that is in the list
     #isEnabled = true;
-    #hasFocus = false; // a button was pressed, which disables it
-    #beginning = null; // what the first step that can be undone was taken on
-    #isTopShown = false; // the state that the mesh is in has its row
+    #hasFocus = false; // a pressed button had the focus before it was disabled
+    #beginning = null; // the revision before the first step that can be undone
+    #isTopShown = false; // the present state has its row
 
-    // `readPage(cursor)` reads on; `onUndo(revision)` is called when one is chosen.
+    // `readPage(cursor)` reads the next page; `onUndo(revision)` is called when one is chosen.
     constructor({ list, more }, { readPage, onUndo, onError }) {
         this.#list = list;
         this.#more = more;
@@ -26,7 +26,7 @@ export class History {
         more.addEventListener('click', () => this.#readOn().catch(onError));
     }
 
-    // The first page, as the server says it.
+    // Shows the first page, as the server sent it.
     show(history) {
         const hadFocus = this.#hasFocus || this.#list.contains(document.activeElement);
         this.#hasFocus = false;
@@ -35,7 +35,7 @@ export class History {
         this.#list.replaceChildren();
         this.#append(history);
         if (hadFocus) {
-            this.#list.focus(); // what had it is not there any more
+            this.#list.focus(); // the element that had the focus is gone
         }
     }
 
@@ -49,7 +49,7 @@ export class History {
     async #readOn() {
         const first = this.#shown;
         const page = await this.#readPage(this.#more.dataset.cursor);
-        // An edit meanwhile begins the list anew.
+        // If an edit happened meanwhile, the list has started again.
         if (this.#shown === first) {
             this.#append(page);
         }
@@ -68,7 +68,7 @@ export class History {
         this.#more.hidden = next === null;
     }
 
-    // The newest step that can be undone is what the mesh is now.
+    // The newest step that can be undone is the present state.
     #row(entry) {
         const { action, undoable } = entry;
         const ops = entry.ops.join(', ') || action;
@@ -113,7 +113,7 @@ export class History {
 
 const signs = { created: '+', deleted: '\u2212', modified: '~' };
 
-// "+6 −1": how many elements came and went.
+// "+6 −1": how many elements were created and deleted.
 function sumOf(entry) {
     return ['created', 'deleted']
         .map((name) => [
@@ -125,7 +125,7 @@ function sumOf(entry) {
         .join(' ');
 }
 
-// "+1 vertices, +3 edges": of which kinds.
+// "+1 vertices, +3 edges": the numbers by kind.
 function tallyOf(entry) {
     return Object.keys(signs)
         .flatMap((name) => KINDS.map((kind) => [signs[name], entry[name]?.[kind] ?? 0, kind]))

@@ -1,8 +1,8 @@
-// inspector.js - all that the server says of one element, its links to follow.
+// inspector.js - everything the server says about one element, with links to others.
 
 import { formatMeasure, make } from './dom.js';
 
-// Members whose values are ids, and of what.
+// Members whose values are ids, and the kind of the element.
 const LINKS = {
     vertex: 'vertex',
     vertices: 'vertex',
@@ -21,10 +21,10 @@ const LINKS = {
 
 const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
 
-// Ids of one member shown before a button offers the others.
+// Ids of one member that are shown before a button offers the others.
 const MOST = 16;
 
-// Of a measure, so that three fit a line.
+// Digits of a measure: three numbers must fit into a line.
 const DIGITS = 5;
 
 export class Inspector {
@@ -36,8 +36,8 @@ export class Inspector {
     #onFollow;
     #heirOf;
 
-    // `onFollow(kind, id)` is called when a link is clicked; `heirOf({kind, id})` says where an
-    // element that is gone is to be found, or null.
+    // `onFollow(kind, id)` is called when a link is clicked; `heirOf({kind, id})` returns the
+    // element that replaced one that is gone, or null.
     constructor({ title, hint, gone, members, around }, { onFollow, heirOf }) {
         this.#title = title;
         this.#hint = hint;
@@ -48,8 +48,8 @@ export class Inspector {
         this.#heirOf = heirOf;
     }
 
-    // Show the last of the selected elements, what is around it and what is not there any more, see
-    // selection.js.
+    // Shows the last of the selected elements, its neighbours, and selected elements that are gone,
+    // see selection.js.
     show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;
@@ -95,7 +95,7 @@ export class Inspector {
         );
     }
 
-    // `kind` of what is linked to, undefined where it is no link.
+    // `kind` is the kind of the linked element, undefined if it is no link.
     #description(name, value, kind) {
         const description = make('dd', { className: Array.isArray(value) ? 'many' : 'one' });
         description.dataset.member = name;
@@ -145,7 +145,7 @@ export class Inspector {
     }
 }
 
-// A value that is no link. Measures are rounded, with all their digits on hovering.
+// Shows a value that is no link. Measures are rounded; hovering shows all digits.
 function plainValue(value) {
     if (typeof value === 'number' && !Number.isInteger(value)) {
         return make('span', { title: `${value}` }, formatMeasure(value, DIGITS));

@@ -1,9 +1,9 @@
-// keys.js - what keys do while the canvas has the focus, and the list of them that `?` shows. Only
-// there: elsewhere letters are text.
+// keys.js - the keys of the view, and the list of them that `?` shows. They work only while the
+// canvas has the focus: elsewhere letters are text.
 
 import { make } from './dom.js';
 
-// [keys as shown, key as events name it, what it does, name of the act]
+// [keys as shown, key as in events, description, name of the act]
 const KEYS = [
     ['1', '1', 'Pick vertices', 'pickVertex'],
     ['2', '2', 'Pick edges', 'pickEdge'],

@@ -1,10 +1,10 @@
-// legend.js - the materials of the open mesh by name and colour, and whether faces are drawn in
-// them.
+// legend.js - the materials of the open mesh with names and colours, and the switch that shows
+// their colours on faces.
 
 import { formatMeasure, make } from './dom.js';
 import { toScreen } from './materials.js';
 
-// Rows shown before a button offers the others.
+// Rows that are shown before a button offers the others.
 const MOST = 50;
 
 export class Legend {
@@ -12,14 +12,15 @@ export class Legend {
     #list;
     #current = '';
 
-    // `section` holds it all, `toggle` is the box to check; `onToggle(isOn)`.
+    // `section` contains everything, `toggle` is the checkbox; `onToggle(isOn)` is called when it
+    // changes.
     constructor({ section, list, toggle }, { onToggle }) {
         this.#section = section;
         this.#list = list;
         toggle.addEventListener('change', () => onToggle(toggle.checked));
     }
 
-    // Those of a mesh, see Materials.
+    // Shows the materials of a mesh, see Materials.
     show(materials) {
         const rows = materials.list.map(rowOf);
         this.#section.hidden = materials.isEmpty;
@@ -46,7 +47,7 @@ export class Legend {
         this.#list.append(make('li', {}, button));
     }
 
-    // The material of what is selected, '' for none.
+    // Marks the material of the selection, '' for none.
     setCurrent(name) {
         this.#current = name;
         this.#mark();
@@ -68,7 +69,7 @@ function rowOf({ name, look }) {
     swatch.classList.toggle('unknown', look === null);
     if (look !== null) {
         swatch.style.backgroundColor = colorOf(look.base_color);
-        // What gives off light shines beyond its edge.
+        // A material that emits light gets a glow around its swatch.
         if (look.emission.some((part) => part > 0)) {
             swatch.style.boxShadow = `0 0 6px 1px ${colorOf([...look.emission, 1])}`;
         }
@@ -89,7 +90,7 @@ function colorOf([red, green, blue, opacity]) {
     return `rgb(${parts.join(' ')} / ${opacity})`;
 }
 
-// What a swatch does not show.
+// Properties that a swatch does not show.
 function notesOf(look) {
     if (look === null) {
         return ['no colour known'];

@@ -1,10 +1,9 @@
-// levels.js - the arrays to draw a mesh from at any level of detail, see geometry.js for what they
-// look like. Pure.
+// levels.js - the arrays to draw a mesh at any level of detail, in the layout of geometry.js. Pure.
 //
-// Vertices and triangles lie in the order in which they come, not at their ids: a level is so many
-// of both from the first on, and the next one has a vertex and its triangles more. What lies behind
-// is as it was when it was last shown. So a split gives its neighbours what the next level has of
-// them, and takes back what this one had; what a collapse undoes is the same the other way round.
+// Vertices and triangles are in the order in which they arrive, not at their ids: a level shows a
+// number of both from the first on, and the next level adds a vertex and its triangles. Entries
+// after them keep the state in which they were last shown. So a split exchanges the stored values
+// of the neighbours with those of the next level, and undoing the split exchanges them back.
 
 import { ROW, VERTEX_ISOLATED, VERTEX_USED, wholeRows } from './geometry.js';
 import { unreadable } from './progressive.js';
@@ -12,25 +11,25 @@ import { unreadable } from './progressive.js';
 // All three sides of a triangle are edges.
 const SIDES = 7 << 29;
 
-// Changes are told by blocks of so many texels, of which no row of a texture has a part.
+// Changes are recorded by blocks of this many texels; a block never spans two rows of a texture.
 const BLOCK = 256;
 
 export class Levels {
-    // As the renderer takes it.
+    // In the form that the renderer takes.
     geometry;
-    count = 0; // splits that have come
-    level = 0; // splits that are done
-    most; // splits there are
+    count = 0; // splits that have arrived
+    level = 0; // splits that are applied
+    most; // number of all splits
 
     #origin;
     #scale;
-    #base; // vertices and faces of the base
+    #base; // numbers of vertices and faces of the base
     #isolated = 0;
-    #placeOf; // of ids, from 1 on
+    #placeOf; // by id, starting from 1
     #triangleOf;
     #faces = 0;
-    // Of each split: the vertex that is left and its position at the other level; where what it
-    // moves, and the triangles of the level it makes, end.
+    // For each split: the vertex that is split and its position at the other level; the ends of the
+    // lists of triangles that it moves and creates.
     #from;
     #other;
     #movedEnd;
@@ -38,7 +37,8 @@ export class Levels {
     #moved = new Uint32Array(1024);
     #changed;
 
-    // What a ProgressiveReader begins with, and the frame of the mesh's geometry.
+    // The first arguments are those of ProgressiveReader's `begin`; the others are the frame of the
+    // mesh's geometry.
     constructor({ vertices, faces, splits, vertexIds, faceIds }, { origin, scale }) {
         [this.#origin, this.#scale] = [origin, scale];
         this.#base = { vertices, faces };
@@ -62,23 +62,23 @@ export class Levels {
         };
     }
 
-    // Has all of the base come?
+    // Has the whole base arrived?
     get hasBase() {
         const { vertexCount } = this.geometry;
         return vertexCount >= this.#base.vertices && this.#faces >= this.#base.faces;
     }
 
-    // That have come.
+    // Number of faces that have arrived.
     get faces() {
         return this.#faces;
     }
 
-    // Of the splits, 0 to 1.
+    // Fraction of the splits that have arrived, 0 to 1.
     get part() {
         return this.most > 0 ? this.count / this.most : 1;
     }
 
-    // --- what comes ---
+    // --- arriving data ---
 
     addVertex(id, place) {
         const { geometry } = this;
@@ -100,7 +100,7 @@ export class Levels {
         geometry.triangleCount++;
     }
 
-    // The next split of the mesh; it is not done yet.
+    // Stores the next split without applying it.
     addSplit({ vertex, from, left, right, at, fromAt, moved }) {
         const i = this.count;
         const place = this.#base.vertices + i;
@@ -129,7 +129,7 @@ export class Levels {
         vertices[4 * place + 3] = state;
     }
 
-    // In view coordinates.
+    // Stores a position in view coordinates.
     #putPlace(array, at, position) {
         for (let axis = 0; axis < 3; axis++) {
             array[at + axis] = (position[axis] - this.#origin[axis]) * this.#scale;
@@ -167,7 +167,7 @@ export class Levels {
         return this.#find(this.#placeOf, id);
     }
 
-    // Where something is that has come.
+    // Returns the index of an element that has arrived.
     #find(places, id) {
         if (!(places[id] > 0)) {
             throw unreadable();
@@ -177,7 +177,7 @@ export class Levels {
 
     // --- levels ---
 
-    // Do or undo splits until so many are done, of those that have come.
+    // Applies or undoes splits until `level` of those that have arrived are applied.
     goTo(level) {
         const wanted = Math.max(Math.min(level, this.count), 0);
         for (; this.level < wanted; this.level++) {
@@ -193,8 +193,8 @@ export class Levels {
         geometry.triangleCount = wanted > 0 ? this.#faceEnd[wanted - 1] : this.#base.faces;
     }
 
-    // What split i moves has vertex `to` where it had `from`, and the vertex it leaves the position
-    // it has at the other level.
+    // In the triangles that split i moves, replaces vertex `from` by `to`, and exchanges the
+    // position of the split vertex with that of the other level.
     #exchange(i, from, to) {
         const { vertices, triangles } = this.geometry;
         const [moved, other, changed] = [this.#moved, this.#other, this.#changed];
@@ -214,8 +214,8 @@ export class Levels {
         changed.vertices.note(vertex);
     }
 
-    // What is to be sent to the graphics memory since this was asked for last: {vertices,
-    // triangles}, ranges [begin, end] of texels in rising order, none of which leaves its row.
+    // Returns what changed since the last call: {vertices, triangles}, ranges [begin, end] of
+    // texels in ascending order, each within one row.
     takeChanges() {
         const { vertexCount, triangleCount } = this.geometry;
         return {
@@ -225,10 +225,10 @@ export class Levels {
     }
 }
 
-// Which blocks of an array are not in the graphics memory as they are now, of those that are shown.
+// The blocks of an array that are shown and whose copy in graphics memory is outdated.
 class Changes {
     #blocks;
-    #shown = 0; // texels when they were taken last; what lies behind may be old
+    #shown = 0; // number of texels at the last call; those after them may be outdated
 
     constructor(length) {
         this.#blocks = new Uint8Array(length / BLOCK);

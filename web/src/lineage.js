@@ -1,15 +1,16 @@
-// lineage.js - what elements that are gone came from or went into, as far as edits have told. Pure.
+// lineage.js - which elements replaced elements that are gone, as far as edits reported it. Pure.
 
-// Of each, the oldest are forgotten.
+// Maximum number of entries of each map; the oldest are forgotten.
 const MOST = 10000;
 
 const KINDS = { vertices: 'vertex', edges: 'edge', faces: 'face' };
 
 export class Lineage {
-    #merged = new Map(); // 'face:3' -> the id of the face it is part of now
-    #parents = new Map(); // 'face:3' -> the id of the face it was cut from
+    #merged = new Map(); // 'face:3' -> the id of the face into which it was merged
+    #parents = new Map(); // 'face:3' -> the id of the face from which it was split
 
-    // An answer to an edit, or its event: `merged` and `parents` are {faces: [[of, id]], ...}.
+    // Records the answer to an edit, or its event: `merged` and `parents` are {faces: [[of, id]],
+    // ...}.
     note({ merged = {}, parents = {} }) {
         for (const [map, told] of [[this.#merged, merged], [this.#parents, parents]]) {
             for (const [plural, pairs] of Object.entries(told)) {
@@ -20,8 +21,8 @@ export class Lineage {
         }
     }
 
-    // Where an element that is gone is to be found: {kind, id}, or null. A half-edge went where its
-    // edge did.
+    // Returns the element that replaced one that is gone: {kind, id}, or null. A half-edge follows
+    // its edge.
     heirOf({ kind, id }) {
         const [whole, at] = kind === 'halfedge' ? ['edge', Math.floor(id / 2)] : [kind, id];
         const key = `${whole}:${at}`;

@@ -1,10 +1,10 @@
-// link.js - what is shown, as the fragment of the page's address, such as
+// link.js - what is shown as the fragment of the page's address, such as
 // #mesh=cube&face=3&camera=1,2,3,... Pure.
 
 const KINDS = ['vertex', 'halfedge', 'edge', 'face'];
 const CAMERA_NUMBERS = 6;
 
-// {mesh, kind, id, camera}; null for what the fragment does not say or says wrongly.
+// Returns {mesh, kind, id, camera}; null for members that are missing or invalid.
 export function parseLink(fragment) {
     const members = new URLSearchParams(fragment.replace(/^#/, ''));
     const kind = KINDS.find((name) => /^\d{1,10}$/.test(members.get(name) ?? '')) ?? null;
@@ -26,6 +26,6 @@ export function formatLink({ mesh, kind, id, camera }) {
     if (camera) {
         members.set('camera', camera.map((value) => Number(value.toPrecision(6))).join());
     }
-    // Commas may stand in a fragment as they are.
+    // A fragment may contain commas without escaping.
     return `#${members}`.replaceAll('%2C', ',');
 }

@@ -12,7 +12,7 @@ export class MeshList {
     #cursor = null;
     #reading = 0;
 
-    // `readPage(cursor)` gives {items, next}; `onOpen(id)` is called when a mesh is chosen.
+    // `readPage(cursor)` returns {items, next}; `onOpen(id)` is called when a mesh is chosen.
     constructor({ list, more }, { readPage, onOpen, onError }) {
         this.#list = list;
         this.#more = more;
@@ -22,7 +22,7 @@ export class MeshList {
         more.addEventListener('click', () => this.#append().catch(onError));
     }
 
-    // Read the list anew. Returns the ids of its first page.
+    // Reads the list again. Returns the ids of its first page.
     async refresh() {
         const reading = ++this.#reading;
         const { items, next } = await this.#readPage(null);
@@ -33,7 +33,7 @@ export class MeshList {
         return items.map(({ id }) => id);
     }
 
-    // Mark the open mesh.
+    // Marks the open mesh.
     setCurrent(id) {
         this.#current = id;
         for (const row of this.#list.children) {
@@ -41,7 +41,7 @@ export class MeshList {
         }
     }
 
-    // Bring one row up to date with a summary.
+    // Updates one row from a summary.
     update(summary) {
         for (const row of this.#list.children) {
             if (row.firstElementChild.dataset.mesh === summary.id) {

@@ -1,5 +1,5 @@
-// live.js - what other clients do to a mesh, as it happens: its event stream, opened again whenever
-// it ends before its mesh does. No page in here.
+// live.js - the event stream of a mesh, which reports edits of all clients. It is opened again when
+// it ends, unless the mesh was deleted. No page in here.
 //
 //            first open         ends            opens
 //   opening ------------> on ---------> lost ---------> on ...
@@ -8,16 +8,16 @@
 //      (or from any state by `bye`)       v
 //                                       gone
 //
-// The stream goes on after the last event that was seen. Waiting grows with each attempt.
+// The stream continues after the last event received. The delay grows with each attempt.
 
 import { listen, getHistory } from './api.js';
 
-// Milliseconds before another attempt; each is up to half as long again, so that many pages do not
-// come back at once.
+// Milliseconds before another attempt; a random part of up to a half is added, so that many pages
+// do not reconnect at once.
 const SOON = 250;
 const LATEST = 15000;
 
-// A page is opened without a stream where none opens within this time.
+// If no stream opens within this time, the page shows the mesh without it.
 const PATIENCE = 3000;
 
 export class Live {
@@ -31,14 +31,14 @@ export class Live {
     #timer = 0;
     #isClosed = false;
 
-    // `on.event(name, data)`; `on.state(state)` after it has changed; `on.back()` when the stream
-    // goes on after it was lost: something may have been missed.
+    // `on.event(name, data)` is called for each event, `on.state(state)` after a change of state,
+    // `on.back()` when a lost stream continues: events may have been missed.
     constructor(mesh, on) {
         this.#mesh = mesh;
         this.#on = on;
     }
 
-    // Begin; resolves when the stream is open, or when there is none for now.
+    // Opens the stream; resolves when it is open, or when there is none for now.
     open() {
         return new Promise((resolve) => {
             const timer = setTimeout(resolve, PATIENCE);
@@ -88,7 +88,7 @@ export class Live {
     }
 
     #receive(name, data) {
-        // A stream that brings something is a good one.
+        // A stream that delivers something works.
         this.#delay = SOON;
         if (name === 'bye' && data.reason === 'deleted') {
             this.close();
@@ -111,7 +111,7 @@ export class Live {
         this.#delay = Math.min(2 * this.#delay, LATEST);
     }
 
-    // A stream does not say why it is refused; something else that is asked does.
+    // A failed stream does not say why it was refused; another request does.
     async #retry() {
         try {
             await getHistory(this.#mesh);

@@ -1,4 +1,4 @@
-// main.js - puts the page together: session in the middle, panels and view around it.
+// main.js - puts the page together: the session in the centre, panels and view around it.
 
 import { Address } from './address.js';
 import * as api from './api.js';
@@ -132,9 +132,9 @@ function importOf({ counts, import: report }) {
     return [...sizes, ...found].join(', ');
 }
 
-// --- what is shown of the session ---
+// --- showing the session ---
 
-// The session changed: see Session for what.
+// The session changed; see Session for `what`.
 function update(what, change) {
     const isNew = what === 'mesh' || what === 'content';
     const isChanged = isNew || what === 'change';
@@ -176,7 +176,7 @@ function update(what, change) {
     showWhatMayBeDone();
 }
 
-// What a frame shows.
+// Returns the label of a frame.
 function label() {
     const { mesh, shown: content, selection } = session;
     return content === null
@@ -189,7 +189,7 @@ function label() {
           };
 }
 
-// Of what a test compares with what the server sends.
+// For tests, which compare it with what the server sends.
 Object.defineProperty(canvas, 'geometry', { get: () => session.shown?.geometry ?? null });
 
 function showSelection() {
@@ -203,7 +203,7 @@ function showSelection() {
     address.write();
 }
 
-// `change` as Materials.note() says, null for all.
+// `change` is a result of Materials.note(), null for everything.
 function showMaterials(change) {
     const { materials } = session;
     if (change === null) {
@@ -236,7 +236,7 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Those of another mesh or another revision are not those of what is shown.
+// Levels of another mesh or revision do not fit what is shown.
 function endLevels() {
     refining.end();
     if (session.loading === null) {
@@ -248,16 +248,16 @@ function tellStale() {
     toasts.tell('Back to the mesh', 'It has changed, and its levels with it.');
 }
 
-// The empty state shows where there is nothing to open.
+// Shows the empty state if there is no mesh.
 async function refreshList() {
     const ids = await list.refresh();
     byId('empty').hidden = ids.length > 0 || session.mesh !== null;
     return ids;
 }
 
-// --- what is pressed ---
+// --- buttons ---
 
-// The selection, or the whole mesh where there is none.
+// Frames the selection, or the whole mesh if nothing is selected.
 function frameSelection() {
     const geometry = session.shown?.geometry;
     stage.frame(geometry === undefined ? null : framing(geometry, session.selection));
@@ -340,7 +340,7 @@ api.getOperations()
     .catch(fail);
 start().catch(fail);
 
-// What the address says, or else the first of the list.
+// Opens what the address says, or else the first mesh of the list.
 async function start() {
     await signIn.start();
     const [first] = await refreshList();

@@ -1,22 +1,21 @@
-// materials.js - what faces look like: the materials of a mesh and which face has which, as arrays
-// for the renderer. They are read once; after that each edit event says what became of them. No
-// page in here.
+// materials.js - the materials of a mesh and of its faces, as arrays for the renderer. They are
+// read once and then updated by edit events. No page in here.
 //
-//   labels    u32 a face: the place of its material's name among the labels of the attribute
+//   labels    u32 per face: the index of its material's name among the labels of the attribute
 //             `material`; four to a texel
-//   palette   two texels a label: red, green, blue, opacity; the red, green and blue of the light it
-//             gives off, and SIDES. Colours are as a screen wants them (sRGB), the API's are linear
+//   palette   two texels per label: red, green, blue, opacity; red, green and blue of the emitted
+//             light, and SIDES. Colours are sRGB here and linear in the API
 
 import * as api from './api.js';
 import { wholeRows } from './geometry.js';
 
-// What the last number of a palette's entry says: nothing is known of such faces, or how many of
-// their sides show their colour.
+// The last number of a palette's entry: the material is unknown, or how many sides of the face show
+// its colour.
 export const SIDES = { unknown: 0, one: 1, two: 2 };
 
-const NAME = 'material'; // of the attribute
-const FEW = 1e4; // changed labels, beyond which all of them are sent to the graphics memory
-const TRIES = 5; // to read what belongs to one revision while others edit
+const NAME = 'material'; // name of the attribute
+const FEW = 1e4; // if more labels changed, all of them are uploaded
+const TRIES = 5; // attempts to read everything from one revision while other clients edit
 
 export class Materials {
     revision = 0;
@@ -24,23 +23,23 @@ export class Materials {
     palette = wholeRows(new Float32Array());
 
     #mesh;
-    #rows = []; // the table
-    #names = []; // the labels; empty where faces have no such attribute
-    #fallback = 0; // the label of faces that were given none
-    #held = null; // edits that came while it is read
-    #reading = null; // which reading is the last
+    #rows = []; // the table of materials
+    #names = []; // the labels; empty if faces have no such attribute
+    #fallback = 0; // the label of faces without a value
+    #held = null; // edits that arrived while it is being read
+    #reading = null; // identifies the latest read
 
     constructor(mesh) {
         this.#mesh = mesh;
     }
 
-    // Is there anything to be told of?
+    // Are there no materials?
     get isEmpty() {
         return this.#rows.length === 0 && this.#names.every((name) => name === '');
     }
 
-    // {name, look} of each material, in the order of the table; look is its row there, null where
-    // faces name what the table has not.
+    // Returns {name, look} of each material, in the order of the table; look is its row, null if
+    // faces name a material that the table does not have.
     get list() {
         const known = new Set(this.#rows.map(({ name }) => name));
         const others = this.#names.filter((name) => name !== '' && !known.has(name));
@@ -50,13 +49,13 @@ export class Materials {
         ];
     }
 
-    // The name of a face's material, '' for none.
+    // Returns the name of a face's material, '' for none.
     nameOf(face) {
         return this.#names[this.labels[face] ?? this.#fallback] ?? '';
     }
 
-    // Read all of it as it is now. Edits that note() gets meanwhile are put in afterwards. A later
-    // call overtakes an earlier one.
+    // Reads everything. Edits passed to note() meanwhile are applied afterwards. A later call
+    // supersedes an earlier one.
     async read(signal) {
         const reading = {};
         this.#reading = reading;
@@ -78,8 +77,8 @@ export class Materials {
         held.forEach((edit) => this.note(edit));
     }
 
-    // Put in what an edit event says. Returns what the renderer needs to hear, see
-    // Surface.updateMaterials(), or null where nothing has changed.
+    // Applies an edit event. Returns the argument for Surface.updateMaterials(), or null if nothing
+    // changed.
     note(edit) {
         if (this.#held !== null) {
             this.#held.push(edit);
@@ -107,8 +106,7 @@ export class Materials {
             : null;
     }
 
-    // The attribute of another name list, or none (null). All faces have what it gives without
-    // being told.
+    // Takes a new list of labels, or none (null); all faces get its default.
     #setColumn(column) {
         const isUsable = column?.labels !== undefined && column.components === 1;
         this.#names = isUsable ? column.labels : [];
@@ -116,7 +114,7 @@ export class Materials {
         this.labels.fill(this.#fallback);
     }
 
-    // [[face, label], ...]. Returns the texels that changed in rising order, null for many.
+    // Takes [[face, label], ...]. Returns the changed texels in ascending order, null for many.
     #put(values) {
         const most = values.reduce((last, [face]) => Math.max(last, face), -1);
         if (most >= this.labels.length) {
@@ -155,14 +153,14 @@ function entryOf({ base_color: color, emission, two_sided: isTwoSided }) {
     ];
 }
 
-// A linear number as sRGB has it, IEC 61966-2-1; what is brighter than a screen is white.
+// Converts a linear value to sRGB, IEC 61966-2-1; brighter values are clipped to white.
 export function toScreen(linear) {
     return linear <= 0.0031308
         ? 12.92 * linear
         : Math.min(1.055 * linear ** (1 / 2.4) - 0.055, 1);
 }
 
-// Of one revision: {revision, materials, column, values}; column is null where no face names a
+// Reads one revision: {revision, materials, column, values}; column is null if no face names a
 // material.
 async function readAll(mesh, signal) {
     for (let tries = 1; ; tries++) {
@@ -175,7 +173,7 @@ async function readAll(mesh, signal) {
             ]);
             return { revision, materials, column, values };
         } catch (error) {
-            // That revision is gone by now.
+            // The revision is gone by now.
             if (error.status !== 410 || tries === TRIES) {
                 throw error;
             }

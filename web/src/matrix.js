@@ -1,12 +1,12 @@
-// matrix.js - the control of an affine map: how far to scale, turn and move, or its 16 numbers as
-// they are. See controls.js.
+// matrix.js - the control of an affine map: scaling, rotation and translation, or its 16 numbers.
+// See controls.js.
 
 import { compose, textOf } from './affine.js';
 import { Vector, WithText } from './controls.js';
 import { make } from './dom.js';
 import { numbersOf } from './numbers.js';
 
-// [member of compose(), its label, what an empty field stands for]
+// [member of compose(), its label, the value of an empty field]
 const STEPS = [
     ['scale', 'Scale', 1],
     ['rotate', 'Rotate, degrees', 0],
@@ -18,7 +18,7 @@ class Steps {
     #vectors;
     #about;
 
-    // `pickable(name, control)` gives a control's node with a button that lets a click fill it.
+    // `pickable(name, control)` returns a control's node with a button that lets a click fill it.
     constructor(pickable) {
         const all = [...STEPS, ['about', 'About the point', 0]];
         this.#vectors = Object.fromEntries(
@@ -37,7 +37,7 @@ class Steps {
         return this.#vectors.scale.main;
     }
 
-    // A point alone turns nothing.
+    // A centre of rotation alone changes nothing.
     get isSaid() {
         return STEPS.some(([member]) => this.#vectors[member].isSaid);
     }

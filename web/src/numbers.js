@@ -1,16 +1,16 @@
-// numbers.js - numbers in text, as people write and paste them. Pure.
+// numbers.js - parsing numbers as people write and paste them. Pure.
 
 import { Problem } from './api.js';
 
-// What stands between numbers, also around lists of them.
+// Separators of numbers, also around lists of them.
 const BETWEEN = /[\s,;()[\]]+/;
 
 export function wordsOf(text) {
     return text.split(BETWEEN).filter((word) => word !== '');
 }
 
-// The numbers in the text of the parameter `name`. Digits as people write them: what else
-// JavaScript reads, such as 0x10, is a slip.
+// Returns the numbers in the text of the parameter `name`. Only decimal notation is allowed: other
+// notations of JavaScript, such as 0x10, are mistakes.
 export function numbersOf(text, name) {
     return wordsOf(text).map((word) => {
         const value = /^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(word) ? Number(word) : NaN;
@@ -21,12 +21,12 @@ export function numbersOf(text, name) {
     });
 }
 
-// What is wrong with the text of a parameter, as the server would say it.
+// Makes a problem for a mistake in a parameter's text, like one of the server.
 export function slip(name, title, detail) {
     return new Problem({ title, detail, pointer: `/ops/0/${name}` });
 }
 
-// The text of a list of ids with one more, or without it where it was in there.
+// Adds a word to the text of a list, or removes it if it is there.
 export function toggleWord(text, word) {
     const words = wordsOf(text);
     const others = words.filter((one) => one !== `${word}`);

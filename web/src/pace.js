@@ -1,24 +1,26 @@
-// pace.js - how the slider of levels runs, and how long it takes to play them. Pure.
+// pace.js - which level each position of the slider shows, and how long playing all levels takes.
+// Pure.
 //
-// Each step of the slider refines a mesh by about the same part of its faces, for that is what one
-// sees: of few levels each has a position, of many the coarse ones lie as far apart as the fine.
+// Each step of the slider refines a mesh by about the same part of its faces, because that is what
+// the eye notices. If there are few levels, each has a position; of many levels, the fine ones
+// share positions.
 
-// Positions the slider has at most, beside 0.
+// Maximum number of positions of the slider, besides 0.
 const MOST = 1000;
 
-// A split has two faces, and seconds for each time they double.
+// A split adds two faces; playing takes SECONDS each time the number of faces doubles.
 const FACES = 2;
 const SECONDS = 0.35;
 const [LEAST_SECONDS, MOST_SECONDS] = [1.5, 7];
 
 export class Pace {
     positions;
-    seconds; // to play all
+    seconds; // to play all levels
     #faces;
     #levels;
-    #growth; // how many times the faces of the base there are in the end
+    #growth; // final number of faces divided by that of the base
 
-    // `faces` of the base, and levels beside it.
+    // `faces` of the base, and the number of levels besides it.
     constructor(faces, levels) {
         this.#faces = Math.max(faces, 1);
         this.#levels = levels;
@@ -28,18 +30,18 @@ export class Pace {
         this.seconds = Math.min(Math.max(seconds, LEAST_SECONDS), MOST_SECONDS);
     }
 
-    // The level at a position, which need be no whole number.
+    // Returns the level at a position, which may be fractional.
     levelAt(position) {
         if (position >= this.positions) {
             return this.#levels;
         }
         const faces = this.#faces * this.#growth ** (position / this.positions);
         const level = Math.round((faces - this.#faces) / FACES);
-        // No two positions have one level.
+        // Different positions have different levels.
         return Math.min(Math.max(level, Math.floor(position)), this.#levels);
     }
 
-    // The first position with a level, or a finer one.
+    // Returns the first position with this level, or a finer one.
     positionOf(level) {
         let [low, high] = [0, this.positions];
         while (low < high) {

@@ -1,22 +1,22 @@
-// pick.js - from what the id buffer shows around the pointer to one element. Pure.
+// pick.js - chooses one element from the contents of the id buffer around the pointer. Pure.
 //
 // The renderer reads which triangles and vertices are visible near the pointer. Kinds are never
-// mixed: in edge mode only an edge can be picked, and so on. Near the pointer what is seen counts;
-// else an edge or a corner of the face under the pointer does.
+// mixed: in edge mode only an edge can be picked, and so on. A visible edge or vertex near the
+// pointer is chosen first, otherwise an edge or a corner of the face under the pointer.
 
 import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
 
-// CSS pixels around the pointer in which a visible edge or vertex is meant.
+// A visible edge or vertex within this many CSS pixels of the pointer is chosen.
 export const REACH = 8;
 
 // Kinds in the id buffer, see shaders.js.
 const TRIANGLE = 1;
 const VERTEX = 2;
 
-// What a square of `size` x `size` pixels of the id buffer shows, nearest to its middle first:
-// {under, away, triangles, vertices}, where `under` is the nearest triangle or -1, `away` how far
-// it is in pixels. `ids` holds kind, id, 0, 0 of each pixel.
+// Returns what a square of `size` x `size` pixels of the id buffer shows, nearest to its middle
+// first: {under, away, triangles, vertices}, where `under` is the nearest triangle or -1 and `away`
+// its distance in pixels. `ids` has kind, id, 0, 0 for each pixel.
 export function readSquare(ids, size) {
     const radius = (size - 1) / 2;
     const found = [];
@@ -41,7 +41,7 @@ export function readSquare(ids, size) {
 }
 
 // Returns {kind: 'face', id}, {kind: 'vertex', id}, {kind: 'edge', from, to} or {kind: 'halfedge',
-// from, to}, or null when there is nothing. `seen` is {under, triangles, vertices}; `screen` is
+// from, to}, or null if there is nothing. `seen` is {under, triangles, vertices}; `screen` is
 // {matrix, width, height, x, y} in CSS pixels.
 export function choose(mode, geometry, seen, screen) {
     if (mode === 'face') {
@@ -74,8 +74,8 @@ function chooseEdge(geometry, seen, screen) {
     return edge === undefined ? null : { kind: 'edge', from: edge[0], to: edge[1] };
 }
 
-// That of the face under the pointer, on its nearest edge. Beside the surface it is that of the
-// nearest visible edge which runs along the hole, or the other face's.
+// Chooses the half-edge of the face under the pointer on its nearest edge. Beside the surface,
+// chooses the boundary half-edge of the nearest visible edge, or the half-edge of its other face.
 function chooseHalfedge(geometry, seen, screen) {
     if (seen.under >= 0 && seen.away === 0) {
         const face = trianglesOfFace(geometry, faceOf(geometry.triangles, seen.under));
@@ -110,7 +110,7 @@ function edgesUnder(geometry, seen) {
     return edgesOfTriangles(triangles, trianglesOfFace(geometry, faceOf(triangles, seen.under)));
 }
 
-// [candidate, distance] of the nearest within reach, or null.
+// Returns [candidate, distance] of the nearest within reach, or null.
 function nearest(candidates, distance, reach) {
     let best = null;
     for (const candidate of candidates) {

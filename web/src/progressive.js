@@ -1,9 +1,9 @@
-// progressive.js - reads what GET .../progressive sends, a coarse mesh and the vertex splits that
-// lead back to the mesh, as it comes in parts of any size. Pure: no page, no network.
+// progressive.js - parses the answer of GET .../progressive, a coarse mesh and the vertex splits
+// that refine it, as it arrives in pieces of any size. Pure: no page, no network.
 //
-//   header     "HEDP", version, revision, counts, ids issued, the least and largest coordinates
+//   header     "HEDP", version, revision, counts, bounds of ids, least and largest coordinates
 //   vertices   u32 id, 0, f64 x 3
-//   edges      u32 id, origin, target, 0: what is drawn needs none
+//   edges      u32 id, origin, target, 0: not needed to draw
 //   faces      u32 id, three corners
 //   splits     coarse to fine:
 //
@@ -19,7 +19,7 @@ const MAGIC = 0x50444548; // "HEDP"
 const VERSION = 1;
 const NONE = 0xffffffff;
 
-// The parts in their order, and the bytes of a row of each; a split has more where faces move.
+// The parts in their order, and the bytes per row of each; a split is longer if it moves faces.
 const [HEADER, VERTICES, EDGES, FACES, SPLITS] = [0, 1, 2, 3, 4];
 const ROW_BYTES = [104, 32, 16, 16, 96];
 
@@ -29,21 +29,21 @@ export class ProgressiveReader {
     #bytes = new Uint8Array(65536);
     #words;
     #numbers;
-    #held = 0; // bytes that have come and were not read yet
+    #held = 0; // bytes that have arrived and are not parsed yet
     #part = HEADER;
-    #left = [1, 0, 0, 0, 0]; // rows of each part that are to come
+    #left = [1, 0, 0, 0, 0]; // rows of each part that are still to arrive
 
-    // `begin({revision, vertices, faces, splits, vertexIds, faceIds})` gets the mesh's revision,
-    // the counts of the base and of what follows, and how many ids were issued. It returns who gets
-    // the rows: addVertex(id, place), addFace(id, corners) and addSplit({vertex, from, left, right,
-    // at, fromAt, moved}), where `left` and `right` are {face, corner} or null. `moved` is theirs
-    // only until they return.
+    // `begin({revision, vertices, faces, splits, vertexIds, faceIds})` is called with the mesh's
+    // revision, the counts of the base and of the splits, and upper bounds of ids. It returns an
+    // object that receives the rows: addVertex(id, place), addFace(id, corners) and
+    // addSplit({vertex, from, left, right, at, fromAt, moved}), where `left` and `right` are {face,
+    // corner} or null. `moved` is valid only during the call.
     constructor(begin) {
         this.#begin = begin;
         this.#view();
     }
 
-    // The next bytes. Throws a RangeError where they are not what they should be.
+    // Parses the next bytes. Throws a RangeError if they are invalid.
     push(bytes) {
         this.#take(bytes);
         let at = 0;
@@ -67,7 +67,7 @@ export class ProgressiveReader {
         }
     }
 
-    // No more bytes come. Throws a RangeError where some should.
+    // Ends the input. Throws a RangeError if bytes are missing.
     end() {
         if (this.#part <= SPLITS) {
             throw new RangeError('The levels of the mesh broke off.');
@@ -86,13 +86,14 @@ export class ProgressiveReader {
         this.#held = length;
     }
 
-    // All rows are multiples of 8 bytes, so that numbers can be read where they lie.
+    // All rows are multiples of 8 bytes long, so numbers are aligned.
     #view() {
         this.#words = new Uint32Array(this.#bytes.buffer);
         this.#numbers = new Float64Array(this.#bytes.buffer);
     }
 
-    // How long the row at a byte is; at least so long where it has not come.
+    // Returns the length of the row at an offset, or a lower bound if it has not arrived
+    // completely.
     #lengthAt(at) {
         const least = ROW_BYTES[this.#part];
         if (this.#part !== SPLITS || this.#held - at < least) {
@@ -151,7 +152,7 @@ export class ProgressiveReader {
     }
 }
 
-// Also of what whoever gets the rows finds.
+// Also for faults that the receiver of the rows finds.
 export function unreadable() {
     return new RangeError('The server sent no levels of a mesh this page can read.');
 }

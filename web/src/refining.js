@@ -1,6 +1,6 @@
-// refining.js - the open mesh shown from coarse to fine: its levels of detail as they come, a
-// slider that goes to any of them, and playing them. While one is shown nothing is picked or
-// edited: it has other elements than the mesh.
+// refining.js - shows the open mesh from coarse to fine: its levels of detail as they arrive, a
+// slider to choose one, and playing them. While a level is shown nothing can be picked or edited,
+// because its elements are not those of the mesh.
 
 import * as api from './api.js';
 import { formatCount } from './dom.js';
@@ -8,7 +8,7 @@ import { Levels } from './levels.js';
 import { Pace } from './pace.js';
 import { ProgressiveReader } from './progressive.js';
 
-// One has looked away, or a frame was dear: no longer a step of playing, in seconds.
+// The longest step while playing, in seconds, after a hidden page or a slow frame.
 const LONGEST = 0.5;
 
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
@@ -22,19 +22,19 @@ export class Refining {
     #elements;
     #stage;
     #acts;
-    #mesh = null; // {mesh, revision, faces} of which levels are read or shown
-    #reading = null; // gives up what is read
+    #mesh = null; // {mesh, revision, faces} of the levels that are read or shown
+    #reading = null; // cancels the read
     #levels = null;
-    #pace = null; // once the base is shown
-    #position = 0; // of the slider: what is wanted, if it has come
+    #pace = null; // set when the base is shown
+    #position = 0; // the wanted position of the slider, if it has arrived
     #isPlaying = false;
-    #time = 0; // of the last step, and 0 before the first
+    #time = 0; // of the last step; 0 before the first
     #scheduled = 0;
 
-    // `button` begins and ends it; `box` is shown meanwhile and holds `slider`, `faces` (what is
-    // shown), `hint`, `progress` (what has come), `play` and `done`. `onBegin()` when the base is
-    // shown, `onEnd()` when the mesh is to be shown again, `onStale()` when the server has other
-    // levels than those of what is shown, which ends it too.
+    // `button` begins and ends it; `box` is shown meanwhile and contains `slider`, `faces` (what is
+    // shown), `hint`, `progress` (what has arrived), `play` and `done`. `onBegin()` is called when
+    // the base is shown, `onEnd()` when the mesh is to be shown again, `onStale()` when the server
+    // has levels of another revision than the one shown, which also ends it.
     constructor(elements, stage, { onBegin, onEnd, onStale, onError }) {
         [this.#elements, this.#stage] = [elements, stage];
         this.#acts = { onBegin, onEnd, onStale, onError };
@@ -46,7 +46,7 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        // Until the base has come the focus may be on the button.
+        // Until the base has arrived, the focus may be on the button.
         for (const element of [button, box]) {
             element.addEventListener('keydown', (event) => {
                 if (event.key === 'Escape') {
@@ -56,17 +56,17 @@ export class Refining {
         }
     }
 
-    // Is a level shown in place of the mesh?
+    // Is a level shown instead of the mesh?
     get isOn() {
         return this.#pace !== null;
     }
 
-    // Have levels been asked for?
+    // Were levels requested?
     get isWanted() {
         return this.#mesh !== null;
     }
 
-    // Read the levels of what is shown, a Content, and play them as they come.
+    // Reads the levels of a Content and plays them as they arrive.
     async begin({ mesh, revision, geometry, summary }) {
         this.end();
         const reading = new AbortController();
@@ -94,7 +94,7 @@ export class Refining {
             this.#mesh.faces = this.#levels.faces;
             this.#schedule();
         } catch (error) {
-            // Who has given it up does not want to hear of it.
+            // No error is shown after the user cancelled.
             if (!reading.signal.aborted) {
                 this.end();
                 this.#acts.onError(error);
@@ -102,7 +102,7 @@ export class Refining {
         }
     }
 
-    // Show the mesh again.
+    // Shows the mesh again.
     end() {
         const { box, button } = this.#elements;
         const { isOn } = this;
@@ -121,7 +121,7 @@ export class Refining {
         }
     }
 
-    // --- what comes ---
+    // --- arriving data ---
 
     #showWaiting() {
         const { box, button, slider, faces, hint, progress, play } = this.#elements;
@@ -143,7 +143,7 @@ export class Refining {
                 this.#showBase();
             }
             this.#elements.progress.value = levels.part;
-            // Who wants no motion waits for all of it.
+            // With reduced motion the page waits for everything.
             if (!isStill.matches) {
                 this.#schedule();
             }
@@ -197,7 +197,7 @@ export class Refining {
         }
     }
 
-    // Before a frame: go on to what it is to show.
+    // Before a frame: goes to the level that it is to show.
     #step(now) {
         const [levels, pace] = [this.#levels, this.#pace];
         const wasPlaying = this.#isPlaying;
@@ -205,7 +205,7 @@ export class Refining {
             const seconds = this.#time > 0 ? Math.min((now - this.#time) / 1000, LONGEST) : 0;
             this.#time = now;
             const further = this.#position + (seconds / pace.seconds) * pace.positions;
-            // What has not come is waited for.
+            // Levels that have not arrived are waited for.
             const most = levels.count < levels.most ? pace.positionOf(levels.count) : Infinity;
             this.#position = Math.min(further, pace.positions, Math.max(most, this.#position));
             this.#isPlaying = this.#position < pace.positions;
@@ -215,8 +215,8 @@ export class Refining {
         if (levels.level !== before) {
             this.#stage.refine(levels.takeChanges(), this.#label);
         }
-        // Each level while it runs would be too much to be heard; the slider, which may have the
-        // focus, says those it is put to.
+        // While playing, screen readers are not told every level; the slider, which may have the
+        // focus, announces its own.
         const isAtEnd = wasPlaying && !this.#isPlaying;
         this.#elements.faces.setAttribute('aria-live', isAtEnd ? 'polite' : 'off');
         this.#showLevel();

@@ -1,21 +1,21 @@
-// revision.js - all that is shown of a mesh, and how it is brought forward. Only here is it decided
+// revision.js - everything that is shown of a mesh, and how it is updated. Only this module decides
 // which arrays and which answers of the server belong together.
 //
-//   mesh        of what
-//   geometry    the arrays to draw, see geometry.js: patched in place within their layout
-//   history     the newest page of it, as the server says
-//   summary     as the server says; of a large mesh it may be of a revision before
-//   boundary    the half-edges of all boundary loops: origin, target, origin, target, ...; likewise
+//   mesh        its id
+//   geometry    the arrays to draw, see geometry.js: updated in place within their layout
+//   history     the newest page of the history, as the server sent it
+//   summary     as the server sent it; for a large mesh possibly of an earlier revision
+//   boundary    half-edges of all boundary loops: origin, target, origin, target, ...; as `summary`
 //
-// What is read comes back as a function that puts it in place, so that all that belongs to one
-// frame is put in place at once.
+// Functions that read return a function that installs the result, so that everything for one frame
+// is installed at once.
 
 import * as api from './api.js';
 import { VERTEX_ISOLATED, findFaces, headerOf, unpack } from './geometry.js';
 import { applyDelta } from './geometry_delta.js';
 
-// The server walks the whole mesh for its summary and its loops. Of more triangles than these they
-// are read only when nothing else happens.
+// The server visits the whole mesh for its summary and its loops. If it has more triangles than
+// this, they are read only when nothing else happens.
 const LARGE = 100000;
 
 const NO_BOUNDARY = new Uint32Array();
@@ -30,7 +30,7 @@ export class Content {
         this.geometry = geometry;
     }
 
-    // A mesh as it is now; `onProgress` gets the part that has been read, 0 to 1.
+    // Reads the present mesh; calls `onProgress` with the fraction read, 0 to 1.
     static async read(mesh, withBoundary, onProgress, signal) {
         const geometry = unpack(await api.getGeometry(mesh, onProgress, signal));
         const content = new Content(mesh, geometry);
@@ -50,14 +50,14 @@ export class Content {
         return this.geometry.triangleCount > LARGE;
     }
 
-    // Are the summary and the boundary those of the revision that is shown, or newer?
+    // Are summary and boundary of the revision that is shown, or newer?
     get hasFacts() {
         return this.summary.revision >= this.revision;
     }
 
-    // What the arrays have become; `whole` does without those there are. The function it returns
-    // gives what applyDelta() does, or null where all of them are new, and throws a RangeError
-    // where the change is of other arrays: then `whole` is needed.
+    // Reads the changed arrays; `whole` reads everything again. The returned function returns the
+    // result of applyDelta(), or null if all arrays are new. It throws a RangeError if the change
+    // is not of these arrays: then `whole` is needed.
     async readGeometry(whole) {
         if (whole) {
             const buffer = await api.getGeometry(this.mesh, () => {});

@@ -1,11 +1,11 @@
-// schema.js - JSON Schema as words, for the manual. Pure: no document, no server.
+// schema.js - JSON Schema in words, for the manual. Pure: no document, no server.
 
-// The last segment of a reference.
+// Returns the last segment of a reference.
 function nameOf(reference) {
     return reference.slice(reference.lastIndexOf('/') + 1);
 }
 
-// Members of oneOf, anyOf or allOf.
+// Returns the members of oneOf, anyOf or allOf.
 export function alternatives(schema) {
     return schema.oneOf ?? schema.anyOf ?? schema.allOf ?? [];
 }
@@ -54,7 +54,7 @@ function basic(schema) {
     return [`${type ?? 'anything'}${range(schema)}${form === undefined ? '' : ` (${form})`}`];
 }
 
-// What values a schema allows: text, and {ref: NAME} where another schema says it.
+// Returns the values that a schema allows: text, and {ref: NAME} for other schemas.
 export function typeOf(schema) {
     const parts = schema.$ref
         ? [{ ref: nameOf(schema.$ref) }]

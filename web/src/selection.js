@@ -1,29 +1,29 @@
-// selection.js - what is selected in a mesh, kept while the mesh changes. No page in here.
+// selection.js - the selection in a mesh, kept while the mesh changes. No page in here.
 //
-// Reading takes time, in which something else may be selected and the mesh may change: what is
-// selected last stays, and is read again where the mesh has changed since.
+// While an element is read, another one may be selected and the mesh may change: the last selection
+// stays, and is read again if the mesh has changed since.
 
 import * as api from './api.js';
 import { describe } from './around.js';
 import { hasVertex, trianglesOfFace } from './geometry.js';
 
 export class Selection {
-    chosen = []; // {kind, id, element}, the last chosen last
-    around = null; // what describe() says of the last one
-    gone = []; // {kind, id, detail} of what was selected until an edit took it away
+    chosen = []; // {kind, id, element}, in the order of selection
+    around = null; // result of describe() for the last one
+    gone = []; // {kind, id, detail} of selected elements that an edit removed
 
     #mesh = null;
     #onChange;
-    #choice = 0; // of the user
-    #change = 0; // of the mesh
-    #seen = 0; // the change that what is shown was read after
+    #choice = 0; // counts selections by the user
+    #change = 0; // counts changes of the mesh
+    #seen = 0; // the change after which the shown data was read
 
-    // `onChange()` is called when something else was selected.
+    // `onChange()` is called when the selection changes.
     constructor(onChange) {
         this.#onChange = onChange;
     }
 
-    // Begin anew with nothing selected in a mesh.
+    // Starts with an empty selection in a mesh.
     reset(mesh) {
         this.#mesh = mesh;
         this.#choice++;
@@ -34,7 +34,7 @@ export class Selection {
         return this.chosen.at(-1);
     }
 
-    // Select an element; `also` keeps those selected before it, if they are of the same kind.
+    // Selects an element; `also` keeps elements selected before it, if they are of the same kind.
     async select(kind, id, also = false) {
         const choice = ++this.#choice;
         const change = this.#change;
@@ -45,7 +45,7 @@ export class Selection {
         } finally {
             if (choice === this.#choice) {
                 this.#take(kind, id, also, read);
-                // What was selected before, or what was read of this one, may be older.
+                // Other selected elements, or what was read of this one, may be outdated.
                 if (change !== this.#change || this.#seen !== this.#change) {
                     await this.#readAgain();
                 }
@@ -61,7 +61,7 @@ export class Selection {
         }
     }
 
-    // Select what pick.js chose; null selects nothing.
+    // Selects what pick.js chose; null selects nothing.
     async pick(chosen, also) {
         if (chosen === null) {
             this.clear();
@@ -73,7 +73,7 @@ export class Selection {
         }
     }
 
-    // The id of what pick.js chose, or null where it is gone meanwhile.
+    // Returns the id of what pick.js chose, or null if it is gone.
     async idOf({ kind, id, from, to }) {
         if (id !== undefined) {
             return id;
@@ -83,7 +83,7 @@ export class Selection {
         return halfedge !== null && kind === 'edge' ? Math.floor(halfedge / 2) : halfedge;
     }
 
-    // Follow a link of the selected half-edge: 'next', 'prev' or 'twin'.
+    // Follows a link of the selected half-edge: 'next', 'prev' or 'twin'.
     async step(link) {
         if (this.last?.kind === 'halfedge') {
             await this.select('halfedge', this.last.element[link]);
@@ -102,8 +102,8 @@ export class Selection {
         Object.assign(this, { chosen, around, gone });
     }
 
-    // The mesh has changed: read what is selected as it is now. Returns a function that puts it in
-    // place, and does nothing where something else was selected or the mesh changed meanwhile.
+    // The mesh has changed: reads the selected elements again. Returns a function that installs the
+    // result; it does nothing if the selection or the mesh changed meanwhile.
     async read() {
         const change = ++this.#change;
         const choice = this.#choice;
@@ -131,13 +131,13 @@ export class Selection {
             : describe(chosen.kind, chosen.element, (queries) => api.query(this.#mesh, queries));
     }
 
-    // The selected elements for the renderer, those that its arrays have: {kind: 'face', id},
-    // {kind: 'vertex', id}, or {kind: 'edge' or 'halfedge', from, to}.
+    // Returns the selected elements that the renderer's arrays contain: {kind: 'face', id}, {kind:
+    // 'vertex', id}, or {kind: 'edge' or 'halfedge', from, to}.
     marksIn(geometry) {
         return this.chosen.map(markOf).filter((mark) => isIn(geometry, mark));
     }
 
-    // The half-edges near the last selected element, likewise.
+    // Returns the half-edges near the last selected element that the arrays contain.
     arrowsIn(geometry) {
         return (this.around?.halfedges ?? []).filter(({ origin, target, face, across }) =>
             isIn(geometry, { kind: 'edge', from: origin, to: target }) &&
@@ -146,7 +146,7 @@ export class Selection {
     }
 }
 
-// Have the arrays what is to be marked?
+// Do the arrays contain the element?
 export function isIn(geometry, { kind, id, from, to }) {
     if (kind === 'face') {
         return trianglesOfFace(geometry, id).length > 0;
@@ -156,7 +156,7 @@ export function isIn(geometry, { kind, id, from, to }) {
         : hasVertex(geometry, from) && hasVertex(geometry, to);
 }
 
-// For the renderer, see Selection.marksIn().
+// Converts an element for the renderer, see Selection.marksIn().
 export function markOf({ kind, id, element }) {
     if (kind === 'face' || kind === 'vertex') {
         return { kind, id };
@@ -165,7 +165,8 @@ export function markOf({ kind, id, element }) {
     return { kind, from, to };
 }
 
-// What still lives of some elements, {kind, id} each, as it is now, and what does not.
+// Reads some elements, {kind, id} each, and returns those that are still live and those that are
+// not.
 export async function readAll(mesh, chosen) {
     if (chosen.length === 0) {
         return [[], []];

@@ -1,10 +1,10 @@
-// session.js - the open mesh, what is selected in it, and what may be done to it. No page in here:
-// whoever shows it passes `onChange` and reads the properties.
+// session.js - the open mesh, its selection, and the operations on it. No page in here: the page
+// passes `onChange` and reads the properties.
 //
-// The mesh is followed: what another client does to it is heard of and fetched, one request at a
-// time, however many edits that were meanwhile. An edit names the revision that is shown, so that
-// nobody splits what another client has changed: then what has changed is fetched and the refusal
-// shown.
+// The session follows the mesh: events report edits of other clients, and the changes are fetched
+// with one request at a time, however many edits there were. An edit names the revision that is
+// shown. If another client has changed the mesh since, the server refuses it; the page then fetches
+// the changes and shows the refusal.
 
 import * as api from './api.js';
 import { Lineage } from './lineage.js';
@@ -13,53 +13,54 @@ import { Materials } from './materials.js';
 import { Content } from './revision.js';
 import { Selection } from './selection.js';
 
-// A large mesh is at rest when nothing has happened to it for so many milliseconds.
+// A large mesh is at rest if nothing happened to it for this many milliseconds.
 const REST = 400;
 
 export class Session {
-    shown = null; // a Content; null when no mesh is open
+    shown = null; // a Content; null if no mesh is open
     selection;
-    loading = null; // part of the mesh that has been read, 0 to 1, or null
-    busy = false; // an edit of this page is under way
+    loading = null; // fraction of the mesh that has been read, 0 to 1, or null
+    busy = false; // an edit of this page is in progress
 
     #onChange;
     #onError;
     #withBoundary = true;
     #opening = null;
-    // Of the open mesh: {live, latest, lineage, materials}, where `latest` is the newest revision
-    // heard of.
+    // About the open mesh: {live, latest, lineage, materials}; `latest` is the newest revision
+    // known.
     #followed = null;
-    #running = null; // the promise of what is being fetched
+    #running = null; // promise of the running fetch
     #wanted = { once: false, whole: false };
     #rest = 0;
 
-    // `onChange(what, change)`: 'mesh' (another), 'content' (new arrays), 'change' (what
-    // applyDelta() says of the arrays), 'facts' (summary, boundary), 'name', 'selection',
-    // 'materials' (with what Materials.note() says, null for all), 'gone' (the mesh was deleted) or
-    // 'state' (loading, busy, connection). `onError` gets what fails without having been asked for.
+    // `onChange(what, change)` is called with 'mesh' (another mesh), 'content' (new arrays),
+    // 'change' (with the result of applyDelta()), 'facts' (summary, boundary), 'name', 'selection',
+    // 'materials' (with the result of Materials.note(), null for everything), 'gone' (the mesh was
+    // deleted) or 'state' (loading, busy, connection). `onError` is called with errors of work in
+    // the background.
     constructor(onChange, onError) {
         this.#onChange = onChange;
         this.#onError = onError;
         this.selection = new Selection(() => onChange('selection'));
     }
 
-    // The id of the open mesh or null.
+    // The id of the open mesh, or null.
     get mesh() {
         return this.shown?.mesh ?? null;
     }
 
-    // What the faces of the open mesh look like; null when none is open.
+    // The Materials of the open mesh, or null.
     get materials() {
         return this.#followed?.materials ?? null;
     }
 
-    // 'on', 'lost' or 'gone', see live.js; null when no mesh is open.
+    // 'on', 'lost' or 'gone', see live.js; null if no mesh is open.
     get connection() {
         return this.#followed?.live.state ?? null;
     }
 
-    // Open a mesh and show it once all of it is there. A later call overtakes an earlier one. The
-    // stream is opened first, so that nothing falls between it and the arrays.
+    // Opens a mesh and shows it when it is complete. A later call supersedes an earlier one. The
+    // stream is opened first, so that no edit is missed between it and the arrays.
     async open(mesh) {
         this.#opening?.abort();
         const opening = new AbortController();
@@ -116,7 +117,7 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // The content that was replaced may have been fetched already, after an edit of ours.
+            // The replaced content may have been fetched already, after an edit of this page.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });
@@ -152,15 +153,15 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // Without a connection the stream ends too, which is shown.
+            // Without a connection the stream ends, too, which is shown.
             if (error.status !== 0) {
                 this.#onError(error);
             }
         });
     }
 
-    // Fetch until what is shown is the newest that was heard of; `once` asks at least once, `whole`
-    // for all of it. Whoever calls it meanwhile waits for the same end.
+    // Fetches until the newest known revision is shown; `once` makes at least one request, `whole`
+    // fetches everything. Calls in the meantime wait for the same end.
     #fetch({ once = false, whole = false }) {
         this.#wanted.once ||= once;
         this.#wanted.whole ||= whole;
@@ -178,7 +179,8 @@ export class Session {
             try {
                 await this.#advance(whole);
             } catch (error) {
-                // Of other arrays, or of a mesh of that name that is younger than what is shown.
+                // The change is for other arrays, or the mesh was replaced by a newer one with its
+                // name.
                 if (whole || !(error instanceof RangeError || error.status === 400)) {
                     throw error;
                 }
@@ -220,7 +222,7 @@ export class Session {
         }
     }
 
-    // Whether boundary loops are read and shown.
+    // Sets whether boundary loops are read and shown.
     async showBoundary(isShown) {
         this.#withBoundary = isShown;
         if (this.shown !== null) {
@@ -228,12 +230,12 @@ export class Session {
         }
     }
 
-    // Where an element that is gone is to be found: {kind, id} or null.
+    // Returns the element that replaced one that is gone: {kind, id} or null.
     heirOf(element) {
         return this.#followed?.lineage.heirOf(element) ?? null;
     }
 
-    // What Split would do: 'edge_split', 'face_poke', 'face_split' or null.
+    // The operation of Split: 'edge_split', 'face_poke', 'face_split' or null.
     get split() {
         const kinds = this.selection.chosen.map(({ kind }) => kind).join();
         const operations = {
@@ -258,7 +260,7 @@ export class Session {
         }
     }
 
-    // The face of which two vertices are corners.
+    // Returns the face that has two vertices as corners.
     async #sharedFace(a, b) {
         const [ofA, ofB] = await Promise.all(
             [a, b].map((id) => api.getAdjacent(this.mesh, 'vertex', id, 'faces')),
@@ -273,12 +275,12 @@ export class Session {
         return face;
     }
 
-    // Run an operation of the server's table; `work` for one that may take long, see api.js.
+    // Runs an operation of the server's table; `work` shows one that may take long, see api.js.
     run(operation, work = null) {
         return this.#edit((revision) => api.edit(this.mesh, operation, revision, work));
     }
 
-    // The last step, or all since a revision.
+    // Undoes the last step, or all since a revision.
     undo(to = undefined) {
         return this.#edit((revision) => api.undo(this.mesh, revision, to));
     }
@@ -315,7 +317,7 @@ export class Session {
         }
     }
 
-    // What has happened since a revision, in words.
+    // Describes in words what happened since a revision.
     #since(revision) {
         const entries = this.shown.history.entries.filter((entry) => entry.revision > revision);
         const words = entries.reverse().map(({ action, ops }) =>

@@ -1,4 +1,4 @@
-// sign_in.js - asks for a token, and shows whose it is and what it may do.
+// sign_in.js - asks for a token, and shows its name and role.
 
 import * as api from './api.js';
 import { byId } from './dom.js';
@@ -9,7 +9,7 @@ const ROLES = { read: 'may look', write: 'may edit', admin: 'may do everything' 
 export class SignIn {
     mayEdit = true; // until the server says otherwise
 
-    // `onChange` is called when it is known who one is.
+    // `onChange` is called when the token is known.
     constructor(onChange) {
         askBy((wasWrong) => this.#ask(wasWrong));
         byId('who').addEventListener('click', () => {
@@ -19,7 +19,7 @@ export class SignIn {
         this.onChange = onChange;
     }
 
-    // Asks the server, which asks for a token where it wants one.
+    // Asks the server for the present token; the user is asked if the server needs one.
     async start() {
         const { name, role, prefixes } = await api.getToken();
         this.mayEdit = role !== 'read';

@@ -1,4 +1,4 @@
-// stage.js - the view: the renderer, or none where there is no WebGL, and what a click on it means.
+// stage.js - the view: the renderer, or none without WebGL, and what a click on it does.
 
 import { NoWebGL, Renderer } from './gl/render.js';
 import { REACH, choose } from './pick.js';
@@ -6,8 +6,8 @@ import { REACH, choose } from './pick.js';
 // A pointer that moved further than this between down and up was orbiting.
 const CLICK_PIXELS = 4;
 
-// The camera is at rest so many milliseconds after its last move: browsers refuse an address that
-// changes often.
+// Milliseconds after the last move until the camera is at rest: browsers limit how often the
+// address may change.
 const REST = 250;
 
 export class Stage {
@@ -19,10 +19,10 @@ export class Stage {
     #acts;
     #timer = 0;
 
-    // `noWebGL` and `contextLost` are shown when that is so, `modes` holds the radio buttons of
-    // what a click picks. `geometry()` gives the arrays that are shown, or null. `onPick(chosen,
-    // also)` gets what choose() made of a click, `also` with Shift; `onRest()` when the camera has
-    // been moved and is at rest.
+    // `noWebGL` and `contextLost` are messages, `modes` contains the radio buttons for the kind of
+    // element to pick. `geometry()` returns the arrays that are shown, or null. `onPick(chosen,
+    // also)` is called with the result of choose() for a click, `also` with Shift; `onRest()` when
+    // the camera has come to rest.
     constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
@@ -46,33 +46,33 @@ export class Stage {
         this.#listenToClicks();
     }
 
-    // Is anything drawn at all?
+    // Is there a renderer?
     get isThere() {
         return this.#renderer !== null;
     }
 
     // --- what is shown ---
 
-    // New arrays; `label` is what the next frame is marked with: {mesh, revision, selection, materials}, of a
+    // Shows new arrays. `label` marks the next frame: {mesh, revision, selection, materials}, for a
     // level {mesh, revision, faces}.
     show(geometry, label) {
         this.#isLevel = false;
         this.#draw(label, () => this.#renderer?.show(geometry, label));
     }
 
-    // The arrays that are shown were changed, see applyDelta().
+    // The arrays were changed, see applyDelta().
     update(change, label) {
         this.#draw(label, () => this.#renderer?.update(change, label));
     }
 
-    // A level of detail in place of the mesh, until that is shown again. Nothing is picked in it or
-    // marked. Throws a RangeError where it is too large, and shows what it did before.
+    // Shows a level of detail until the mesh is shown again. Nothing can be picked or marked in it.
+    // Throws a RangeError, and goes on showing what it did, if it is too large.
     showLevel(geometry, label) {
         this.#renderer.show(geometry, label);
         this.#isLevel = true;
     }
 
-    // Another level, see Levels.
+    // Shows another level, see Levels.
     refine(ranges, label) {
         this.#renderer.refine(ranges, label);
     }
@@ -86,7 +86,7 @@ export class Stage {
         }
     }
 
-    // What the frame on the screen shows, for whoever waits for it.
+    // Marks the canvas with what the frame shows, so that tests can wait for it.
     #markFrame(label) {
         for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces']) {
             if (label?.[name] === undefined) {
@@ -97,7 +97,7 @@ export class Stage {
         }
     }
 
-    // What marks are on: null where there is nothing to mark. See Renderer for the marks.
+    // The target of marks: null if there is nothing to mark. See Renderer for the marks.
     get #marked() {
         return this.#isLevel ? null : this.#renderer;
     }
@@ -118,7 +118,7 @@ export class Stage {
         this.#marked?.preview(lines);
     }
 
-    // What faces look like, see materials.js.
+    // Sets the materials of faces, see materials.js.
     showMaterials(materials, label) {
         this.#renderer?.showMaterials(materials, label);
     }
@@ -127,7 +127,7 @@ export class Stage {
         this.#renderer?.updateMaterials(materials, change, label);
     }
 
-    // Whether faces have the colours of their materials.
+    // Shows or hides the colours of materials.
     colorFaces(isColored) {
         this.#renderer?.colorFaces(isColored);
     }
@@ -142,7 +142,7 @@ export class Stage {
         this.#renderer?.fit();
     }
 
-    // What framing() says, or the whole mesh (null).
+    // Shows the result of framing(), or the whole mesh (null).
     frame(found) {
         if (found === null) {
             this.#renderer?.fit();
@@ -155,7 +155,7 @@ export class Stage {
         this.#renderer?.zoom(nearer);
     }
 
-    // `data-moving` is there until whoever wants to know of it has been told.
+    // `data-moving` is set until the listener was called.
     #moved(isHeld) {
         this.#canvas.dataset.moving = '';
         clearTimeout(this.#timer);
@@ -172,7 +172,7 @@ export class Stage {
         return this.#renderer.view;
     }
 
-    // Six numbers, undefined where nothing is drawn.
+    // Six numbers, undefined without a renderer.
     get camera() {
         return this.#renderer?.camera;
     }
@@ -185,7 +185,7 @@ export class Stage {
 
     // --- clicks ---
 
-    // Where the page is longer than the window.
+    // Scrolls to the view if the page is longer than the window.
     bringIntoSight() {
         this.#canvas.scrollIntoView({ block: 'nearest' });
     }
@@ -194,7 +194,7 @@ export class Stage {
         return this.#modes.querySelector('input:checked').value;
     }
 
-    // The kind of elements that are picked.
+    // Sets the kind of elements to pick.
     setPickMode(mode) {
         this.#modes.querySelector(`input[value="${mode}"]`).checked = true;
         this.#renderer?.showVertices(mode === 'vertex');
@@ -215,7 +215,7 @@ export class Stage {
         });
     }
 
-    // What is at a place in the window.
+    // Returns the element at a place in the window.
     #choose(clientX, clientY) {
         const box = this.#canvas.getBoundingClientRect();
         const [x, y] = [clientX - box.left, clientY - box.top];

@@ -1,4 +1,4 @@
-// statistics.js - what the server's summary says of the open mesh. Nothing is computed here.
+// statistics.js - shows the server's summary of the open mesh. Nothing is computed here.
 
 import { formatCount, formatMeasure, make } from './dom.js';
 
@@ -11,7 +11,7 @@ export class Statistics {
         this.#facts = facts;
     }
 
-    // `isCurrent` is false while they are those of a revision before what is shown.
+    // `isCurrent` is false if the summary is of an earlier revision than the one shown.
     show(summary, isCurrent) {
         this.#sizes.replaceChildren(...sizesOf(summary));
         this.#facts.replaceChildren(...factsOf(summary));

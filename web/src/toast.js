@@ -1,11 +1,11 @@
-// toast.js - messages. Those about failures stay until they are closed: nobody has to read in time.
-// What went well goes by itself.
+// toast.js - messages. Errors stay until they are closed, so that there is no time limit for
+// reading. Messages of success disappear.
 
 import { make } from './dom.js';
 
 const MOST = 4;
 
-// Milliseconds that a message about what went well is shown.
+// Milliseconds for which a message of success is shown.
 const SHORT = 8000;
 
 export class Toasts {
@@ -15,12 +15,12 @@ export class Toasts {
         this.#region = region;
     }
 
-    // Show an error: the server's words where it has any. `again` (a label and what to run) is a
-    // button that mends it.
+    // Shows an error, with the server's words if it has any. `again` (a label and a function) makes
+    // a button that corrects it.
     show(error, again) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
-        // The page sends one operation at a time: that it is the first says nothing.
+        // The page sends one operation at a time, so its index is left out.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
         const toast = this.#add('alert', title, `${detail}${where}`);
@@ -35,7 +35,7 @@ export class Toasts {
         }
     }
 
-    // Show what went well.
+    // Shows a success.
     tell(title, detail) {
         const toast = this.#add('status', title, detail);
         setTimeout(() => toast.remove(), SHORT);

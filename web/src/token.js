@@ -1,5 +1,5 @@
-// token.js - the token that requests carry, where the server asks for one. It is kept for the tab
-// alone, and goes with it.
+// token.js - the token that requests carry, if the server asks for one. It is kept for the tab
+// only, and lost with it.
 
 const PLACE = 'hedge-token';
 
@@ -14,13 +14,13 @@ export function forgetToken() {
     sessionStorage.removeItem(PLACE);
 }
 
-// `show(wasWrong)` asks the visitor: a promise of a token, or of null.
+// `show(wasWrong)` asks the user: it returns a promise of a token, or of null.
 export function askBy(show) {
     ask = show;
 }
 
-// A request with `refused`, a token or null, was answered 401. Is there another one to try? However
-// many requests are refused at a time, the visitor is asked once.
+// A request with `refused`, a token or null, was answered 401. Returns whether there is another
+// token to try. The user is asked once, however many requests are refused at a time.
 export async function renewToken(refused) {
     if (token() === refused) {
         asked ??= ask(refused !== null).finally(() => {

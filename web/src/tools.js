@@ -1,5 +1,5 @@
-// tools.js - a form for each operation of the server's table, its elements taken from the
-// selection. Nothing here knows any operation: a new row of the table appears by itself.
+// tools.js - a form for each operation of the server's table, filled with the selected elements. No
+// operation is known here: a new row of the table appears automatically.
 
 import { Chooser } from './chooser.js';
 import { Flag } from './controls.js';
@@ -16,7 +16,7 @@ import {
     readField,
 } from './fields.js';
 
-// What an element that is selected says of elements of other kinds.
+// Links from a selected element to elements of other kinds.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
     edge: (element) => (element.edge === undefined ? [] : [element.edge]),
@@ -31,16 +31,16 @@ export class Tools {
     #onTouch;
     #onArm;
     #meshes;
-    #armed = null; // {param, control, button} that takes what is clicked
+    #armed = null; // {param, control, button} of the field that waits for a click
     #selection = [];
     #isEnabled = true;
-    #isChosen = false; // an operation was chosen, and is kept whatever is selected
-    #fields = new Map(); // parameter's name -> {param, control, row, isTaken}
+    #isChosen = false; // the user chose an operation, which is kept when the selection changes
+    #fields = new Map(); // name of the parameter -> {param, control, row, isTaken}
 
-    // `onRun(operation)` is called with what the form says, and shows what goes wrong.
-    // `onTouch(operation, error)` after the form was changed: null where it is not complete, or the
-    // error in it. `onArm({name, kind, isList})` when a field waits for elements, and with
-    // undefined when none does any more; `meshes()` lists meshes.
+    // `onRun(operation)` is called with the operation of the form, and shows errors.
+    // `onTouch(operation, error)` is called after a change of the form: null if it is incomplete,
+    // or the error in it. `onArm({name, kind, isList})` is called when a field waits for elements,
+    // and with undefined when none does any more. `meshes()` lists meshes.
     constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
         this.#form = form;
         this.#onRun = onRun;
@@ -77,8 +77,8 @@ export class Tools {
         this.#chooser.setOperations(operations);
     }
 
-    // Fill in what is selected: {kind, id, element}, the last chosen last. While that stays the
-    // same, what was typed in its place stays too.
+    // Fills in the selection: {kind, id, element}, in the order of selection. While it stays the
+    // same, text that the user typed in its place stays, too.
     setSelection(selection) {
         const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
@@ -95,9 +95,9 @@ export class Tools {
         }
     }
 
-    // --- what is clicked ---
+    // --- clicks ---
 
-    // Does a field wait for what is clicked?
+    // Does a field wait for a click?
     get isArmed() {
         return this.#armed !== null;
     }
@@ -108,7 +108,7 @@ export class Tools {
         }
     }
 
-    // An element that was clicked for the field that waits; `place` is where a vertex is.
+    // Puts a clicked element into the field that waits; `place` is the position of a vertex.
     take(id, place) {
         const { param, control } = this.#armed;
         control.take(id, place);
@@ -125,7 +125,7 @@ export class Tools {
     #arm(armed) {
         if (this.#armed !== null) {
             this.#armed.button.setAttribute('aria-pressed', 'false');
-            // Where the view is above the form, one had to leave it.
+            // On a narrow page the view is above the form, so the click scrolled away from it.
             this.#armed.button.scrollIntoView({ block: 'nearest' });
         }
         this.#armed = armed;
@@ -134,7 +134,7 @@ export class Tools {
         this.#onArm(param && { name: param.name, kind: kindOf(param), isList: isList(param) });
     }
 
-    // Of parameters that stand for each other only the last that was said is kept.
+    // Of alternative parameters, only the last one typed is kept.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
         const { group } = field.param;
@@ -148,7 +148,7 @@ export class Tools {
         this.#touch();
     }
 
-    // Say what the form says, once an operation was chosen.
+    // Reports the operation of the form, once an operation was chosen.
     #touch() {
         this.mark('');
         if (!this.#isChosen || this.#chooser.operation === undefined) {
@@ -173,7 +173,7 @@ export class Tools {
             );
     }
 
-    // Mark the field that what is wrong is about, by a problem's pointer, or none ('').
+    // Marks the field that a problem's pointer refers to, or none ('').
     mark(pointer) {
         for (const field of this.#fields.values()) {
             const isWrong = isAbout(field, pointer);
@@ -182,7 +182,7 @@ export class Tools {
         }
     }
 
-    // Does it begin with an element of the kind that is selected?
+    // Is the first parameter of the kind that is selected?
     #fits({ params } = { params: [] }) {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
@@ -194,8 +194,8 @@ export class Tools {
         }
     }
 
-    // An operation on what is selected: on all of it where the server's table says it takes
-    // several, else on the last.
+    // Makes an operation on the selection: on all of it if the operation takes several elements,
+    // else on the last one.
     operationOn(name, selection) {
         const { kind, id } = selection.at(-1);
         const row = this.#chooser.find(name);
@@ -204,24 +204,25 @@ export class Tools {
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
     }
 
-    // May it cost the whole mesh, and take long?
+    // Does the operation work on the whole mesh, so that it may take long?
     isWhole(name) {
         return this.#chooser.find(name)?.size === 'whole';
     }
 
-    // Has the server an operation of this name?
+    // Does the server have an operation with this name?
     has(name) {
         return this.#chooser.find(name) !== undefined;
     }
 
-    // Show the form of an operation that there is.
+    // Shows the form of an existing operation.
     show(name) {
         this.#chooser.set(name);
         this.#isChosen = true;
         this.#build();
     }
 
-    // The same with the focus in its first field that is empty, or on the button where it has none.
+    // Shows the form and puts the focus into its first empty field, or on the button if there is
+    // none.
     open(name) {
         this.show(name);
         const controls = [...this.#fields.values()].map(({ control }) => control);
@@ -251,7 +252,7 @@ export class Tools {
         this.#touch();
     }
 
-    // `isOther` where it may be given in place of the one before it.
+    // `isOther`: it is an alternative to the one before it.
     #rows(param, isOther) {
         const { name, doc } = param;
         const id = `param-${name}`;
@@ -259,7 +260,7 @@ export class Tools {
         const control = controlFor(param, this.#meshes, pickable);
         const field = { param, control, row: null, isTaken: false };
         this.#fields.set(name, field);
-        // Several inputs are a group, of which the first has the id.
+        // Several inputs form a group, of which the first has the id.
         const isGroup = control.main !== control.node;
         const help = make('p', { id: `${id}-doc`, className: 'small' }, ...prose(doc));
         control.main.id = id;
@@ -284,7 +285,7 @@ export class Tools {
         return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
     }
 
-    // A control beside a button that lets the next click fill it.
+    // Returns a control with a button that lets the next click fill it.
     #pickable(param, control) {
         const armed = { param, control };
         armed.button = make(
@@ -300,9 +301,9 @@ export class Tools {
         return make('div', { className: 'picked' }, control.node, armed.button);
     }
 
-    // Elements of a parameter's kind, in the order they were selected; parameters of one kind share
-    // them out. Of a group only the first that fits is filled, and what was clicked for a field
-    // stays.
+    // Fills in selected elements of the parameter's kind, in the order of selection; several
+    // parameters of one kind share them. Of alternatives only the first that fits is filled, and
+    // elements that were clicked for a field stay.
     #fill() {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
         const fields = [...this.#fields.values()];
@@ -345,12 +346,12 @@ function keyOf(selection) {
     return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
-// Not to be offered unasked.
+// Deleting operations are never preselected.
 function isDeletion({ name }) {
     return name.endsWith('_delete');
 }
 
-// May it be given in place of one of those before it?
+// Is it an alternative to one of those before it?
 function isOtherOf(before, { group }) {
     return group !== undefined && before.some((other) => other.group === group);
 }

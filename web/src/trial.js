@@ -1,6 +1,6 @@
-// trial.js - what an edit would do, asked of the server before it is sent: a dry run, in words.
+// trial.js - a dry run of an edit before it is sent, described in words.
 
-// An edit is tried when the form has been left alone for so many milliseconds.
+// Milliseconds without a change of the form before its dry run.
 const DELAY = 300;
 
 const LETTERS = { vertices: 'V', edges: 'E', faces: 'F' };
@@ -10,15 +10,15 @@ export class Trial {
     #attempt;
     #timer = 0;
     #running = null;
-    #asked = null; // the operation that was asked about last
+    #asked = null; // the operation of the last dry run
 
-    // `attempt(operation, signal)` gives what is to be said, or null where that is nothing.
+    // `attempt(operation, signal)` returns the text to show, or null.
     constructor(box, attempt) {
         this.#box = box;
         this.#attempt = attempt;
     }
 
-    // Try an operation soon; only the last counts. Null where the form does not say one yet.
+    // Tries an operation soon; only the last call counts. Null: the form is incomplete.
     ask(operation) {
         this.clear();
         this.#asked = operation;
@@ -27,14 +27,14 @@ export class Trial {
         }
     }
 
-    // The mesh has changed: what was said of it may hold no longer.
+    // The mesh has changed: the last result may be wrong.
     askAgain() {
         if (this.#asked !== null) {
             this.ask(this.#asked);
         }
     }
 
-    // Say that what the form says cannot be sent.
+    // Shows that the form cannot be sent.
     refuse(error) {
         this.clear();
         this.#sayRefused(error);
@@ -60,7 +60,7 @@ export class Trial {
                 this.#say(words, false);
             }
         } catch (error) {
-            // That there is no connection is shown elsewhere.
+            // A lost connection is shown elsewhere.
             if (!running.signal.aborted && error.status !== 0) {
                 this.#sayRefused(error);
             }
@@ -73,7 +73,7 @@ export class Trial {
     }
 }
 
-// What the answer to a dry run says, null where there is none.
+// Returns the text for the answer to a dry run, null if there is none.
 export function wordsOf(answer) {
     if (answer === null) {
         return null;

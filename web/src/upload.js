@@ -1,5 +1,5 @@
-// upload.js - files from the button or dropped on the page, sent one after another, those that refer
-// to others with them.
+// upload.js - uploads files that were chosen or dropped on the page, one after another, each with
+// the files that it refers to.
 
 import { batchesOf } from './batches.js';
 
@@ -13,10 +13,10 @@ export class Uploads {
     #queue = Promise.resolve();
     #depth = 0;
 
-    // `send(batch, onProgress, work)` uploads one, see batches.js; `onDone(summary, file)` gets what became of
-    // it; `work` shows it, see work.js. `onError(error, again)`: where repairs let the file pass,
-    // `again` has their names as its label and sends it once more with them.
-    // Nothing is dropped while `isOpen()` is false.
+    // `send(batch, onProgress, work)` uploads one batch, see batches.js; `onDone(summary, file)` is
+    // called with the result; `work` shows it, see work.js. `onError(error, again)`: if repairs
+    // would let the file pass, `again` has their names as its label and uploads it with them.
+    // Nothing can be dropped while `isOpen()` is false.
     constructor({ input, work, area }, { isOpen, send, onDone, onError }) {
         this.#work = work;
         this.#isOpen = isOpen;
@@ -26,13 +26,14 @@ export class Uploads {
         this.#onError = onError;
         input.addEventListener('change', () => {
             this.#add([...input.files]);
-            // The same file may be chosen again.
+            // Lets the same file be chosen again.
             input.value = '';
         });
         this.#listenToDrops();
     }
 
-    // Entering a child leaves its parent: count, or the hint would flicker.
+    // Entering a child fires a leave event of its parent: counts both, so that the hint does not
+    // flicker.
     #listenToDrops() {
         const hasFiles = (event) => this.#isOpen() && event.dataTransfer?.types.includes('Files');
         document.addEventListener('dragenter', (event) => {

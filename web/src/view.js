@@ -1,11 +1,11 @@
-// view.js - where the camera stands and where things are on the screen. Pure.
+// view.js - the geometry of the camera and the screen. Pure.
 //
 // The mesh is within the unit ball and z is up, as in the server's shapes.
 
-export const FIELD_OF_VIEW = 36; // degrees, vertical
+export const FIELD_OF_VIEW = 36; // vertical, in degrees
 export const UP = [0, 0, 1];
 
-// From the middle of the mesh towards the camera of a mesh just opened; length 1.
+// The direction from the middle of a newly opened mesh to the camera; length 1.
 export const DIRECTION = unit([0.62, -1, 0.58]);
 
 function unit(vector) {
@@ -13,20 +13,20 @@ function unit(vector) {
     return vector.map((value) => value / length);
 }
 
-// How far the camera must be for the mesh to fit a canvas of width / height = aspect, in radii of
-// the ball around the mesh.
+// Returns the distance at which the mesh fits a canvas of width / height = aspect, in radii of the
+// ball around the mesh.
 export function fitDistance(aspect) {
     const vertical = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const narrow = Math.atan(vertical * Math.min(aspect, 1));
     return 1.1 / Math.sin(narrow);
 }
 
-// How long a CSS pixel of a canvas of a height is at distance 1 of the camera.
+// Returns the length of a CSS pixel at distance 1 of the camera, for a canvas of this height.
 export function pixelAtOne(height) {
     return (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / height;
 }
 
-// The middle of the box of some points.
+// Returns the middle of the bounding box of some points.
 export function middleOf(points) {
     const [low, high] = [Math.min, Math.max].map((pick) =>
         [0, 1, 2].map((axis) => pick(...points.map((point) => point[axis]))),
@@ -34,17 +34,19 @@ export function middleOf(points) {
     return low.map((value, axis) => (value + high[axis]) / 2);
 }
 
-// How far some points reach from a place; 0 where there are none.
+// Returns the distance from a place to the farthest of some points; 0 if there are none.
 export function reachFrom(place, points) {
     const away = (point) => Math.hypot(...point.map((value, i) => value - place[i]));
     return Math.max(0, ...points.map(away));
 }
 
-// Less of the side that looks along `normal` than this is too little to see: cosine of the angle.
+// A side that looks along `normal` is visible if the cosine of its angle to the view is at least
+// this.
 const LEAST_SEEN = 0.3;
 
-// From where to look, both of length 1: `direction` itself where a side that looks along `normal`
-// is seen from there or there is no normal, else one near the normal on the same side of the mesh.
+// Returns a direction to look from; all directions have length 1. It is `direction` itself if there
+// is no normal or the side that looks along `normal` is visible from there; else one near the
+// normal, on the same side of the mesh.
 export function turnTo(direction, normal) {
     if (normal === null) {
         return direction;
@@ -55,7 +57,8 @@ export function turnTo(direction, normal) {
         : unit(normal.map((value, i) => value + 0.5 * (direction[i] - seen * normal[i])));
 }
 
-// Clip coordinates [x, y, z, w] of a point; `matrix` is view and projection, column-major.
+// Returns the clip coordinates [x, y, z, w] of a point; `matrix` is view and projection,
+// column-major.
 function toClip(matrix, point) {
     const clip = [0, 0, 0, 0];
     for (let row = 0; row < 4; row++) {
@@ -75,10 +78,10 @@ function toScreen(clip, width, height) {
     ];
 }
 
-// Nearer to the camera's plane than this a point has no place on the screen.
+// A point nearer to the camera's plane than this has no place on the screen.
 const NEAREST = 1e-6;
 
-// Pixels from (x, y) to a point, Infinity when it is behind the camera.
+// Returns the distance in pixels from (x, y) to a point; Infinity if it is behind the camera.
 export function distanceToPoint(matrix, width, height, point, x, y) {
     const clip = toClip(matrix, point);
     if (clip[3] < NEAREST) {
@@ -88,7 +91,8 @@ export function distanceToPoint(matrix, width, height, point, x, y) {
     return Math.hypot(px - x, py - y);
 }
 
-// Pixels from (x, y) to the part of a segment that is before the camera.
+// Returns the distance in pixels from (x, y) to the part of a segment that is in front of the
+// camera.
 export function distanceToSegment(matrix, width, height, from, to, x, y) {
     let a = toClip(matrix, from);
     let b = toClip(matrix, to);
@@ -110,7 +114,7 @@ export function distanceToSegment(matrix, width, height, from, to, x, y) {
     return Math.hypot(ax + s * dx - x, ay + s * dy - y);
 }
 
-// The point between `behind` and `before` at which the segment meets the camera's plane.
+// Returns the point between `behind` and `before` where the segment meets the camera's plane.
 function cutAtCamera(behind, before) {
     const t = (NEAREST - behind[3]) / (before[3] - behind[3]);
     return behind.map((value, i) => value + t * (before[i] - value));

@@ -1,4 +1,4 @@
-// work.js - what takes long: what it is, how far it is, and a button that gives it up.
+// work.js - shows long work: its name, its progress, and a button that cancels it.
 
 export class Work {
     #elements;
@@ -6,14 +6,15 @@ export class Work {
     #title = '';
     #cancel = null;
 
-    // `box` holds the others and is hidden while there is nothing to show.
+    // `box` contains the others and is hidden when there is nothing to show.
     constructor({ box, label, progress, button }, onError) {
         this.#elements = { box, label, progress, button };
         this.#onError = onError;
         button.addEventListener('click', () => this.#giveUp());
     }
 
-    // What is about to begin; `isShown` says whether at once, or when it turns out to take long.
+    // Work is about to begin; `isShown`: show it at once, rather than when it turns out to take
+    // long.
     start(title, isShown) {
         const { box, label, progress, button } = this.#elements;
         this.#title = title;
@@ -23,7 +24,7 @@ export class Work {
         box.hidden = !isShown;
     }
 
-    // From now on `cancel()` gives it up; it may return a promise.
+    // From now on `cancel()` cancels it; it may return a promise.
     begin(cancel) {
         const { box, button } = this.#elements;
         this.#cancel = cancel;
@@ -32,7 +33,7 @@ export class Work {
         box.hidden = false;
     }
 
-    // How far it is, 0 to 1, and with what, as a job of the server says.
+    // Shows progress, 0 to 1, and the phase, as a job of the server reports them.
     show({ progress, phase = null }) {
         const { label, progress: bar } = this.#elements;
         bar.value = progress;

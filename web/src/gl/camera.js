@@ -1,21 +1,21 @@
-// camera.js - where the mesh is seen from, and how the pointer, the wheel, fingers and keys move
-// that. What it means on the screen is view.js's.
+// camera.js - the position of the camera, and how pointer, wheel, fingers and keys move it. view.js
+// computes what it shows.
 
 import { Matrix4, PerspectiveCamera } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../view.js';
 
-const ZOOM = 0.8; // of the distance, a step of the keyboard
+const ZOOM = 0.8; // factor of the distance for one step of the keyboard
 
 export class Camera {
-    // The camera as three wants it.
+    // The camera object of three.js.
     three = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 10);
     #canvas;
     #controls;
 
-    // `onMove(isHeld)` is called after each move, and when it is let go; `isHeld` while a pointer
-    // or a finger goes on with it.
+    // `onMove(isHeld)` is called after each move and when it ends; `isHeld`: a pointer or a finger
+    // continues it.
     constructor(canvas, onMove) {
         this.#canvas = canvas;
         this.three.up.set(...UP);
@@ -42,7 +42,7 @@ export class Camera {
         this.three.updateProjectionMatrix();
     }
 
-    // Look at a ball from a direction, which has length 1.
+    // Looks at a ball from a direction of length 1.
     look(center, direction, radius) {
         const distance = fitDistance(this.three.aspect) * radius;
         this.#controls.target.set(...center);
@@ -51,15 +51,15 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Look at a ball with what is around it; `normal` is where what is in it looks to, null where
-    // that is nowhere. A camera behind it goes around the mesh, another stays on its side.
+    // Looks at a ball with its surroundings; `normal` is the direction in which its contents look,
+    // or null. A camera behind them goes around the mesh; otherwise it stays on its side.
     frame({ center, radius, normal }) {
         const away = this.three.position.clone().sub(this.#controls.target).normalize();
         const direction = turnTo(away.toArray(), normal);
         this.look(center, direction, radius > 0 ? 1.8 * radius : 0.1);
     }
 
-    // Nearer (true) or further by a step.
+    // Zooms in (true) or out by one step.
     zoom(nearer) {
         const { target, minDistance, maxDistance } = this.#controls;
         const away = this.three.position.clone().sub(target);
@@ -69,7 +69,7 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Where it stands and what it looks at: six numbers.
+    // Position and target: six numbers.
     get numbers() {
         return [...this.three.position.toArray(), ...this.#controls.target.toArray()];
     }
@@ -80,7 +80,7 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Where it is and how it is turned: its own axes, and the canvas in CSS pixels.
+    // Position and axes of the camera, and the size of the canvas in CSS pixels.
     get view() {
         this.three.updateMatrixWorld();
         const { elements } = this.three.matrixWorld;
@@ -88,7 +88,7 @@ export class Camera {
         return { right, up, back, position, height: this.#canvas.clientHeight };
     }
 
-    // View and projection, column-major, as view.js wants it.
+    // View and projection, column-major, for view.js.
     get matrix() {
         this.three.updateMatrixWorld();
         return new Matrix4().multiplyMatrices(
@@ -97,7 +97,7 @@ export class Camera {
         ).elements;
     }
 
-    // The mesh is within 1 of the origin; a tight range keeps the depth buffer exact.
+    // The mesh is within 1 of the origin; a tight depth range keeps the depth buffer exact.
     setDepthRange() {
         const distance = this.three.position.length();
         const near = 0.02 * this.#controls.getDistance();

@@ -1,5 +1,5 @@
-// marks.js - what lies on the mesh: what is selected, what is in the fields of a form, half-edges
-// as arrows, boundary loops, and lines of what is about to be done.
+// marks.js - marks on the mesh: the selection, the elements in the fields of a form, half-edges as
+// arrows, boundary loops, and lines that preview an edit.
 
 import {
     AlwaysDepth,
@@ -27,10 +27,10 @@ import { pixelAtOne } from '../view.js';
 import { ARROW_FRAGMENT, ARROW_VERTEX, DOT_FRAGMENT, MARK_VERTEX } from './shaders.js';
 
 const CHOSEN = 0xffb347;
-const CHOSEN_START = 0x7a4a10; // where a selected half-edge begins
+const CHOSEN_START = 0x7a4a10; // colour at the origin of a selected half-edge
 const BOUNDARY = 0x35d0e6;
 const PREVIEW = 0xf4f6fa;
-// Of half-edges by their role, see around.js; also in style/details.css.
+// Colours of half-edges by their role, see around.js; also in style/details.css.
 const ARROWS = {
     self: 0xffb347,
     next: 0x6be675,
@@ -39,15 +39,15 @@ const ARROWS = {
     near: 0xf4f6fa,
 };
 const FIELD = 0xf4f6fa;
-const MARK_SIZE = 13; // CSS pixels, as all sizes here
+const MARK_SIZE = 13; // in CSS pixels, as all sizes here
 const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const PREVIEW_WIDTH = 2;
 const FIELD_WIDTH = 3;
-const RAISED = 0.996; // of the distance, as dots in shaders.js
+const RAISED = 0.996; // factor of the distance, as for dots in shaders.js
 
 export class Marks {
-    // What is drawn.
+    // The objects that are drawn.
     chosen;
     boundary;
     arrows;
@@ -60,9 +60,9 @@ export class Marks {
     #geometry = null;
     #pixel = { value: 1 };
 
-    // `material` is that of triangles that are chosen.
+    // `material` is the material of selected triangles.
     constructor(material) {
-        // The triangles of the mesh again, a little nearer.
+        // Draws the triangles of the mesh again, a little nearer.
         this.chosen = new Mesh(new BufferGeometry(), material);
         material.polygonOffsetFactor = 0.5;
         material.polygonOffsetUnits = 0.5;
@@ -78,7 +78,7 @@ export class Marks {
                 blending: NoBlending,
             }),
         );
-        // What is behind the surface is marked too, faintly.
+        // Hidden parts are drawn faintly.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
         this.vertices = dots(new Vector3(1, 0.7, 0.28));
@@ -88,7 +88,7 @@ export class Marks {
         this.preview.visible = false;
     }
 
-    // Another mesh, or none (null): nothing lies on it.
+    // Another mesh, or none (null): removes all marks.
     reset(geometry) {
         this.#geometry = geometry;
         this.setBoundary([]);
@@ -96,7 +96,7 @@ export class Marks {
         this.select([], []);
     }
 
-    // Mark elements and draw half-edges as arrows, see Renderer.select().
+    // Marks elements and draws half-edges as arrows, see Renderer.select().
     select(marks, halfedges) {
         if (this.#geometry === null) {
             [marks, halfedges] = [[], []];
@@ -117,7 +117,7 @@ export class Marks {
         this.#setArrows(halfedges);
     }
 
-    // Elements that are in the fields of a form, as select() has them, by their outlines.
+    // Outlines the elements in the fields of a form; `marks` are as for select().
     setField(marks) {
         const edges = marks.flatMap(({ kind, id, from, to }) => {
             if (kind === 'face') {
@@ -130,7 +130,7 @@ export class Marks {
         this.#setDots(this.fieldVertices, idsOf(marks, 'vertex'));
     }
 
-    // Lines over everything: coordinates of ends in pairs, or null.
+    // Draws lines over everything: pairs of end points, or null.
     setPreview(coordinates) {
         const geometry = new LineSegmentsGeometry();
         if (coordinates !== null && coordinates.length > 0) {
@@ -139,8 +139,8 @@ export class Marks {
         replace(this.preview, geometry, (coordinates?.length ?? 0) > 0);
     }
 
-    // The edges of boundary loops: pairs of vertices one after another. They may be of a revision
-    // before what is shown: an edge whose ends are gone is left out.
+    // Draws the edges of boundary loops: pairs of vertices. They may be from an earlier revision:
+    // edges whose vertices are gone are left out.
     setBoundary(ends) {
         const live = [];
         for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
@@ -170,7 +170,7 @@ export class Marks {
         this.hiddenLines.visible = ends.length > 0;
     }
 
-    // Lines between pairs of vertices.
+    // Makes lines between pairs of vertices.
     #between(ends) {
         const geometry = new LineSegmentsGeometry();
         if (ends.length > 0) {
@@ -213,7 +213,8 @@ export class Marks {
         replace(dots, geometry, points.length > 0);
     }
 
-    // Of a screen of so many pixels to a CSS pixel, and a canvas of a height in those.
+    // `ratio` is the number of screen pixels per CSS pixel, `height` the canvas height in CSS
+    // pixels.
     setScreen(ratio, height) {
         for (const { material } of [this.vertices, this.fieldVertices]) {
             material.uniforms.size.value = MARK_SIZE * ratio;
@@ -221,8 +222,8 @@ export class Marks {
         this.#pixel.value = pixelAtOne(height);
     }
 
-    // A line is flat, and a surface that slopes would cut it: shrink it towards the camera, where
-    // it is seen at the same place.
+    // A slanted surface would hide parts of a line: scales it towards the camera, which does not
+    // change its place on the screen.
     raise(position) {
         for (const lines of [this.lines, this.hiddenLines, this.boundary]) {
             lines.scale.setScalar(RAISED);
@@ -265,7 +266,7 @@ function line(depthFunc, opacity) {
     });
 }
 
-// Of one colour.
+// With one colour.
 function plain(material, width, color) {
     material.linewidth = width;
     material.vertexColors = false;

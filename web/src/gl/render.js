@@ -1,12 +1,12 @@
-// render.js - draws: the surface of the mesh and what lies on it, as the camera sees them. Only
-// this folder knows WebGL and three.
+// render.js - draws the surface of the mesh and the marks on it. Only this folder knows WebGL and
+// three.
 //
 //   surface.js   the mesh, from the arrays of geometry.js
-//   marks.js     what lies on it: what is selected, arrows, boundary loops, previews
-//   camera.js    where it is seen from
+//   marks.js     the marks on it: selection, arrows, boundary loops, previews
+//   camera.js    the position of the camera
 //
-// Nothing is drawn until something changed. After each frame `onFrame` gets what it shows, so that
-// a test can wait for a frame instead of for a time.
+// A frame is drawn only after a change. After each frame `onFrame` is called with what it shows, so
+// that a test can wait for a frame instead of for a time.
 
 import {
     NearestFilter,
@@ -42,9 +42,8 @@ export class Renderer {
     #scheduled = false;
     #onFrame;
 
-    // Throws NoWebGL. `onFrame(label)` is called after each frame with what show() was given, and
-    // `onLost(lost)` when the graphics context goes and comes back, `onMove(isHeld)` as Camera
-    // says.
+    // Throws NoWebGL. `onFrame(label)` is called after each frame with the argument of show(),
+    // `onLost(lost)` when the graphics context is lost and restored, `onMove(isHeld)` as by Camera.
     constructor(canvas, { onFrame, onLost, onMove }) {
         const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
         if (context === null) {
@@ -90,8 +89,8 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Show a mesh, or nothing (null). `label` is what onFrame will say is shown. Throws a
-    // RangeError, and shows what it did before, when the mesh is larger than a texture can be.
+    // Shows a mesh, or nothing (null). `label` is passed to onFrame. Throws a RangeError, and goes
+    // on showing what it did, if the mesh is too large for a texture.
     show(geometry, label) {
         this.#surface.show(geometry);
         this.#geometry = geometry;
@@ -100,8 +99,8 @@ export class Renderer {
         this.#draw();
     }
 
-    // The arrays of the mesh that is shown were changed, see applyDelta(): only what changed goes
-    // to the graphics memory. Boundary and selection stay as they were. Throws as show() does.
+    // The arrays of the mesh were changed, see applyDelta(): uploads only what changed. Boundary
+    // and selection stay. Throws as show() does.
     update(places, label) {
         if (this.#geometry !== null) {
             this.#surface.update(places);
@@ -110,14 +109,14 @@ export class Renderer {
         this.#draw();
     }
 
-    // The arrays were changed within ranges, and how much of them is shown, see Levels.
+    // The arrays were changed within ranges, and the number of entries shown as well, see Levels.
     refine(ranges, label) {
         this.#surface.refine(ranges);
         this.#label = label;
         this.#draw();
     }
 
-    // What faces look like, see Surface.showMaterials().
+    // Sets the materials of faces, see Surface.showMaterials().
     showMaterials(materials, label) {
         this.#surface.showMaterials(materials);
         this.#label = label;
@@ -131,40 +130,39 @@ export class Renderer {
         this.#draw();
     }
 
-    // Whether faces have the colours of their materials.
+    // Shows or hides the colours of materials.
     colorFaces(isColored) {
         this.#surface.isColored = isColored;
         this.#draw();
     }
 
-    // Mark elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or
-    // {kind: 'vertex', id}, and draw half-edges as arrows, see around.js. Replaces what was marked
-    // before.
+    // Marks elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or {kind:
+    // 'vertex', id}, and draws half-edges as arrows, see around.js. Replaces earlier marks.
     select(marks, halfedges, label) {
         this.#label = label;
         this.#marks.select(marks, halfedges);
         this.#draw();
     }
 
-    // Mark the elements in the fields of a form, as select() has them.
+    // Marks the elements in the fields of a form; `marks` are as for select().
     markField(marks) {
         this.#marks.setField(this.#geometry === null ? [] : marks);
         this.#draw();
     }
 
-    // Lines over everything, of what is about to be done: coordinates of ends in pairs, or null.
+    // Draws lines over everything that preview an edit: pairs of end points, or null.
     preview(coordinates) {
         this.#marks.setPreview(coordinates);
         this.#draw();
     }
 
-    // Draw the edges of boundary loops, see Marks.setBoundary().
+    // Draws the edges of boundary loops, see Marks.setBoundary().
     setBoundary(ends) {
         this.#marks.setBoundary(ends);
         this.#draw();
     }
 
-    // All vertices as dots, or only the isolated ones, which nothing else shows.
+    // Shows all vertices as dots, or only isolated ones, which would otherwise be invisible.
     showVertices(all) {
         this.#surface.showVertices(all);
         this.#draw();
@@ -172,24 +170,24 @@ export class Renderer {
 
     // --- the camera ---
 
-    // Put the camera where the whole mesh is seen from the usual side.
+    // Shows the whole mesh from the default direction.
     fit() {
         const { center, radius } = ballOf(this.#geometry ?? { vertices: [] });
         this.#move(() => this.#camera.look(center, DIRECTION, radius));
     }
 
-    // Put the camera where some elements are seen, see Camera.frame().
+    // Shows some elements, see Camera.frame().
     frame(found) {
         this.#move(() => this.#camera.frame(found));
     }
 
-    // Nearer (true) or further by a step.
+    // Zooms in (true) or out by one step.
     zoom(nearer) {
         this.#move(() => this.#camera.zoom(nearer));
     }
 
     #move(act) {
-        // Panels that came or went with the mesh have changed the canvas already.
+        // Panels that appeared with the mesh may have resized the canvas.
         this.#resize();
         act();
     }
@@ -199,7 +197,7 @@ export class Renderer {
         return this.#camera.view;
     }
 
-    // Where the camera stands and what it looks at: six numbers.
+    // Position and target of the camera: six numbers.
     get camera() {
         return this.#camera.numbers;
     }
@@ -217,14 +215,14 @@ export class Renderer {
 
     // --- frames ---
 
-    // What is on the screen, as a Blob of image/png.
+    // Returns the screen as a Blob of image/png.
     capture() {
         this.#render();
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
     }
 
-    // What is visible within `reach` of a place on the canvas, as readSquare() of pick.js says;
-    // vertices are those shown as dots.
+    // Returns what is visible within `reach` of a place on the canvas, as readSquare() of pick.js
+    // does; vertices are those shown as dots.
     look(x, y, reach) {
         const ratio = this.#renderer.getPixelRatio();
         const radius = Math.ceil(reach * ratio);
@@ -259,7 +257,7 @@ export class Renderer {
         const ratio = window.devicePixelRatio;
         const size = `${width} ${height} ${ratio}`;
         if (size === this.#size) {
-            return; // a frame of a large mesh is dear
+            return; // a frame of a large mesh takes long
         }
         this.#size = size;
         this.#renderer.setPixelRatio(ratio);
@@ -289,7 +287,7 @@ export class Renderer {
     }
 }
 
-// Bounds are not known to three, which sees no positions.
+// three cannot compute bounds, since positions are in textures.
 function add(scene, objects) {
     objects.forEach((object, order) => {
         object.frustumCulled = false;

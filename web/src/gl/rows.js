@@ -1,12 +1,12 @@
-// rows.js - an array of geometry.js as a texture of ROW texels across, of which parts can be sent
-// to the graphics memory again. With render.js the only module that knows three.
+// rows.js - an array of geometry.js as a texture that is ROW texels wide, which can be uploaded in
+// parts. With render.js the only module that knows three.
 
 import { DataTexture, NearestFilter } from 'three';
 
 import { ROW } from '../geometry.js';
 
-// More changed texels than this part of all of them are sent as a whole; in ranges that are long
-// already a larger part.
+// If more than this part of all texels changed, all are uploaded: MANY for single texels, MOST for
+// changes that come as long ranges.
 const MANY = 1 / 8;
 const MOST = 1 / 2;
 
@@ -23,8 +23,8 @@ export class Rows extends DataTexture {
         };
     }
 
-    // The array was changed at some places, or anywhere (null), or it is another one. Returns the
-    // texture to use from now on, which is another one where the array is.
+    // The array was changed at some places, or anywhere (null), or replaced. Returns the texture to
+    // use from now on, a new one if the array was replaced.
     update(array, places) {
         if (array !== this.image.data) {
             const longer = new Rows(array, this.format, this.type);
@@ -36,19 +36,18 @@ export class Rows extends DataTexture {
         return this;
     }
 
-    // The array was changed in some ranges [begin, end] in rising order, none of which goes beyond
-    // its row.
+    // The array was changed in some ranges [begin, end], in ascending order, each within one row.
     updateWithin(ranges) {
         const texels = ranges.reduce((sum, [begin, end]) => sum + end - begin, 0);
         this.#send(texels >= MOST * (this.image.data.length / 4) ? null : ranges);
     }
 
-    // Ranges, or all of it (null).
+    // Uploads ranges, or everything (null).
     #send(ranges) {
         if (ranges?.length === 0) {
             return;
         }
-        // What was never sent is sent whole, and a range would keep it from that.
+        // The first upload must be of the whole texture, which a range would prevent.
         if (this.#isSent && ranges !== null) {
             ranges.forEach(([begin, end]) => this.addUpdateRange(4 * begin, 4 * (end - begin)));
         } else {
@@ -57,14 +56,14 @@ export class Rows extends DataTexture {
         this.needsUpdate = true;
     }
 
-    // What the graphics memory had of it is lost or old: all of it is sent next time.
+    // The copy in graphics memory is lost or outdated: the next upload is of everything.
     forget() {
         this.#isSent = false;
         this.clearUpdateRanges();
     }
 }
 
-// Places in rising order as few ranges, none of which goes beyond its row.
+// Combines indices in ascending order into few ranges, each within one row.
 function rangesOf(places) {
     const ranges = [];
     let begin = 0;

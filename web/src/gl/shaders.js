@@ -1,5 +1,5 @@
 // shaders.js - the GLSL programs. They read the arrays of geometry.js from two textures by
-// gl_VertexID, so that no vertex buffer repeats them.
+// gl_VertexID, so no vertex buffer has to repeat them.
 
 const TEXTURES = `
 precision highp float;
@@ -22,8 +22,9 @@ uvec4 triangleAt(int index) {
 }
 `;
 
-// Three vertices a triangle. bary is 1 at the corner and 0 on the side across from it. Normals are
-// left to the fragments' derivatives: all three corners here would be fetched three times.
+// Three vertices per triangle. bary is 1 at its corner and 0 on the opposite side. Normals are
+// computed from derivatives in the fragment shader: otherwise all three corners would be fetched
+// three times.
 export const SURFACE_VERTEX = `${TEXTURES}
 uniform usampler2D labels;
 uniform sampler2D palette;
@@ -35,7 +36,7 @@ flat out vec4 glow;
 out vec3 bary;
 out vec3 eye;
 
-// What a face looks like, see materials.js.
+// Finds the material of a face, see materials.js.
 void find(int face) {
     ivec2 place = texel(face / 4, textureSize(labels, 0).x);
     base = vec4(1.0);
@@ -64,9 +65,9 @@ void main() {
 }
 `;
 
-// Fill and polygon edges in one pass; `chosen` is true for the faces that are selected. What can be
-// seen through lets every so many pixels pass: no triangle need be drawn before another one. The
-// back of a face with a material of one side is as it is without: it may be turned the wrong way.
+// Draws fill and polygon edges in one pass; `chosen`: the face is selected. A translucent face
+// discards a part of its pixels in a pattern, so triangles need not be sorted. The back of a face
+// with a one-sided material is drawn as without material, because its orientation may be wrong.
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
@@ -84,13 +85,13 @@ const vec3 BACK = vec3(0.55, 0.42, 0.40);
 const vec3 CHOSEN = vec3(0.98, 0.70, 0.28);
 const vec3 EDGE = vec3(0.055, 0.070, 0.095);
 const vec3 EDGE_IN_THE_DARK = vec3(0.36, 0.38, 0.42);
-const float LEAST_OPACITY = 0.25; // or there would be nothing to pick
+const float LEAST_OPACITY = 0.25; // otherwise the face could not be picked
 const mat4 THRESHOLDS = mat4( // Bayer's ordered dither
     0.5, 12.5, 3.5, 15.5, 8.5, 4.5, 11.5, 7.5, 2.5, 14.5, 1.5, 13.5, 10.5, 6.5, 9.5, 5.5) / 16.0;
 const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.60));
 
 void main() {
-    // Towards the camera, whichever side of the face is seen.
+    // Turned to the camera, whichever side of the face is visible.
     vec3 n = normalize(cross(dFdx(-eye), dFdy(-eye)));
     float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
                 + 0.24 * max(dot(n, normalize(eye)), 0.0);
@@ -99,17 +100,17 @@ void main() {
     fill *= light;
     fill = isPainted ? min(fill + glow.rgb, 1.0) : fill;
     float bright = max(max(fill.r, fill.g), fill.b);
-    // Chosen stays chosen in the shade.
+    // Selected faces stay recognizable in the shade.
     float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
     fill = mix(fill, CHOSEN * (0.5 + 0.5 * light), chosenness);
 
-    // Pixels from each side: a -> b is across from the corner of bary.z, and so on.
+    // Distances in pixels from each side: a -> b is opposite the corner of bary.z, and so on.
     vec3 dx = dFdx(bary);
     vec3 dy = dFdy(bary);
     vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
     vec3 line = 1.0 - smoothstep(edgeWidth - 0.6, edgeWidth + 0.6, bary.zxy / rate);
     line *= vec3(float(sides & 1u), float((sides >> 1) & 1u), float((sides >> 2) & 1u));
-    // Triangles of a few pixels would drown in their edges.
+    // Edges of triangles of a few pixels would cover them completely.
     line *= smoothstep(1.0, 9.0, 1.0 / rate);
     float drawn = 0.88 * max(max(line.x, line.y), line.z);
     ivec2 place = ivec2(gl_FragCoord.xy) & 3;
@@ -132,7 +133,7 @@ void main() {
 }
 `;
 
-// One point a vertex row; those not wanted fall outside of the clip volume.
+// One point per vertex row; vertices that are not wanted are moved out of the clip volume.
 export const DOT_VERTEX = `${TEXTURES}
 uniform float size;
 uniform bool isolatedOnly;
@@ -141,7 +142,7 @@ void main() {
     vec4 place = vertexAt(gl_VertexID);
     bool wanted = isolatedOnly ? place.w == 2.0 : place.w > 0.0;
     vec4 seen = modelViewMatrix * vec4(place.xyz, 1.0);
-    // A dot faces the camera: bring it nearer, or the surface it lies on would cut it.
+    // A dot faces the camera: moved nearer, so that the surface does not hide parts of it.
     seen.xyz *= 0.996;
     vertex = uint(gl_VertexID);
     gl_PointSize = size;
@@ -174,7 +175,7 @@ void main() {
 }
 `;
 
-// A few points given by position: the selected vertices.
+// Points given by position: the selected vertices.
 export const MARK_VERTEX = `
 precision highp float;
 in vec3 position;
@@ -191,8 +192,8 @@ void main() {
 }
 `;
 
-// Half-edges: triangles with colours of their own, before the surface they lie on. See arrows.js;
-// `pixel` is the length of a CSS pixel at depth 1.
+// Half-edges: coloured triangles in front of the surface. See arrows.js; `pixel` is the length of a
+// CSS pixel at depth 1.
 export const ARROW_VERTEX = `
 precision highp float;
 in vec3 position;

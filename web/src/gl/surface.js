@@ -1,7 +1,7 @@
 // surface.js - the mesh itself: its faces with their edges, and vertices as dots.
 //
-// The arrays of geometry.js are two textures; one draw call gives fill, polygon edges and flat
-// shading, another one the same as ids to pick from.
+// The arrays of geometry.js are two textures. One draw call draws fill, polygon edges and flat
+// shading; another one draws ids for picking.
 
 import {
     BufferGeometry,
@@ -29,13 +29,13 @@ import {
     SURFACE_VERTEX,
 } from './shaders.js';
 
-const DOT_SIZE = 7; // CSS pixels, as all sizes here
+const DOT_SIZE = 7; // in CSS pixels, as all sizes here
 const EDGE_WIDTH = 0.75; // on each side of an edge
 
 export class Surface {
-    fill; // what is drawn
+    fill; // the objects that are drawn
     dots;
-    pickFill; // the same as ids
+    pickFill; // the objects that draw ids
     pickDots;
     #mostRows;
     #textures = { vertices: { value: null }, triangles: { value: null } };
@@ -45,7 +45,7 @@ export class Surface {
     #geometry = null;
     #allVertices = false;
 
-    // `mostRows` is how high a texture may be.
+    // `mostRows` is the maximum height of a texture.
     constructor(mostRows) {
         this.#mostRows = mostRows;
         const dots = (fragment, uniforms) =>
@@ -68,7 +68,7 @@ export class Surface {
         this.pickDots = new Points(this.dots.geometry, dots(DOT_PICK, dotUniforms));
     }
 
-    // That of triangles of the mesh, in the colour of those that are chosen or not.
+    // Makes the material of triangles, in the colour of selected ones or of others.
     material(isChosen) {
         const uniforms = { chosen: { value: isChosen }, edgeWidth: this.#edgeWidth };
         return this.#material(SURFACE_FRAGMENT, uniforms);
@@ -87,15 +87,15 @@ export class Surface {
             },
             side: DoubleSide,
             blending: NoBlending,
-            // Behind what lies on it.
+            // Moved back behind the marks.
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
         });
     }
 
-    // Show a mesh, or nothing (null). Throws a RangeError, and shows what it did before, when the
-    // mesh is larger than a texture can be.
+    // Shows a mesh, or nothing (null). Throws a RangeError, and goes on showing what it did, if the
+    // mesh is too large for a texture.
     show(geometry) {
         const arrays = this.#arraysOf(geometry);
         const { vertices, triangles } = this.#textures;
@@ -107,7 +107,7 @@ export class Surface {
         this.#setRanges();
     }
 
-    // The arrays that are shown were changed in places, see applyDelta(). Throws as show() does.
+    // The arrays were changed in places, see applyDelta(). Throws as show() does.
     update(places) {
         const arrays = this.#arraysOf(this.#geometry);
         for (const [name, texture] of Object.entries(this.#textures)) {
@@ -116,8 +116,7 @@ export class Surface {
         this.#setRanges();
     }
 
-    // The arrays that are shown were changed within some ranges and their counts with them, see
-    // Levels.takeChanges().
+    // The arrays and their counts were changed within some ranges, see Levels.takeChanges().
     refine(ranges) {
         for (const [name, texture] of Object.entries(this.#textures)) {
             texture.value.updateWithin(ranges[name]);
@@ -125,7 +124,7 @@ export class Surface {
         this.#setRanges();
     }
 
-    // What faces look like: {labels, palette} of materials.js, or none of it (null).
+    // Sets the materials of faces: {labels, palette} of materials.js, or null.
     showMaterials(materials) {
         const { labels, palette } = this.#looks;
         labels.value?.dispose();
@@ -142,8 +141,8 @@ export class Surface {
         );
     }
 
-    // They were changed: {palette, places}, whether the palette is another one and which texels of
-    // the labels are not as they were, null for any.
+    // The materials were changed: {palette, places} says whether the palette was replaced, and
+    // which texels of the labels changed (null: any).
     updateMaterials(materials, change) {
         const { labels, palette } = this.#looks;
         labels.value = labels.value.update(materials.labels, change.places);
@@ -152,19 +151,19 @@ export class Surface {
         }
     }
 
-    // Whether faces have the colours of their materials.
+    // Shows or hides the colours of materials.
     set isColored(isColored) {
         this.#isColored.value = isColored;
     }
 
-    // What the graphics memory had is lost.
+    // The contents of the graphics memory are lost.
     forget() {
         [this.#textures, this.#looks]
             .flatMap((textures) => Object.values(textures))
             .forEach(({ value }) => value.forget());
     }
 
-    // The arrays of a mesh or, of none, zeros.
+    // Returns the arrays of a mesh, or zeros if there is none.
     #arraysOf(geometry) {
         const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
         const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
@@ -181,7 +180,7 @@ export class Surface {
         this.#setDots();
     }
 
-    // All vertices as dots, or only the isolated ones, which nothing else shows.
+    // Shows all vertices as dots, or only isolated ones, which would otherwise be invisible.
     showVertices(all) {
         this.#allVertices = all;
         this.#setDots();
@@ -194,7 +193,7 @@ export class Surface {
         this.pickDots.visible = visible;
     }
 
-    // Of the screen, to a CSS pixel.
+    // Sets the number of screen pixels per CSS pixel.
     setPixelRatio(ratio) {
         this.dots.material.uniforms.size.value = DOT_SIZE * ratio;
         this.#edgeWidth.value = EDGE_WIDTH * ratio;
