@@ -119,6 +119,11 @@ expect 'symbols are as they should be' '' sh .ci/lint-symbols libraries
 printf '#include <pthread.h>\nint he_planted(pthread_t *t, void *(*f)(void *))\n{\n    return pthread_create(t, 0, f, 0);\n}\n' >planted.c
 gcc -c -o planted.o planted.c && ar q libraries/libkernel.a planted.o
 expect 'a thread in the kernel is found' 'pthread_create' sh .ci/lint-symbols libraries
+cp "$build"/libkernel.a libraries
+printf 'int srv_planted(void);\nint api_planted(void)\n{\n    return srv_planted();\n}\n' >planted.c
+gcc -c -o planted.o planted.c && ar q libraries/libapi.a planted.o
+expect 'a call from api into server is found' 'libapi.a calls what lies above it.*srv_planted' \
+    sh .ci/lint-symbols libraries
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
