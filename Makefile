@@ -246,6 +246,7 @@ $(BUILD)/tests/api/test_gate: private LDFLAGS += \
     api_token_is_current api_token_is_equal api_token_owns api_token_ranges api_tokens_find \
     st_keyed_begin)
 
+$(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_signal)
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
     $(call wrap,pthread_mutex_lock shutdown)
 

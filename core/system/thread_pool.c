@@ -32,6 +32,7 @@ struct st_pool {
     size_t capacity; /* capacity of each queue */
     queue queues[ST_SHARES];
     size_t most_long;     /* most tasks of LONG and JOB that may run at once */
+    size_t idle;          /* threads that wait for `wake`, also one that was woken but does not run yet */
     double clock;         /* stamp of the task that was begun last */
     double stamps[FLOWS]; /* stamp of the last task of each flow */
     uint64_t submitted;
@@ -126,19 +127,28 @@ static bool is_empty(const st_pool *pool)
     return count == 0;
 }
 
+/* Unlocks the pool, and wakes a thread if it would find something to do. A thread is woken only
+ * then, and without the lock, which it takes at once: for a task of microseconds, waking threads in
+ * vain costs more than the task. Who has ended a task looks for another without being woken. */
+static void unlock(st_pool *pool)
+{
+    const bool wakes = pool->idle > 0 && next_share(pool) != ST_SHARES;
+    pthread_mutex_unlock(&pool->lock);
+    if (wakes) {
+        pthread_cond_signal(&pool->wake);
+    }
+}
+
 static void run_next(st_pool *pool, st_share share)
 {
     queue *q = &pool->queues[share];
     const waiting next = pop(q);
     pool->clock = next.stamp > pool->clock ? next.stamp : pool->clock;
     q->running++;
-    pthread_mutex_unlock(&pool->lock);
+    unlock(pool); /* another task may be able to begin too */
     next.task.work(next.task.context);
     pthread_mutex_lock(&pool->lock);
     q->running--;
-    /* Another LONG task or JOB may begin now. The signal wakes a thread for it, because this one
-     * may take a task of another share. */
-    pthread_cond_signal(&pool->wake);
 }
 
 static void *run(void *context)
@@ -149,7 +159,9 @@ static void *run(void *context)
     while (!pool->ending || !is_empty(pool)) {
         st_share share = next_share(pool);
         if (share == ST_SHARES) {
+            pool->idle++;
             pthread_cond_wait(&pool->wake, &pool->lock);
+            pool->idle--;
         } else {
             run_next(pool, share);
         }
@@ -226,10 +238,9 @@ bool st_pool_submit(st_pool *pool, const st_task *task)
         double begin = *last > pool->clock ? *last : pool->clock;
         *last = begin + task->cost;
         push(q, &(waiting){.task = *task, .stamp = *last, .number = pool->submitted++});
-        pthread_cond_signal(&pool->wake);
     }
     q->refused += !accepted;
-    pthread_mutex_unlock(&pool->lock);
+    unlock(pool);
     return accepted;
 }
 

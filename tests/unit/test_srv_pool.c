@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -229,6 +230,44 @@ static void long_work_is_not_passed_over_for_ever(void **state)
     assert_in_range(at - order, 9, 11);
 }
 
+/* The linker gives the pool's calls to this one. */
+static _Atomic int signals;
+int __real_pthread_cond_signal(pthread_cond_t *condition);
+int __wrap_pthread_cond_signal(pthread_cond_t *condition);
+
+int __wrap_pthread_cond_signal(pthread_cond_t *condition)
+{
+    atomic_fetch_add(&signals, 1);
+    return __real_pthread_cond_signal(condition);
+}
+
+/* Neither the end of a task nor a task that may not begin yet is a reason to wake a thread. */
+static void a_thread_is_woken_only_for_something_to_do(void **state)
+{
+    (void)state;
+    enum { TASKS = ROOM / 2, THREADS = 4 };
+    st_pool *pool = st_pool_new("test", THREADS, ROOM);
+    assert_non_null(pool);
+    atomic_store(&signals, 0);
+    for (size_t i = 0; i < TASKS; i++) {
+        submit(pool, "a", 1, 1);
+        await_begun(i + 1);
+    }
+    assert_in_range(atomic_load(&signals), 0, TASKS);
+
+    /* As many long ones as may run at once wait at the gate, and more behind them. */
+    send_to_gate(pool, ST_SHARE_LONG);
+    send_to_gate(pool, ST_SHARE_LONG);
+    await_at_gate(ST_SHARE_LONG, 2);
+    atomic_store(&signals, 0);
+    for (size_t i = 0; i < TASKS / 2; i++) {
+        send_to_gate(pool, ST_SHARE_LONG);
+    }
+    assert_int_equal(atomic_load(&signals), 0);
+    open_gate();
+    st_pool_free(pool);
+}
+
 static void a_flow_is_a_client_with_a_mesh(void **state)
 {
     (void)state;
@@ -247,6 +286,7 @@ int main(void)
         cmocka_unit_test_setup(flows_take_turns, reset),
         cmocka_unit_test_setup(a_flow_keeps_its_order, reset),
         cmocka_unit_test_setup(long_work_is_not_passed_over_for_ever, reset),
+        cmocka_unit_test_setup(a_thread_is_woken_only_for_something_to_do, reset),
         cmocka_unit_test(a_flow_is_a_client_with_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
