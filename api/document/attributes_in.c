@@ -4,31 +4,18 @@
 #include "api/json/attribute_value.h"
 #include "api/limits.h"
 #include "edit/whole/attribute.h"
-#include "format/text/number.h"
 
 #include <math.h>
 #include <string.h>
 
-/* What is expected next. */
-typedef enum state {
-    EXPECT_ARRAY,
-    EXPECT_OBJECT_OR_END,
-    EXPECT_OBJECT,
-    EXPECT_KEY_OR_END,
-    EXPECT_KEY,
-    INSIDE_KEY,
-    EXPECT_COLON,
-    INSIDE_OTHER, /* a value that is gathered */
-    EXPECT_VALUES,
-    EXPECT_VALUE_OR_END,
-    EXPECT_VALUE,
-    EXPECT_NUMBER, /* within a value that is an array */
-    INSIDE_TOKEN,  /* a number or word */
-    AFTER_NUMBER,  /* within a value that is an array */
-    AFTER_VALUE,
-    AFTER_MEMBER,
-    AFTER_OBJECT
-} state;
+/* Open arrays and objects around what is read. */
+enum {
+    IN_DOCUMENT = 1, /* "attributes" is a member of it */
+    IN_LIST,
+    IN_OBJECT,
+    IN_VALUES,
+    IN_ROW
+};
 
 /* One that was read: a column without rows, and its values, packed. */
 typedef struct item {
@@ -39,31 +26,26 @@ typedef struct item {
 } item;
 
 struct api_attributes_in {
-    state state;
     api_problem *problem;
     item items[API_MAX_ATTRIBUTES];
     size_t count;
 
     /* --- of the open object --- */
-    api_text head; /* "{" and then each member but "values" as it came */
-    size_t depth;
-    bool in_string, escaped;
-    char key[API_MAX_KEY + 2];
-    size_t key_length;
-    bool has_values, is_row;
+    api_members head; /* each member but "values" */
+    bool has_values;
     bool has_words, has_numbers; /* among the values */
     double *numbers;
     size_t number_count, number_capacity;
     size_t rows, width, column; /* whole values; numbers of one, 0 where it is none; of this one */
-    char token[API_MAX_DOCUMENT_NUMBER];
-    size_t token_length;
 };
 
 api_attributes_in *api_attributes_in_new(void)
 {
     api_attributes_in *in = he_mem_zero(1, sizeof *in);
     if (in != NULL) {
-        in->head.maximum = API_MAX_EDITS;
+        in->head.what = "the members besides the values";
+        in->head.most = API_MAX_EDITS;
+        in->head.values_most = API_MAX_EDITS_VALUES;
     }
     return in;
 }
@@ -75,7 +57,7 @@ void api_attributes_in_free(api_attributes_in *in)
             he_column_free(in->items[i].column);
             he_mem_free(in->items[i].values);
         }
-        api_text_clear(&in->head);
+        api_members_clear(&in->head);
         he_mem_free(in->numbers);
         he_mem_free(in);
     }
@@ -120,14 +102,9 @@ static bool add_number(api_attributes_in *in, double value)
     return true;
 }
 
-static bool is_token(const api_attributes_in *in, const char *word)
+static bool end_value(api_attributes_in *in, bool row)
 {
-    return in->token_length == strlen(word) && memcmp(in->token, word, in->token_length) == 0;
-}
-
-static bool end_value(api_attributes_in *in)
-{
-    size_t width = in->is_row ? in->column : 0;
+    size_t width = row ? in->column : 0;
     if (in->rows == 0) {
         in->width = width;
     }
@@ -136,55 +113,31 @@ static bool end_value(api_attributes_in *in)
                             "the value has another number of components than those before");
     }
     in->rows++;
-    in->state = AFTER_VALUE;
+    in->column = 0;
     return true;
 }
 
-static bool end_token(api_attributes_in *in)
+/* A value, or a component of one. */
+static bool take_value(api_attributes_in *in, const he_lexer *x, he_token token)
 {
-    double value;
-    size_t used;
-    if (is_token(in, "true") || is_token(in, "false")) {
-        in->has_words = true;
-        value = is_token(in, "true");
-    } else {
-        const char *end = in->token + in->token_length;
-        he_status status = he_double_parse(in->token, end, HE_JSON_NUMBER, &value, &used);
-        if (status == HE_NOT_FINITE && used == in->token_length) {
-            return refuse_value(in, in->rows, HE_NOT_FINITE, "the number does not fit a double");
-        }
-        if (status != HE_OK || used != in->token_length) {
-            bool null = is_token(in, "null");
-            return refuse_value(in, in->rows, null ? API_WRONG_TYPE : API_MALFORMED_JSON,
-                                "a value is a number, true or false");
-        }
-        in->has_numbers = true;
+    double value = token == HE_TOKEN_NUMBER ? x->number : token == HE_TOKEN_TRUE;
+    if (token == HE_TOKEN_NULL) {
+        return refuse_value(in, in->rows, API_WRONG_TYPE, "a value is a number, true or false");
     }
-    if (!add_number(in, value)) {
-        return false;
-    }
-    if (in->is_row) {
-        in->state = AFTER_NUMBER;
-        return true;
-    }
-    return end_value(in);
+    in->has_numbers |= token == HE_TOKEN_NUMBER;
+    in->has_words |= token != HE_TOKEN_NUMBER;
+    return add_number(in, value) && (x->depth == IN_ROW || end_value(in, false));
 }
 
-static bool is_token_byte(char c)
+static bool take_row(api_attributes_in *in, const double *row, size_t count)
 {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || c == '-' || c == '+' || c == '.' ||
-           c == 'E';
-}
-
-static bool gather_token(api_attributes_in *in, const char **at, const char *end)
-{
-    while (*at < end && is_token_byte(**at)) {
-        if (in->token_length == sizeof in->token) {
-            return refuse_value(in, in->rows, HE_BAD_VALUE, "the number is too long");
+    in->has_numbers = true;
+    for (size_t i = 0; i < count; i++) {
+        if (!add_number(in, row[i])) {
+            return false;
         }
-        in->token[in->token_length++] = *(*at)++;
     }
-    return *at == end || end_token(in);
+    return end_value(in, true);
 }
 
 /* --- an object that has ended --- */
@@ -293,231 +246,108 @@ static bool end_object(api_attributes_in *in)
 {
     api_document document = {0};
     api_in root;
-    api_in_limits limits = {.values = API_MAX_EDITS_VALUES, .no_offsets = true};
-    api_text_add(&in->head, in->head.length == 0 ? "{}" : "}", in->head.length == 0 ? 2 : 1);
-    if (in->head.failed) {
-        return no_memory(in);
-    }
     item *out = &in->items[in->count];
-    bool good = api_document_parse(in->head.bytes, in->head.length, &limits, &document, &root,
-                                   in->problem) &&
-                read_head(in, &root, out);
+    bool good =
+        api_members_parse(&in->head, &document, &root, in->problem) && read_head(in, &root, out);
     if (!good) {
         prefix_pointer(in);
     }
     good = good && pack(in, out);
     api_document_clear(&document);
-    api_text_empty(&in->head);
+    api_members_empty(&in->head);
     he_mem_free(in->numbers);
     in->numbers = NULL;
     in->number_count = in->number_capacity = in->rows = 0;
     in->has_values = in->has_words = in->has_numbers = false;
     in->count += good;
-    in->state = AFTER_OBJECT;
     return good;
 }
 
-/* --- members --- */
+/* --- tokens --- */
 
-static bool add_head(api_attributes_in *in, const char *bytes, size_t length)
+static bool is_value_byte(char c)
 {
-    if (length > in->head.maximum - in->head.length) {
-        return refuse(in, HE_LIMIT, "the members besides the values are too long");
-    }
-    api_text_add(&in->head, bytes, length);
-    return !in->head.failed || no_memory(in);
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || c == '-' || c == '+' || c == '.' ||
+           c == 'E';
 }
 
-static bool open_member(api_attributes_in *in)
+static bool expect_value(api_attributes_in *in, char c)
 {
-    static const char values[] = "\"values\"";
-    if (in->key_length == sizeof values - 1 && memcmp(in->key, values, in->key_length) == 0) {
-        if (in->has_values) {
-            return refuse(in, API_DUPLICATE_MEMBER, "\"values\" is given twice");
-        }
-        in->has_values = true;
-        in->state = EXPECT_VALUES;
-        return true;
-    }
-    in->state = INSIDE_OTHER;
-    in->depth = 0;
-    in->in_string = in->escaped = false;
-    return add_head(in, in->head.length == 0 ? "{" : ",", 1) &&
-           add_head(in, in->key, in->key_length) && add_head(in, ":", 1);
+    bool other = c == '"' || c == '{' || c == '[';
+    return is_value_byte(c) ||
+           refuse_value(in, in->rows, other ? API_WRONG_TYPE : API_MALFORMED_JSON,
+                        "a number, true or false is expected");
 }
 
-static bool gather_key(api_attributes_in *in, const char **at, const char *end)
+bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken, api_problem *problem)
 {
-    while (*at < end) {
-        char c = *(*at)++;
-        if (in->key_length == sizeof in->key) {
-            return refuse(in, API_UNKNOWN_MEMBER, "no member has so long a name");
-        }
-        in->key[in->key_length++] = c;
-        if (c == '"' && !in->escaped) {
-            in->state = EXPECT_COLON;
-            return true;
-        }
-        in->escaped = c == '\\' && !in->escaped;
-    }
-    return true;
-}
-
-/* Find where the value ends; whether it is well formed is seen when the object is parsed. */
-static bool gather_other(api_attributes_in *in, const char **at, const char *end)
-{
-    const char *begin = *at;
-    for (; *at < end; (*at)++) {
-        char c = **at;
-        if (in->in_string) {
-            in->in_string = c != '"' || in->escaped;
-            in->escaped = c == '\\' && !in->escaped;
-        } else if (c == '"') {
-            in->in_string = true;
-        } else if (c == '{' || c == '[') {
-            in->depth++;
-        } else if (in->depth == 0 && (c == ',' || c == '}' || c == ']')) {
-            in->state = AFTER_MEMBER;
-            break;
-        } else if (c == '}' || c == ']') {
-            in->depth--;
-        }
-    }
-    return add_head(in, begin, (size_t)(*at - begin));
-}
-
-/* --- the states --- */
-
-static bool expected(api_attributes_in *in, const char *text)
-{
-    return refuse(in, API_MALFORMED_JSON, text);
-}
-
-static bool open_value(api_attributes_in *in, char c)
-{
-    in->token_length = 0;
-    if (!is_token_byte(c)) {
-        bool other = c == '"' || c == '{' || c == '[';
-        return refuse_value(in, in->rows, other ? API_WRONG_TYPE : API_MALFORMED_JSON,
-                            "a number, true or false is expected");
-    }
-    in->state = INSIDE_TOKEN;
-    return true;
-}
-
-/* One token; blanks were skipped. True with *take where the byte is used up. */
-static bool step(api_attributes_in *in, char c, bool *take, bool *done)
-{
-    *take = true;
-    switch (in->state) {
-    case EXPECT_ARRAY:
-        if (c != '[') {
-            return refuse(in, API_WRONG_TYPE, "attributes are an array of objects");
-        }
-        in->state = EXPECT_OBJECT_OR_END;
-        return true;
-    case EXPECT_OBJECT_OR_END:
-    case EXPECT_OBJECT:
-        if (c == ']' && in->state == EXPECT_OBJECT_OR_END) {
-            *done = true;
-            return true;
-        }
-        if (c != '{') {
-            return refuse(in, API_WRONG_TYPE, "an attribute is an object");
-        }
-        if (in->count == API_MAX_ATTRIBUTES) {
-            return refuse(in, HE_LIMIT, "there are too many attributes");
-        }
-        in->state = EXPECT_KEY_OR_END;
-        return true;
-    case EXPECT_KEY_OR_END:
-    case EXPECT_KEY:
-        if (c == '}' && in->state == EXPECT_KEY_OR_END) {
-            return end_object(in);
-        }
-        if (c != '"') {
-            return expected(in, "a member's name in quotes is expected");
-        }
-        in->key[0] = c;
-        in->key_length = 1;
-        in->escaped = false;
-        in->state = INSIDE_KEY;
-        return true;
-    case EXPECT_COLON:
-        return c == ':' ? open_member(in) : expected(in, "':' is expected");
-    case EXPECT_VALUES:
-        in->state = EXPECT_VALUE_OR_END;
+    char c = *x->at;
+    double row[HE_COLUMN_COMPONENTS];
+    in->problem = problem;
+    switch (x->depth) {
+    case IN_DOCUMENT:
+        return c == '[' || refuse(in, API_WRONG_TYPE, "attributes are an array of objects");
+    case IN_LIST:
+        return c == '{' ? in->count < API_MAX_ATTRIBUTES ||
+                              refuse(in, HE_LIMIT, "there are too many attributes")
+                        : refuse(in, API_WRONG_TYPE, "an attribute is an object");
+    case IN_OBJECT:
         return c == '[' || refuse(in, API_WRONG_TYPE, "values are an array");
-    case EXPECT_VALUE_OR_END:
-    case EXPECT_VALUE:
-        if (c == ']' && in->state == EXPECT_VALUE_OR_END) {
-            in->state = AFTER_MEMBER;
-            return true;
+    case IN_VALUES: {
+        if (c != '[') {
+            return expect_value(in, c);
         }
-        in->column = 0;
-        in->is_row = c == '[';
-        if (in->is_row) {
-            in->state = EXPECT_NUMBER;
-            return true;
-        }
-        *take = false;
-        return open_value(in, c);
-    case EXPECT_NUMBER:
-        *take = false;
-        return open_value(in, c);
-    case AFTER_NUMBER:
-        if (c == ',') {
-            in->state = EXPECT_NUMBER;
-            return in->column < HE_COLUMN_COMPONENTS ||
-                   refuse_value(in, in->rows, HE_BAD_VALUE, "a value has at most 16 components");
-        }
-        return c == ']' ? end_value(in) : expected(in, "',' or ']' is expected");
-    case AFTER_VALUE:
-        in->state = c == ',' ? EXPECT_VALUE : AFTER_MEMBER;
-        return c == ',' || c == ']' || expected(in, "',' or ']' is expected");
-    case AFTER_MEMBER:
-        if (c == '}') {
-            return end_object(in);
-        }
-        in->state = EXPECT_KEY;
-        return c == ',' || expected(in, "',' or '}' is expected");
-    case AFTER_OBJECT:
-        *done = c == ']';
-        in->state = EXPECT_OBJECT;
-        return *done || c == ',' || expected(in, "',' or ']' is expected");
-    case INSIDE_KEY:
-    case INSIDE_OTHER:
-    case INSIDE_TOKEN:
-        break; /* gathered by api_attributes_in_feed */
+        size_t count = he_lexer_take_numbers(x, row, HE_COLUMN_COMPONENTS);
+        *taken = count > 0;
+        return count == 0 || take_row(in, row, count);
     }
+    default:
+        return in->column < HE_COLUMN_COMPONENTS
+                   ? expect_value(in, c)
+                   : refuse_value(in, in->rows, HE_BAD_VALUE, "a value has at most 16 components");
+    }
+}
+
+static bool take_key(api_attributes_in *in, const he_lexer *x, api_members **into)
+{
+    static const char values[] = "values";
+    const he_lexer_frame *object = &x->frames[x->depth - 1];
+    if (object->name_length != sizeof values - 1 ||
+        memcmp(object->name, values, sizeof values - 1) != 0) {
+        *into = &in->head;
+        return true;
+    }
+    if (in->has_values) {
+        return refuse(in, API_DUPLICATE_MEMBER, "\"values\" is given twice");
+    }
+    in->has_values = true;
     return true;
 }
 
-bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *end, bool *done,
-                            api_problem *problem)
+static bool take_close(api_attributes_in *in, const he_lexer *x, bool *done)
+{
+    switch (x->depth) {
+    case IN_VALUES:
+        return in->column > 0 ? end_value(in, true) : expect_value(in, ']');
+    case IN_LIST:
+        return end_object(in);
+    default:
+        *done = x->depth == IN_DOCUMENT;
+        return true;
+    }
+}
+
+bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, api_members **into,
+                            bool *done, api_problem *problem)
 {
     in->problem = problem;
-    *done = false;
-    while (*at < end && !*done) {
-        bool good, take;
-        if (in->state == INSIDE_KEY) {
-            good = gather_key(in, at, end);
-        } else if (in->state == INSIDE_OTHER) {
-            good = gather_other(in, at, end);
-        } else if (in->state == INSIDE_TOKEN) {
-            good = gather_token(in, at, end);
-        } else if (**at == ' ' || **at == '\n' || **at == '\r' || **at == '\t') {
-            (*at)++;
-            good = true;
-        } else {
-            good = step(in, **at, &take, done);
-            *at += good && take;
-        }
-        if (!good) {
-            return false;
-        }
+    if (token == HE_TOKEN_KEY) {
+        return take_key(in, x, into);
     }
-    return true;
+    if (token == HE_TOKEN_CLOSE) {
+        return take_close(in, x, done);
+    }
+    return token == HE_TOKEN_ARRAY || token == HE_TOKEN_OBJECT || take_value(in, x, token);
 }
 
 static bool goes_with_edges(const item *one)

@@ -15,7 +15,7 @@
 #ifndef HE_API_DOCUMENT_ATTRIBUTES_IN_H
 #define HE_API_DOCUMENT_ATTRIBUTES_IN_H
 
-#include "api/json/json_in.h"
+#include "api/document/members.h"
 #include "build/build.h"
 
 typedef struct api_attributes_in api_attributes_in;
@@ -23,10 +23,14 @@ typedef struct api_attributes_in api_attributes_in;
 api_attributes_in *api_attributes_in_new(void); /* NULL when memory is out */
 void api_attributes_in_free(api_attributes_in *in);
 
-/* Read from *at on, which moves to the first byte not read; *done when the array has ended. False:
- * refused, at *at. */
-bool api_attributes_in_feed(api_attributes_in *in, const char **at, const char *end, bool *done,
-                            api_problem *problem);
+/* The lexer is behind the colon of "attributes". May the value that is ahead of it stand there?
+ * Takes it where it is a row of numbers. */
+bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken,
+                              api_problem *problem);
+/* Takes a token. `*into` is set where the next member is small and to be gathered, and `*done` when
+ * the array has ended. */
+bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, api_members **into,
+                            bool *done, api_problem *problem);
 /* Are there values of edges or half-edges? */
 bool api_attributes_in_has_edges(const api_attributes_in *in);
 /* The document is to be repaired before it is built: its soup takes the values of vertices and

@@ -84,12 +84,18 @@ static bool parse(const char *bytes, size_t length, const api_in *at, api_docume
     return true;
 }
 
+bool api_document_parse_scanned(const char *bytes, size_t length, api_document *out, api_in *root,
+                                api_problem *problem)
+{
+    const char *end;
+    return parse(bytes, length, &(api_in){.problem = problem}, out, root, &end);
+}
+
 bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
                         api_document *out, api_in *root, api_problem *problem)
 {
-    const char *end;
     return api_json_scan(bytes, length, limits, NULL, problem) &&
-           parse(bytes, length, &(api_in){.problem = problem}, out, root, &end);
+           api_document_parse_scanned(bytes, length, out, root, problem);
 }
 
 bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,

@@ -38,7 +38,6 @@ typedef struct api_document {
 /* What a text may contain. */
 typedef struct api_in_limits {
     size_t values;
-    bool no_offsets; /* leave byte offsets out of problems: the text is not what the client sent */
 } api_in_limits;
 
 /* The items of an array that is kept out of its document. They are parsed one at a time, so that a
@@ -63,6 +62,9 @@ void api_in_setup(void);
  * Returns false with malformed_json, duplicate_member, limit_exceeded (413) or no_memory. */
 bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
                         api_document *out, api_in *root, api_problem *problem);
+/* Parses what was gathered from a text that the scan let pass. */
+bool api_document_parse_scanned(const char *bytes, size_t length, api_document *out, api_in *root,
+                                api_problem *problem);
 void api_document_clear(api_document *document);
 /* Parses like api_document_parse, but leaves the array named `items->name` empty. `bytes` must
  * outlive the items. A repeated member inside an item is found when the item is read. */

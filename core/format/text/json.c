@@ -68,56 +68,6 @@ uint32_t he_json_find(const he_json *json, uint32_t object, const char *name)
 
 /* --- strings --- */
 
-/* Four digits of a string that was checked. */
-static unsigned hex(const char *p)
-{
-    return (unsigned)he_json_hex(p, p + 4);
-}
-
-static size_t put_character(unsigned code, char *to)
-{
-    if (code < 0x80) {
-        to[0] = (char)code;
-        return 1;
-    }
-    size_t size = code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
-    static const unsigned lead[] = {0, 0, 0xC0, 0xE0, 0xF0};
-    for (size_t i = size - 1; i > 0; i--, code >>= 6) {
-        to[i] = (char)(0x80 | (code & 0x3F));
-    }
-    to[0] = (char)(lead[size] | code);
-    return size;
-}
-
-/* The next character of a string that was checked, at most four bytes; 0 at its end. */
-static size_t next_character(const char **at, char to[4])
-{
-    static const char escapes[] = "\"\\/bfnrt", meanings[] = "\"\\/\b\f\n\r\t";
-    const char *p = *at;
-    if (*p == '"') {
-        return 0;
-    }
-    if (*p != '\\') {
-        unsigned char c = (unsigned char)*p;
-        size_t size = c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
-        memcpy(to, p, size);
-        *at = p + size;
-        return size;
-    }
-    if (p[1] != 'u') {
-        *to = meanings[strchr(escapes, p[1]) - escapes];
-        *at = p + 2;
-        return 1;
-    }
-    unsigned code = hex(p + 2);
-    *at = p + 6;
-    if (code >= 0xD800 && code <= 0xDFFF) {
-        code = 0x10000 + ((code - 0xD800) << 10) + (hex(p + 8) - 0xDC00);
-        *at = p + 12;
-    }
-    return put_character(code, to);
-}
-
 /* Does the string begin with `text`? `*whole` says whether it ends there too. */
 static bool compare(const he_json *json, uint32_t value, const char *text, bool *whole)
 {
@@ -125,17 +75,8 @@ static bool compare(const he_json *json, uint32_t value, const char *text, bool 
         return false;
     }
     const char *p = json->text + json->values[value].at + 1;
-    char bytes[4];
-    while (*text != '\0') {
-        size_t size = next_character(&p, bytes);
-        for (size_t i = 0; i < size; i++) {
-            if (*text == '\0' || bytes[i] != *text++) {
-                return false;
-            }
-        }
-        if (size == 0) {
-            return false;
-        }
+    if (!he_json_text_begins(&p, json->text + json->length, text)) {
+        return false;
     }
     *whole = *p == '"';
     return true;
@@ -159,7 +100,7 @@ size_t he_json_string(const he_json *json, uint32_t value, char *to, size_t size
     if (he_json_type(json, value) == '"') {
         const char *p = json->text + json->values[value].at + 1;
         char bytes[4];
-        while ((n = next_character(&p, bytes)) > 0 && length + n < size) {
+        while ((n = he_json_decode(&p, bytes)) > 0 && length + n < size) {
             memcpy(to + length, bytes, n);
             length += n;
         }

@@ -1,9 +1,8 @@
 /* json.h - a JSON text as a tree, for formats that are written in it.
  *
- * The text is checked to the letter of RFC 8259, with no byte order mark, no lone surrogate, no
- * null character, no member given twice and no more than HE_JSON_DEPTH levels. It is kept by the
- * caller; the tree adds eight bytes a value, so that a text costs five times its length at most,
- * and no recursion.
+ * The text is checked by the lexer (json_lexer.h), and no member may be given twice. It is kept by
+ * the caller; the tree adds eight bytes a value, so that a text costs five times its length at
+ * most, and no recursion.
  *
  * A value is named by its number, the root is 0 and HE_NONE is a value that is absent. A number is
  * only turned into a double when asked for. Every refusal names the byte and the path:
@@ -16,7 +15,7 @@
 #include "base/watch.h"
 #include "mesh/mesh.h"
 
-enum { HE_JSON_DEPTH = 128, HE_JSON_PATH = 100 };
+enum { HE_JSON_PATH = 100 };
 #define HE_JSON_VALUES ((size_t)1 << 23)         /* of one text, names of members included */
 #define HE_JSON_TEXT   ((size_t)UINT32_MAX / 2u) /* bytes of one */
 #define HE_JSON_WHOLE  ((uint64_t)1 << 53)       /* up to here doubles count right */

@@ -2,9 +2,8 @@
 #include "format/text/json.h"
 
 #include "base/text_hash.h"
-#include "format/text/json_string.h"
+#include "format/text/json_lexer.h"
 #include "format/text/notes.h"
-#include "format/text/number.h"
 
 #include <string.h>
 
@@ -15,39 +14,45 @@ typedef struct scan {
     he_json *json;
     he_watch *watch;
     const char *told; /* up to here */
-    const char *at, *end;
+    he_lexer lexer;
     uint32_t open[HE_JSON_DEPTH]; /* arrays and objects */
-    size_t depth;
     he_error *err;
 } scan;
 
-static he_status refuse(const scan *s, const char *text)
+/* What the lexer has against the text. */
+static he_status refuse(const scan *s)
 {
-    uint64_t at = s->json->offset + (uint64_t)(s->at - s->json->text);
-    return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, at, "JSON: %s", text);
+    const he_lexer *x = &s->lexer;
+    he_fault fault = x->fault;
+    if (fault == HE_FAULT_DEPTH) {
+        return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, x->fault_place,
+                          "JSON: nesting is deeper than %d levels", HE_JSON_DEPTH);
+    }
+    if (fault == HE_FAULT_NOT_FINITE) {
+        return he_fail_at(s->err, HE_NOT_FINITE, HE_PLACE_BYTE, x->fault_place, "%s",
+                          he_lexer_fault_text(x));
+    }
+    return he_fail_at(s->err, HE_SYNTAX, HE_PLACE_BYTE, x->fault_place, "JSON: %s",
+                      fault == HE_FAULT_NUMBER ? "this is not a number"
+                      : fault == HE_FAULT_ITEM || fault == HE_FAULT_MEMBER
+                          ? "',' or the closing bracket is expected here"
+                          : he_lexer_fault_text(x));
 }
 
 static he_status tell(scan *s)
 {
-    s->told = s->at;
-    return he_watch_step(s->watch, (uint64_t)(s->at - s->json->text), s->json->length, s->err);
+    const char *at = s->lexer.at;
+    s->told = at;
+    return he_watch_step(s->watch, (uint64_t)(at - s->json->text), s->json->length, s->err);
 }
 
 static he_status poll(scan *s)
 {
-    return s->at - s->told < STRIDE ? HE_OK : tell(s);
+    return s->lexer.at - s->told < STRIDE ? HE_OK : tell(s);
 }
 
-static void skip_blanks(scan *s)
-{
-    while (s->at < s->end &&
-           (*s->at == ' ' || *s->at == '\n' || *s->at == '\r' || *s->at == '\t')) {
-        s->at++;
-    }
-}
-
-/* Make a value that begins here and, so far, is alone. */
-static he_status add_value(scan *s)
+/* Makes the value or name that begins at byte `place` of the input and is, so far, alone. */
+static he_status add_value(scan *s, uint64_t place)
 {
     he_json *json = s->json;
     he_status status = poll(s);
@@ -55,9 +60,8 @@ static he_status add_value(scan *s)
         return status;
     }
     if (json->count == HE_JSON_VALUES) {
-        return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE,
-                          json->offset + (uint64_t)(s->at - json->text),
-                          "JSON of more than %zu values", HE_JSON_VALUES);
+        return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE, place, "JSON of more than %zu values",
+                          HE_JSON_VALUES);
     }
     if (json->count == json->capacity) {
         size_t capacity = he_mem_grown(json->capacity, json->count + 1);
@@ -69,48 +73,7 @@ static he_status add_value(scan *s)
         json->capacity = capacity;
     }
     uint32_t number = (uint32_t)json->count++;
-    json->values[number] = (he_json_value){(uint32_t)(s->at - json->text), number + 1};
-    return HE_OK;
-}
-
-static he_status scan_word(scan *s, const char *word)
-{
-    size_t length = strlen(word);
-    if ((size_t)(s->end - s->at) < length || memcmp(s->at, word, length) != 0) {
-        return refuse(s, "a value is expected here");
-    }
-    s->at += length;
-    return HE_OK;
-}
-
-static he_status scan_number(scan *s)
-{
-    double value;
-    size_t used;
-    he_status status = he_double_parse(s->at, s->end, HE_JSON_NUMBER, &value, &used);
-    if (status == HE_SYNTAX) {
-        return refuse(s, "this is not a number");
-    }
-    if (status != HE_OK) {
-        return he_fail_at(s->err, status, HE_PLACE_BYTE,
-                          s->json->offset + (uint64_t)(s->at - s->json->text),
-                          "the number does not fit a double");
-    }
-    s->at += used;
-    return HE_OK;
-}
-
-static he_status scan_string(scan *s)
-{
-    bool closed = false;
-    s->at++;
-    while (!closed) {
-        const char *wrong = he_json_string_part(&s->at, s->end, &closed);
-        he_status status = wrong != NULL ? refuse(s, wrong) : poll(s);
-        if (status != HE_OK) {
-            return status;
-        }
-    }
+    json->values[number] = (he_json_value){(uint32_t)(place - json->offset), number + 1};
     return HE_OK;
 }
 
@@ -196,124 +159,42 @@ static he_status check_members(scan *s, uint32_t object)
 
 /* --- values --- */
 
+/* The value whose bracket closed. */
 static he_status close_value(scan *s)
 {
-    uint32_t value = s->open[--s->depth];
+    uint32_t value = s->open[s->lexer.depth];
     s->json->values[value].next = (uint32_t)s->json->count;
-    s->at++;
-    return he_json_type(s->json, value) == '{' ? check_members(s, value) : HE_OK;
+    return s->lexer.frames[s->lexer.depth].object ? check_members(s, value) : HE_OK;
 }
 
-static he_status scan_key(scan *s)
+static he_status take(scan *s, he_token token)
 {
-    skip_blanks(s);
-    if (s->at == s->end || *s->at != '"') {
-        return refuse(s, "a member's name in quotes is expected here");
+    if (token == HE_TOKEN_FAULT) {
+        return refuse(s);
     }
-    he_status status = add_value(s);
-    if (status == HE_OK) {
-        status = scan_string(s);
+    if (token == HE_TOKEN_KEY) {
+        return add_value(s, s->lexer.start);
     }
-    if (status != HE_OK) {
-        return status;
+    if (token == HE_TOKEN_OBJECT || token == HE_TOKEN_ARRAY) {
+        s->open[s->lexer.depth - 1] = (uint32_t)s->json->count - 1;
     }
-    skip_blanks(s);
-    if (s->at == s->end || *s->at != ':') {
-        return refuse(s, "':' is expected here");
-    }
-    s->at++;
-    return HE_OK;
-}
-
-/* A value, or the bracket that opens one: `*opened` says which. */
-static he_status scan_value(scan *s, bool *opened)
-{
-    *opened = false;
-    skip_blanks(s);
-    if (s->at == s->end) {
-        return refuse(s, "the text ends where a value is expected");
-    }
-    he_status status = add_value(s);
-    if (status != HE_OK) {
-        return status;
-    }
-    switch (*s->at) {
-    case '"':
-        return scan_string(s);
-    case 't':
-        return scan_word(s, "true");
-    case 'f':
-        return scan_word(s, "false");
-    case 'n':
-        return scan_word(s, "null");
-    case '{':
-    case '[':
-        if (s->depth == HE_JSON_DEPTH) {
-            return refuse(s, "nesting is deeper than 128 levels");
-        }
-        s->open[s->depth++] = (uint32_t)s->json->count - 1;
-        s->at++;
-        *opened = true;
-        return HE_OK;
-    default:
-        return *s->at == '-' || (*s->at >= '0' && *s->at <= '9')
-                   ? scan_number(s)
-                   : refuse(s, "a value is expected here");
-    }
-}
-
-static char bracket_of(const scan *s)
-{
-    return he_json_type(s->json, s->open[s->depth - 1]) == '{' ? '}' : ']';
-}
-
-/* After a value: close what ends here. `*more` is true where another value follows. */
-static he_status scan_after(scan *s, bool *more)
-{
-    *more = false;
-    while (s->depth > 0) {
-        skip_blanks(s);
-        if (s->at < s->end && *s->at == ',') {
-            s->at++;
-            *more = true;
-            return HE_OK;
-        }
-        if (s->at == s->end || *s->at != bracket_of(s)) {
-            return refuse(s, "',' or the closing bracket is expected here");
-        }
-        he_status status = close_value(s);
-        if (status != HE_OK) {
-            return status;
-        }
-    }
-    return HE_OK;
+    return token == HE_TOKEN_CLOSE ? close_value(s) : poll(s);
 }
 
 static he_status scan_text(scan *s)
 {
-    bool more = true;
+    he_token token = HE_TOKEN_PART;
     he_status status = HE_OK;
-    while (more && status == HE_OK) {
-        bool opened = false;
-        if (s->depth > 0 && bracket_of(s) == '}') {
-            status = scan_key(s);
+    while (token != HE_TOKEN_END && status == HE_OK) {
+        if (he_lexer_value_ahead(&s->lexer)) {
+            status = add_value(s, he_lexer_place(&s->lexer));
         }
         if (status == HE_OK) {
-            status = scan_value(s, &opened);
-        }
-        if (status == HE_OK && opened) {
-            skip_blanks(s);
-            if (s->at == s->end || *s->at != bracket_of(s)) {
-                continue;
-            }
-            status = close_value(s);
-        }
-        if (status == HE_OK) {
-            status = scan_after(s, &more);
+            token = he_lexer_next(&s->lexer);
+            status = take(s, token);
         }
     }
-    skip_blanks(s);
-    return status == HE_OK && s->at != s->end ? refuse(s, "something follows the value") : status;
+    return status;
 }
 
 he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t offset,
@@ -324,8 +205,10 @@ he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t
         return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset, "JSON of more than %zu bytes",
                           HE_JSON_TEXT);
     }
-    scan s = {
-        .json = json, .watch = watch, .told = text, .at = text, .end = text + length, .err = err};
+    scan s = {.json = json, .watch = watch, .told = text, .err = err};
+    he_lexer_init(&s.lexer, NULL);
+    s.lexer.offset = offset;
+    he_lexer_feed(&s.lexer, text, length);
     he_status status = scan_text(&s);
     if (status != HE_OK) {
         he_json_clear(json);

@@ -1,0 +1,90 @@
+#include "api/document/members.h"
+
+#include "api/limits.h"
+
+void api_members_clear(api_members *m)
+{
+    api_text_clear(&m->text);
+}
+
+void api_members_empty(api_members *m)
+{
+    api_text_empty(&m->text);
+}
+
+/* Adds bytes, the first of which the client sent as byte `place`. */
+static bool add(api_members *m, const he_lexer *x, const char *bytes, size_t length, uint64_t place,
+                api_problem *problem)
+{
+    size_t room = m->most - m->text.length;
+    if (length > room) {
+        api_json_refuse_at(problem, place + room, HE_LIMIT, "%s exceed %zu bytes", m->what,
+                           m->most);
+    } else {
+        api_text_add(&m->text, bytes, length);
+        if (!m->text.failed) {
+            return true;
+        }
+        api_json_refuse_at(problem, place, HE_NO_MEMORY, "no memory for %s", m->what);
+    }
+    he_lexer_pointer(x, problem->pointer, sizeof problem->pointer);
+    problem->has_pointer = true;
+    return false;
+}
+
+bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
+{
+    const he_lexer_frame *object = &x->frames[x->depth - 1];
+    bool first = m->text.length == 0;
+    uint64_t place = he_lexer_place(x);
+    if (first) {
+        m->values = 1; /* the object */
+    }
+    m->from = x->at;
+    m->depth = x->depth;
+    m->name_most = x->name_most;
+    x->name_most = SIZE_MAX;
+    x->depth_most = m->depth + API_MAX_DEPTH - 1;
+    return add(m, x, first ? "{\"" : ",\"", 2, place, problem) &&
+           add(m, x, object->name, object->name_length, place, problem) &&
+           add(m, x, "\":", 2, place, problem);
+}
+
+/* Adds the lexer's piece up to its place. */
+static bool add_passed(api_members *m, const he_lexer *x, api_problem *problem)
+{
+    const char *from = m->from != NULL ? m->from : x->begin;
+    m->from = NULL;
+    return add(m, x, from, (size_t)(x->at - from), x->offset + (uint64_t)(from - x->begin),
+               problem);
+}
+
+bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem)
+{
+    he_token token;
+    do {
+        api_problem wrong = {0};
+        if (!api_json_next(x, &m->values, m->values_most, &token, &wrong)) {
+            /* Too many bytes, wherever the pieces were cut, come before what is wrong after them.
+             */
+            if (add_passed(m, x, problem)) {
+                *problem = wrong;
+            }
+            return false;
+        }
+        *done = x->depth == m->depth && token != HE_TOKEN_CUT && token != HE_TOKEN_PART;
+    } while (!*done && token != HE_TOKEN_CUT);
+    if (*done) {
+        x->name_most = m->name_most;
+        x->depth_most = API_MAX_DEPTH;
+    }
+    return add_passed(m, x, problem);
+}
+
+bool api_members_parse(api_members *m, api_document *out, api_in *root, api_problem *problem)
+{
+    api_text_add_string(&m->text, m->text.length == 0 ? "{}" : "}");
+    return !m->text.failed
+               ? api_document_parse_scanned(m->text.bytes, m->text.length, out, root, problem)
+               : api_problem_set(problem, HE_NO_MEMORY, "no memory for %s", m->what);
+}

@@ -1,0 +1,21 @@
+/* json_bytes.h - the blanks of JSON, and the bytes a number may have. */
+#ifndef HE_FORMAT_TEXT_JSON_BYTES_H
+#define HE_FORMAT_TEXT_JSON_BYTES_H
+
+#include <stdbool.h>
+
+/* The first byte from `at` on that is not a blank; `end` where all are. */
+static inline const char *he_json_skip_blanks(const char *at, const char *end)
+{
+    while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) {
+        at++;
+    }
+    return at;
+}
+
+static inline bool he_json_is_number_byte(char c)
+{
+    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.' || c == 'e' || c == 'E';
+}
+
+#endif
