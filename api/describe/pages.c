@@ -51,6 +51,22 @@ void api_version_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
+void api_index_get(api_exchange *x)
+{
+    static const char *const links[][2] = {
+        {"meshes", "/v1/meshes"},        {"jobs", "/v1/jobs"}, {"operations", "/v1/operations"},
+        {"openapi", "/v1/openapi.json"}, {"docs", "/docs"},
+    };
+    api_out_object_begin(&x->out);
+    api_out_key_string(&x->out, "name", "hedged");
+    api_out_key_string(&x->out, "version", x->service->options.version);
+    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
+        api_out_key_string(&x->out, links[i][0], links[i][1]);
+    }
+    api_out_object_end(&x->out);
+    api_answer_json(x, 200);
+}
+
 void api_page_get(api_exchange *x)
 {
     const api_options *options = &x->service->options;

@@ -11,6 +11,8 @@
 
 static const api_told_header next_page = {"Link", "The next page, where there is one."};
 static const api_told_header disposition = {"Content-Disposition", "A name for a file."};
+static const api_told_header ranges = {
+    "Accept-Ranges", "`none`: Range is ignored, for a file is made while it is sent."};
 static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
 
 /* --- the table --- */
@@ -131,7 +133,7 @@ static const api_route routes[] = {
      .produces = mesh_out,
      .parameters = {&api_parameter_revision, &api_parameter_format_out, &api_parameter_encoding,
                     &api_parameter_compress},
-     .headers = {&warnings},
+     .headers = {&warnings, &ranges},
      .statuses = {200, 202, 304, 410, 422},
      .response = "document",
      .summary = "Export a mesh",
@@ -700,6 +702,18 @@ static const api_route routes[] = {
      .response = "version",
      .summary = "Version of the server",
      .doc = "Its name, and its version as in \"info\" of this document."},
+    {.method = "GET",
+     .path = "/v1",
+     .name = "index_get",
+     .run = api_index_get,
+     .role = API_ROLE_OPEN,
+     .flags = API_FIXED,
+     .produces = json,
+     .statuses = {200},
+     .response = "index",
+     .summary = "Where to begin",
+     .doc = "The paths of the meshes, the jobs, the list of operations, this document and the "
+            "manual."},
     {.method = "GET",
      .path = "/problems/{code}",
      .name = "problem_get",

@@ -427,6 +427,14 @@ const api_member api_answer_members[] = {
     {"version", "name", "text", REQUIRED, NULL},
     {"version", "version", "text", REQUIRED, NULL},
 
+    {"index", "name", "text", REQUIRED, NULL},
+    {"index", "version", "text", REQUIRED, NULL},
+    {"index", "meshes", "text", REQUIRED, "The path of the list of meshes."},
+    {"index", "jobs", "text", REQUIRED, "The path of the list of jobs."},
+    {"index", "operations", "text", REQUIRED, "The path of the table of operations."},
+    {"index", "openapi", "text", REQUIRED, "The path of the OpenAPI document."},
+    {"index", "docs", "text", REQUIRED, "The path of the manual."},
+
     {"problem_element", "kind", "#element_kind", REQUIRED, NULL},
     {"problem_element", "id", "id", REQUIRED, NULL},
     {"problem_element", "code", "text", OPTIONAL, NULL},

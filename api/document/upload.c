@@ -4,6 +4,7 @@
 #include "api/document/document_in.h"
 #include "api/document/parts.h"
 #include "api/document/repairs.h"
+#include "api/json/known_names.h"
 #include "api/request/admit.h"
 #include "format/io/foreign.h"
 #include "format/io/format.h"
@@ -258,6 +259,16 @@ bool api_upload_feed(api_exchange *x, const char *bytes, size_t length)
     return length == 0 || feed(x, u, bytes, length);
 }
 
+static bool refuse_shape(const api_in *at, const char *name)
+{
+    api_known_names known = {.wanted = name};
+    for (size_t i = 0; i < he_shape_count(); i++) {
+        api_known_names_add(&known, he_shape_at(i)->name);
+    }
+    return api_in_fail(at, HE_BAD_VALUE, "there is no shape \"%.60s\"%s", name,
+                       api_known_names_text(&known));
+}
+
 /* Reads {"shape":"cube","size":2,"name":"..."}: the other members are parameters of the shape. */
 static bool read_shape(upload *u, const api_in *rest, const api_in *shape)
 {
@@ -267,7 +278,7 @@ static bool read_shape(upload *u, const api_in *rest, const api_in *shape)
     }
     u->shape = he_shape_find(name, strlen(name));
     if (u->shape == NULL) {
-        return api_in_fail(shape, HE_BAD_VALUE, "there is no shape \"%s\"", name);
+        return refuse_shape(shape, name);
     }
     size_t count = he_shape_params(u->shape);
     for (size_t i = 0; i < count; i++) {

@@ -1,6 +1,7 @@
 #include "api/json/json_in.h"
 
 #include "api/json/json_scan.h"
+#include "api/json/known_names.h"
 #include "api/limits.h"
 #include "format/text/number.h"
 
@@ -253,6 +254,16 @@ bool api_in_object(const api_in *in)
     return api_in_is_object(in) || wrong_type(in, "an object");
 }
 
+static bool refuse_member(const api_in *member, const char *const *names)
+{
+    api_known_names known = {.wanted = api_in_name(member)};
+    for (; *names != NULL; names++) {
+        api_known_names_add(&known, *names);
+    }
+    return api_in_fail(member, API_UNKNOWN_MEMBER, "\"%.60s\" is not a member known here%s",
+                       api_in_name(member), api_known_names_text(&known));
+}
+
 bool api_in_only(const api_in *in, const char *const *names)
 {
     if (!api_in_object(in)) {
@@ -265,8 +276,7 @@ bool api_in_only(const api_in *in, const char *const *names)
             name++;
         }
         if (*name == NULL) {
-            return api_in_fail(&member, API_UNKNOWN_MEMBER, "\"%.100s\" is not a member known here",
-                               api_in_name(&member));
+            return refuse_member(&member, names);
         }
     }
     return true;

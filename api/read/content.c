@@ -154,6 +154,8 @@ static bool is_plain(const char *name)
 static void name_file(api_exchange *x, const he_format *format)
 {
     const char *names[HE_COLUMN_COMPONENTS];
+    /* A file is made while it is sent: a part of it would cost as much as the whole. */
+    api_answer_header(x, "Accept-Ranges", "none");
     bool library = format != NULL && strcmp(format->name, "mtl") == 0;
     if (library && he_mtl_names(x->content, names) > 0 && is_plain(names[0])) {
         api_answer_header_format(x, "Content-Disposition", "inline; filename=\"%s\"", names[0]);

@@ -1,5 +1,6 @@
 #include "api/request/admit.h"
 
+#include "api/json/known_names.h"
 #include "api/request/coded.h"
 #include "api/request/gate.h"
 #include "api/request/rating.h"
@@ -72,6 +73,16 @@ static bool check_parameter(api_exchange *x, const api_parameter *parameter, con
     return good || refuse_parameter(x, parameter, value);
 }
 
+static bool refuse_unknown(api_exchange *x, const char *name)
+{
+    api_known_names known = {.wanted = name};
+    for (size_t i = 0; x->route->parameters[i] != NULL; i++) {
+        api_known_names_add(&known, x->route->parameters[i]->name);
+    }
+    return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.60s\" is not a parameter of this route%s", name,
+                    api_known_names_text(&known));
+}
+
 static bool check_query(api_exchange *x)
 {
     if (!api_query_split(x->request.query, &x->arena, &x->query, &x->problem)) {
@@ -84,8 +95,7 @@ static bool check_query(api_exchange *x)
             parameter++;
         }
         if (*parameter == NULL) {
-            return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.100s\" is not a parameter of this route",
-                            pair->name);
+            return refuse_unknown(x, pair->name);
         }
         for (size_t j = 0; j < i; j++) {
             if (strcmp(x->query.pairs[j].name, pair->name) == 0) {
@@ -146,6 +156,35 @@ static bool refuse_path(api_exchange *x, const api_path *path)
     return api_fail(x, API_NO_SUCH_ROUTE, "\"%.50s\" is none of %s", missed, list);
 }
 
+/* A path with one '/' too many at its end, such as "/docs/": a GET of the path without it is where
+ * the client is sent. The reference is relative, so that it holds behind a proxy that adds a
+ * prefix. */
+static bool redirect_to_route(api_exchange *x)
+{
+    const char *raw = x->request.path, *query = x->request.query;
+    size_t length = strlen(raw);
+    const bool reads =
+        strcmp(x->request.method, "GET") == 0 || strcmp(x->request.method, "HEAD") == 0;
+    if (!reads || length < 3 || raw[length - 1] != '/' || raw[length - 2] == '/') {
+        return false;
+    }
+    char trimmed[API_MAX_URI + 1];
+    snprintf(trimmed, sizeof trimmed, "%.*s", (int)(length - 1), raw);
+    api_path path;
+    api_variables variables;
+    api_problem ignored = {0};
+    if (!api_path_split(trimmed, &x->arena, &path, &ignored) ||
+        api_route_find(x->service->routes, "GET", &path, &variables, x->allow) == NULL) {
+        return false;
+    }
+    if (api_rating_enter(x)) {
+        api_answer_empty(x, 308);
+        api_answer_header_format(x, "Location", "../%s%s%s", strrchr(trimmed, '/') + 1,
+                                 query[0] != '\0' ? "?" : "", query);
+    }
+    return true;
+}
+
 static bool find_route(api_exchange *x)
 {
     api_path path;
@@ -154,7 +193,7 @@ static bool find_route(api_exchange *x)
         return api_fail(x, API_URI_TOO_LONG, "path and query are longer than %d characters",
                         API_MAX_URI);
     }
-    if (!api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
+    if (redirect_to_route(x) || !api_path_split(x->request.path, &x->arena, &path, &x->problem)) {
         return false;
     }
     x->route = api_route_find(x->service->routes, x->request.method, &path, &variables, x->allow);

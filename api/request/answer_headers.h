@@ -11,6 +11,7 @@
 /* X(name, separator): the headers that must be named for a page to read them, in order. */
 #define API_EXPOSED_HEADERS(X)           \
     X("Accept-Encoding", ", ")           \
+    X("Accept-Ranges", ", ")             \
     X("Allow", ", ")                     \
     X("Content-Disposition", ", ")       \
     X("Content-Encoding", ", ")          \

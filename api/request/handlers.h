@@ -10,6 +10,7 @@
 void api_live_get(api_exchange *x);
 void api_ready_get(api_exchange *x);
 void api_version_get(api_exchange *x);
+void api_index_get(api_exchange *x);
 void api_metrics_get(api_exchange *x);
 void api_page_get(api_exchange *x); /* serves "/" and "/assets/..." */
 void api_problem_get(api_exchange *x);

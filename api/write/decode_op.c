@@ -1,5 +1,6 @@
 #include "api/write/decode_op.h"
 
+#include "api/json/known_names.h"
 #include "api/json/material_value.h"
 #include "api/limits.h"
 
@@ -284,6 +285,20 @@ static bool is_listed(const char *const *names, const char *name)
     return false;
 }
 
+static bool refuse_parameter(const decoder *d, const api_in *in)
+{
+    api_known_names known = {.wanted = api_in_name(in)};
+    for (size_t i = 0; i < he_op_params(d->op); i++) {
+        const he_param *param = &d->op->params[i];
+        api_known_names_add(&known, param->name);
+        if (param->plural != NULL) {
+            api_known_names_add(&known, param->plural);
+        }
+    }
+    return api_in_fail(in, API_UNKNOWN_MEMBER, "\"%.60s\" is not a parameter of %s%s",
+                       api_in_name(in), d->op->name, api_known_names_text(&known));
+}
+
 static bool decode_member(const decoder *d, const char *const *also, const api_in *in)
 {
     const char *name = api_in_name(in);
@@ -296,8 +311,7 @@ static bool decode_member(const decoder *d, const char *const *also, const api_i
     bool plural;
     int i = find_param(d->op, name, &plural);
     if (i < 0) {
-        return api_in_fail(in, API_UNKNOWN_MEMBER, "\"%.100s\" is not a parameter of %s", name,
-                           d->op->name);
+        return refuse_parameter(d, in);
     }
     he_arg *arg = &d->call->args[i];
     if (arg->given) {
@@ -370,6 +384,17 @@ static bool check_points(const decoder *d)
     return true;
 }
 
+static bool refuse_operation(const api_in *at, const char *name)
+{
+    api_known_names known = {.wanted = name};
+    for (size_t i = 0; i < he_op_count(); i++) {
+        api_known_names_add(&known, he_op_at(i)->name);
+    }
+    return api_in_fail(at, API_UNKNOWN_OPERATION, "there is no operation \"%.60s\"%s", name,
+                       known.nearest != NULL ? api_known_names_text(&known)
+                                             : "; GET /v1/operations lists them");
+}
+
 bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
                    const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out)
 {
@@ -381,7 +406,7 @@ bool api_decode_op(const api_in *object, const char *const *also, const api_refe
     }
     *out = (api_call){.op = he_op_find(text, strlen(text))};
     if (out->op == NULL) {
-        return api_in_fail(&name, API_UNKNOWN_OPERATION, "there is no operation \"%.100s\"", text);
+        return refuse_operation(&name, text);
     }
     he_op_defaults(out->op, out->args);
     decoder d = {object, references, mesh, meshes, arena, out->op, out};

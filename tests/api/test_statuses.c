@@ -272,6 +272,7 @@ static const step steps[] = {
     {"GET", "/readyz", 200, NULL, {NULL}},
     {"GET", "/metrics", 200, NULL, {NULL}},
     {"GET", "/version", 200, NULL, {NULL}},
+    {"GET", "/v1", 200, NULL, {NULL}},
     {"GET", "/problems/closed_fan", 200, NULL, {NULL}},
     {"GET", "/problems/none", 404, NULL, {NULL}},
 };

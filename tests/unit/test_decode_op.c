@@ -123,6 +123,31 @@ static void bodies_are_refused_with_their_pointer(void **state)
 }
 
 /* The index of a parameter, by name. */
+static void names_that_do_not_exist_are_answered_with_those_that_do(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *body, *detail;
+    } cases[] = {
+        {"{\"op\":\"split_edge\"}",
+         "there is no operation \"split_edge\"; did you mean \"edge_split\"?"},
+        {"{\"op\":\"frobnicate\"}",
+         "there is no operation \"frobnicate\"; GET /v1/operations lists them"},
+        {"{\"op\":\"edge_split\",\"edg\":0}",
+         "\"edg\" is not a parameter of edge_split; did you mean \"edge\"?"},
+        {"{\"op\":\"edge_flip\",\"what\":0}",
+         "\"what\" is not a parameter of edge_flip; there is edge"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        parsed p;
+        api_call call;
+        parse(&p, cases[i].body);
+        assert_false(api_decode_op(&p.root, NULL, NULL, NULL, NULL, &p.arena, &call));
+        assert_string_equal(p.problem.detail, cases[i].detail);
+        clear(&p);
+    }
+}
+
 static size_t param(const he_op *op, const char *name)
 {
     size_t i = 0;
@@ -365,6 +390,7 @@ int main(void)
     api_in_setup();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_are_refused_with_their_pointer),
+        cmocka_unit_test(names_that_do_not_exist_are_answered_with_those_that_do),
         cmocka_unit_test(arguments_hold_what_was_given),
         cmocka_unit_test(references_are_checked_before_anything_runs),
         cmocka_unit_test(references_take_the_values_of_results),

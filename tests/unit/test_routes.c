@@ -115,17 +115,23 @@ static const char *answer_header(const api_answer *answer, const char *name)
     return NULL;
 }
 
-/* Does the body hold "code":"slug"? */
-static bool has_code(const api_answer *answer, const char *slug)
+static bool has_text(const api_answer *answer, const char *text)
 {
-    char member[80];
-    size_t size = (size_t)snprintf(member, sizeof member, "\"code\":\"%s\"", slug);
+    size_t size = strlen(text);
     for (size_t i = 0; answer->bytes != NULL && i + size <= (size_t)answer->length; i++) {
-        if (memcmp(answer->bytes + i, member, size) == 0) {
+        if (memcmp(answer->bytes + i, text, size) == 0) {
             return true;
         }
     }
     return false;
+}
+
+/* Does the body hold "code":"slug"? */
+static bool has_code(const api_answer *answer, const char *slug)
+{
+    char member[80];
+    snprintf(member, sizeof member, "\"code\":\"%s\"", slug);
+    return has_text(answer, member);
 }
 
 #define JSON       "Content-Type: application/json"
@@ -151,9 +157,10 @@ static const struct {
     {{"GET /v1/openapi.json", NULL, NULL}, 200, NULL},
     {{"GET /v1/meshes/m", NULL, NULL}, 200, NULL},
     /* no such path */
-    {{"GET /v1", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1", NULL, NULL}, 200, NULL},
+    {{"GET /v1/admin", NULL, NULL}, 404, "no_such_route"},
     {{"GET /v1/mesh", NULL, NULL}, 404, "no_such_route"},
-    {{"GET /v1/meshes/", NULL, NULL}, 404, "no_such_route"},
+    {{"GET /v1/meshes/", NULL, NULL}, 308, NULL},
     {{"GET //v1/meshes", NULL, NULL}, 404, "no_such_route"},
     {{"GET /V1/meshes", NULL, NULL}, 404, "no_such_route"},
     {{"GET /v1/meshes/m/corners", NULL, NULL}, 404, "no_such_route"},
@@ -309,6 +316,70 @@ static void pages_of_a_configured_origin_may_ask_for_everything(void **state)
         assert_int_equal(api_answer_of(x)->status, consent != 0 ? 200 : 403);
         api_free(x);
     }
+}
+
+static void unknown_names_are_answered_with_those_that_exist(void **state)
+{
+    (void)state;
+    static const struct {
+        sent request;
+        const char *detail;
+    } cases[] = {
+        {{"GET /v1/meshes?limt=1", NULL, NULL}, "this route; did you mean \\\"limit\\\"?"},
+        {{"POST /v1/meshes", JSON, "{\"shape\":\"cub\"}"}, "did you mean \\\"cube\\\"?"},
+        {{"POST /v1/meshes", JSON, "{\"shape\":\"ring\"}"}, "; there are tetrahedron, cube,"},
+        {{"POST /v1/meshes", JSON, "{\"shape\":\"cube\",\"sise\":1}"},
+         "known here; did you mean \\\"size\\\"?"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        header_list headers;
+        api_exchange *x = send_line(&cases[i].request, &headers);
+        const api_answer *answer = api_answer_of(x);
+        assert_int_equal(answer->status, 400);
+        if (!has_text(answer, cases[i].detail)) {
+            fail_msg("%.*s", (int)answer->length, answer->bytes);
+        }
+        api_free(x);
+    }
+}
+
+static void a_slash_too_many_at_the_end_leads_to_the_path_without_it(void **state)
+{
+    (void)state;
+    static const struct {
+        sent request;
+        const char *location; /* NULL: 404 */
+    } cases[] = {
+        {{"GET /docs/", NULL, NULL}, "../docs"},
+        {{"HEAD /docs/", NULL, NULL}, "../docs"},
+        {{"GET /v1/", NULL, NULL}, "../v1"},
+        {{"GET /v1/meshes/?limit=2", NULL, NULL}, "../meshes?limit=2"},
+        {{"GET /v1/meshes/m/faces/0/", NULL, NULL}, "../0"},
+        {{"GET /nowhere/", NULL, NULL}, NULL},
+        {{"GET /docs//", NULL, NULL}, NULL},
+        {{"GET //", NULL, NULL}, NULL},
+        {{"POST /v1/meshes/", JSON, "{}"}, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        header_list headers;
+        api_exchange *x = send_line(&cases[i].request, &headers);
+        const api_answer *answer = api_answer_of(x);
+        const char *location = answer_header(answer, "Location");
+        assert_int_equal(answer->status, cases[i].location != NULL ? 308 : 404);
+        assert_true(cases[i].location == NULL || strcmp(location, cases[i].location) == 0);
+        api_free(x);
+    }
+}
+
+static void a_range_of_a_file_is_answered_whole_and_said_not_to_be_taken(void **state)
+{
+    (void)state;
+    header_list headers;
+    const sent request = {"GET /v1/meshes/m/content?format=obj", "Range: bytes=0-9", NULL};
+    api_exchange *x = send_line(&request, &headers);
+    assert_int_equal(api_answer_of(x)->status, 200);
+    assert_string_equal(answer_header(api_answer_of(x), "Accept-Ranges"), "none");
+    api_free(x);
 }
 
 static void allow_lists_the_methods_of_a_path(void **state)
@@ -550,8 +621,7 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
          "\"corners\" is none of vertices, halfedges, edges, faces, mesh"},
         {"GET /v1/mesh",
          "\"mesh\" is none of meshes, jobs, token, tickets, admin, operations, openapi.json"},
-        {"GET /v1", "the path goes on with one of meshes, jobs, token, tickets, admin, operations, "
-                    "openapi.json"},
+        {"GET /v1/admin", "the path goes on with one of reload, backup"},
         {"GET /v1/meshes/m/vertices/0/edges/1",
          "there is nothing at \"/v1/meshes/m/vertices/0/edges/1\""},
     };
@@ -606,6 +676,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(requests_are_answered),
         cmocka_unit_test(pages_of_a_configured_origin_may_ask_for_everything),
+        cmocka_unit_test(unknown_names_are_answered_with_those_that_exist),
+        cmocka_unit_test(a_slash_too_many_at_the_end_leads_to_the_path_without_it),
+        cmocka_unit_test(a_range_of_a_file_is_answered_whole_and_said_not_to_be_taken),
         cmocka_unit_test(allow_lists_the_methods_of_a_path),
         cmocka_unit_test(pages_carry_a_strict_policy),
         cmocka_unit_test(readiness_is_the_servers_to_say),

@@ -164,6 +164,10 @@ export class Contract {
         const { method, status } = exchange;
         const request = parseMessage(exchange.request);
         const answer = parseMessage(exchange.answer);
+        if (route === undefined && status === 308) {
+            this.checkRedirect(path, answer, wrong);
+            return wrong;
+        }
         if (route === undefined) {
             if (status !== 404 && !BEFORE_ROUTING.includes(status)) {
                 wrong.push(`the document has no such path, and the status is ${status}`);
@@ -225,6 +229,15 @@ export class Contract {
             this.checkJson({ $ref: '#/components/schemas/problem' }, bytes, wrong, (problem) =>
                 statusOf(problem, status),
             );
+        }
+    }
+
+    // A slash too many at the end leads to a path of the document.
+    checkRedirect(path, answer, wrong) {
+        const base = `http://host${path}`;
+        const { pathname } = new URL(answer.headers.get('location') ?? '', base);
+        if (pathname !== path.slice(0, -1) || this.match(pathname) === undefined) {
+            wrong.push(`${path} leads to ${pathname}`);
         }
     }
 

@@ -1,0 +1,42 @@
+/* known_names.h - a refusal of a name that does not exist says which names do.
+ *
+ *     api_known_names known = {.wanted = "split_edge"};
+ *     for each name that exists {
+ *         api_known_names_add(&known, name);
+ *     }
+ *     "there is no operation \"split_edge\"%s", api_known_names_text(&known)
+ *
+ * The text goes on in one of three ways:
+ *
+ *     ; did you mean "edge_split"?     one name is like the wanted one
+ *     ; there are obj, off, ply        else, as many names as fit, with "..." for others
+ *     (nothing)                        no name was added */
+#ifndef HE_API_JSON_KNOWN_NAMES_H
+#define HE_API_JSON_KNOWN_NAMES_H
+
+#include <stddef.h>
+
+enum { API_KNOWN_TEXT = 200 };
+
+/* Begin with .wanted alone set; it is borrowed, and so are the names. */
+typedef struct api_known_names {
+    const char *wanted;
+    const char *nearest; /* NULL: none is like it */
+    size_t distance;     /* of the nearest */
+    char list[API_KNOWN_TEXT];
+    size_t length;
+    size_t left_out;
+    char text[API_KNOWN_TEXT + 64];
+} api_known_names;
+
+void api_known_names_add(api_known_names *known, const char *name);
+/* Lives as long as `known`. */
+const char *api_known_names_text(api_known_names *known);
+
+/* How many letters must be inserted, left out, replaced or exchanged with their neighbour to make
+ * one name of the other (optimal string alignment: Boytsov, Indexing methods for approximate
+ * dictionary searching, 2011, section 2.1). 1 where both have the same words between '_' in another
+ * order. Names of more than 64 bytes are as far away as SIZE_MAX. */
+size_t api_name_distance(const char *a, const char *b);
+
+#endif
