@@ -4,6 +4,7 @@
 #include "api/describe/operations.h"
 #include "api/describe/routes.h"
 #include "api/describe/schemas.h"
+#include "api/describe/tags.h"
 #include "api/document/shapes.h"
 #include "api/header/media.h"
 
@@ -67,6 +68,7 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
         break;
     case API_PARAM_U64:
         api_out_key_string(out, "type", "integer");
+        api_out_key_string(out, "format", parameter->max > INT32_MAX ? "int64" : "int32");
         api_out_key_number(out, "minimum", parameter->min);
         api_out_key_number(out, "maximum", parameter->max);
         break;
@@ -102,8 +104,9 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
 static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
-        "{\"type\":\"object\",\"properties\":{\"end\":{\"const\":true},"
-        "\"count\":{\"type\":\"integer\",\"minimum\":0,\"description\":\"Of the lines before.\"}},"
+        "{\"type\":\"object\",\"properties\":{\"end\":{\"type\":\"boolean\",\"const\":true},"
+        "\"count\":{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"description\":\"Of "
+        "the lines before.\"}},"
         "\"required\":[\"end\",\"count\"]}";
     api_out_key(out, "x-item-schema");
     api_out_object_begin(out);
@@ -130,6 +133,18 @@ static void write_files_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
+/* A body that is no JSON: text, or bytes, which a generated client takes as a blob. */
+static void write_bytes_schema(api_out *out, const char *type)
+{
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    if (strncmp(type, "text/", 5) != 0) {
+        api_out_key_string(out, "format", "binary");
+    }
+    api_out_object_end(out);
+}
+
 static void write_content(api_out *out, const char *const *types, const char *schema,
                           const char *line,
                           const char *(*example)(const char *route, const char *media),
@@ -149,6 +164,11 @@ static void write_content(api_out *out, const char *const *types, const char *sc
             write_line_schema(out, line);
         } else if (strcmp(*types, API_MULTIPART) == 0) {
             write_files_schema(out);
+        } else if (json) {
+            api_out_key(out, "schema"); /* any JSON: a file of the page */
+            api_out_raw(out, "{}", 2);
+        } else {
+            write_bytes_schema(out, *types);
         }
         const char *body = example(route, *types);
         if (body != NULL && json) {
@@ -435,6 +455,7 @@ static void write_operation(api_out *out, const api_route *route)
     api_out_object_begin(out);
     api_out_key_string(out, "operationId", route->name);
     api_out_key_string(out, "summary", route->summary);
+    api_schema_choices(out, "tags", (const char *const[]){api_tag_of(route->path), NULL});
     write_doc(out, route);
     api_out_key(out, "parameters");
     api_out_array_begin(out);
@@ -615,6 +636,7 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_key(out, "security"); /* for routes without their own: no token is needed */
     api_out_array_begin(out);
     api_out_array_end(out);
+    api_tags_write(out);
     write_paths(out);
     write_components(out);
     api_out_object_end(out);

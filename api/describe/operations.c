@@ -1,6 +1,7 @@
 #include "api/describe/operations.h"
 
 #include "api/describe/schemas.h"
+#include "api/json/text.h"
 #include "op/op.h"
 
 #include <stdio.h>
@@ -169,26 +170,64 @@ void api_operations_write(api_out *out)
 
 /* --- schemas of operations --- */
 
+/* "op_" and the name of an operation. */
+enum { OP_SCHEMA = 80 };
+
+static const char *name_op_schema(const he_op *op, char name[OP_SCHEMA])
+{
+    snprintf(name, OP_SCHEMA, "op_%s", op->name);
+    return name;
+}
+
+/* Members beside the parameters of an operation: "as" in a list of them, the others where it is
+ * alone. */
+static const struct {
+    const char *name, *json;
+} beside[] = {
+    {"as",
+     "{\"type\":\"string\",\"maxLength\":64,\"pattern\":\"^[A-Za-z_][A-Za-z0-9_]*$\","
+     "\"description\":\"In a list: a name for what it makes, for the operations after it.\"}"},
+    {"expected_revision",
+     "{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":1,\"description\":"
+     "\"Alone: the revision that the edit is meant for.\"}"},
+    {"dry_run",
+     "{\"type\":\"boolean\",\"description\":\"Alone: answer without changing anything.\"}"},
+};
+
+/* Each writes the members of a schema object. */
+
 static void write_list_schema(api_out *out, unsigned min)
 {
-    api_out_object_begin(out);
     api_out_key_string(out, "type", "array");
     api_schema_ref_key(out, "items", "id_or_reference");
     api_out_key_u64(out, "minItems", min);
-    api_out_object_end(out);
 }
 
 static void write_number_schema(api_out *out, const he_param *param)
 {
-    api_out_object_begin(out);
     api_out_key_string(out, "type", param->flags & HE_WHOLE ? "integer" : "number");
+    if ((param->flags & HE_WHOLE) && !((param->flags & HE_RANGE) && param->max < INT32_MAX)) {
+        api_out_key_string(out, "format", "int64");
+    }
     if (param->flags & HE_RANGE) {
         bool exclusive = (param->flags & HE_EXCLUSIVE) != 0;
         api_out_key_number(out, exclusive ? "exclusiveMinimum" : "minimum", param->min);
         api_out_key_number(out, exclusive ? "exclusiveMaximum" : "maximum", param->max);
     }
     write_default(out, param);
-    api_out_object_end(out);
+}
+
+static void write_element_schema(api_out *out, const he_param *param)
+{
+    if (!(param->flags & HE_NULLABLE)) {
+        api_schema_reference(out, "id_or_reference");
+        return;
+    }
+    api_out_key(out, "anyOf");
+    api_out_array_begin(out);
+    api_schema_ref(out, "schemas", "id_or_reference");
+    api_out_raw(out, "{\"type\":\"null\"}", 15);
+    api_out_array_end(out);
 }
 
 static void write_value_schema(api_out *out, const he_param *param)
@@ -196,54 +235,41 @@ static void write_value_schema(api_out *out, const he_param *param)
     switch (param->type) {
     case HE_PARAM_ELEMENT:
     case HE_PARAM_ELEMENTS:
-        if (!(param->flags & HE_NULLABLE)) {
-            api_schema_ref(out, "schemas", "id_or_reference");
-            return;
-        }
-        api_out_object_begin(out);
-        api_out_key(out, "anyOf");
-        api_out_array_begin(out);
-        api_schema_ref(out, "schemas", "id_or_reference");
-        api_out_raw(out, "{\"type\":\"null\"}", 15);
-        api_out_array_end(out);
-        api_out_object_end(out);
-        return;
+        write_element_schema(out, param);
+        break;
     case HE_PARAM_CYCLE:
         write_list_schema(out, 0);
-        return;
+        break;
     case HE_PARAM_NUMBER:
         write_number_schema(out, param);
-        return;
+        break;
     case HE_PARAM_POINT:
-        api_schema_ref(out, "schemas", "point");
-        return;
+        api_schema_reference(out, "point");
+        break;
     case HE_PARAM_POINTS:
-        api_schema_ref(out, "schemas", "points");
-        return;
+        api_schema_reference(out, "points");
+        break;
     case HE_PARAM_FLAG:
-        api_out_object_begin(out);
         api_out_key_string(out, "type", "boolean");
         write_default(out, param);
-        api_out_object_end(out);
-        return;
+        break;
     case HE_PARAM_CHOICE:
-        api_out_object_begin(out);
+        api_out_key_string(out, "type", "string");
         api_schema_choices(out, "enum", param->choices);
         write_default(out, param);
-        api_out_object_end(out);
-        return;
+        break;
     case HE_PARAM_MATRIX:
-        api_schema_ref(out, "schemas", "matrix");
-        return;
+        api_schema_reference(out, "matrix");
+        break;
     case HE_PARAM_TEXT:
-        api_out_raw(out, "{\"type\":\"string\"}", 17);
-        return;
+        api_out_key_string(out, "type", "string");
+        break;
     case HE_PARAM_COLOR:
-        api_schema_ref(out, "schemas", param->flags & HE_OPACITY ? "color_alpha" : "color");
-        return;
+        api_schema_reference(out, param->flags & HE_OPACITY ? "color_alpha" : "color");
+        break;
     case HE_PARAM_MESH:
-        api_schema_ref(out, "schemas", "mesh_id");
-        return;
+        api_schema_reference(out, "mesh_id");
+        break;
     }
 }
 
@@ -254,37 +280,28 @@ static void write_param_schema(api_out *out, const he_param *param)
     if (param->doc != NULL) {
         api_out_key_string(out, "description", param->doc);
     }
-    api_out_key(out, "allOf");
-    api_out_array_begin(out);
     write_value_schema(out, param);
-    api_out_array_end(out);
     api_out_object_end(out);
-    if (param->plural != NULL) {
-        api_out_key(out, param->plural);
-        api_out_object_begin(out);
-        api_out_key(out, "anyOf");
-        api_out_array_begin(out);
-        write_list_schema(out, 1);
-        api_schema_ref(out, "schemas", "set");
-        api_out_array_end(out);
-        api_out_object_end(out);
+    if (param->plural == NULL) {
+        return;
     }
-}
-
-static void write_alternative(api_out *out, const char *name)
-{
+    api_out_key(out, param->plural);
     api_out_object_begin(out);
-    api_out_key(out, "required");
+    api_out_key(out, "oneOf");
     api_out_array_begin(out);
-    api_out_string(out, name);
+    api_out_object_begin(out);
+    write_list_schema(out, 1);
+    api_out_object_end(out);
+    api_schema_ref(out, "schemas", "set");
     api_out_array_end(out);
     api_out_object_end(out);
 }
 
-/* Writes "exactly one of these members" for each group that requires one. */
-static void write_groups(api_out *out, const he_op *op)
+/* Adds to `text` a sentence for each group of members of which exactly one is required. A union of
+ * requirements would tell it to programs, too, but generators of clients make nameless types of it.
+ */
+static void describe_groups(api_text *text, const he_op *op)
 {
-    bool opened = false;
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         bool first = true, required = false;
@@ -296,28 +313,18 @@ static void write_groups(api_out *out, const he_op *op)
         if (!first || !required || (param->group == 0 && param->plural == NULL)) {
             continue;
         }
-        if (!opened) {
-            api_out_key(out, "allOf");
-            api_out_array_begin(out);
-            opened = true;
-        }
-        api_out_object_begin(out);
-        api_out_key(out, "oneOf");
-        api_out_array_begin(out);
+        const char *before = " Give exactly one of ";
         for (size_t j = i; j < he_op_params(op); j++) {
             const he_param *other = &op->params[j];
             if (j == i || (param->group != 0 && other->group == param->group)) {
-                write_alternative(out, other->name);
+                api_text_add_format(text, "%s`%s`", before, other->name);
+                before = ", ";
                 if (other->plural != NULL) {
-                    write_alternative(out, other->plural);
+                    api_text_add_format(text, "%s`%s`", before, other->plural);
                 }
             }
         }
-        api_out_array_end(out);
-        api_out_object_end(out);
-    }
-    if (opened) {
-        api_out_array_end(out);
+        api_text_add_string(text, ".");
     }
 }
 
@@ -334,18 +341,27 @@ static void begin_named(api_out *out, const he_op *op, const char *description)
     api_out_object_begin(out);
     api_out_key(out, "op");
     api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
     api_out_key_string(out, "const", op->name);
     api_out_object_end(out);
 }
 
 static void write_op_schema(api_out *out, const he_op *op)
 {
-    char name[80];
-    snprintf(name, sizeof name, "op_%s", op->name);
-    api_out_key(out, name);
-    begin_named(out, op, op->doc);
+    char name[OP_SCHEMA];
+    api_text description = {0};
+    api_text_add_string(&description, op->doc);
+    describe_groups(&description, op);
+    api_text_add(&description, "", 1); /* its end, for a string */
+    api_out_key(out, name_op_schema(op, name));
+    begin_named(out, op, description.failed ? op->doc : description.bytes);
+    api_text_clear(&description);
     for (size_t i = 0; i < he_op_params(op); i++) {
         write_param_schema(out, &op->params[i]);
+    }
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+        api_out_key(out, beside[i].name);
+        api_out_raw(out, beside[i].json, strlen(beside[i].json));
     }
     api_out_object_end(out);
     api_out_key(out, "required");
@@ -358,30 +374,26 @@ static void write_op_schema(api_out *out, const he_op *op)
         }
     }
     api_out_array_end(out);
-    write_groups(out, op);
     api_out_object_end(out);
 }
 
-/* Writes the schema of any operation with additional members: "as" in a list, "expected_revision"
- * for a single one. */
-static void write_any_op(api_out *out, const char *name, const char *beside)
+/* Writes the union of all operations, told apart by their member "op". */
+static void write_operation_schema(api_out *out)
 {
-    api_out_key(out, name);
+    char name[OP_SCHEMA];
+    api_out_key(out, "operation");
     api_out_object_begin(out);
-    api_out_key_string(out, "type", "object");
-    if (he_op_count() > 0) {
-        api_out_key(out, "oneOf");
-        api_out_array_begin(out);
-        for (size_t i = 0; i < he_op_count(); i++) {
-            char schema[80];
-            snprintf(schema, sizeof schema, "op_%s", he_op_at(i)->name);
-            api_schema_ref(out, "schemas", schema);
-        }
-        api_out_array_end(out);
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    for (size_t i = 0; i < he_op_count(); i++) {
+        api_schema_ref(out, "schemas", name_op_schema(he_op_at(i), name));
     }
-    api_out_key(out, "properties");
-    api_out_raw(out, beside, strlen(beside));
-    api_out_key_bool(out, "unevaluatedProperties", false);
+    api_out_array_end(out);
+    api_schema_discriminator_begin(out, "op");
+    for (size_t i = 0; i < he_op_count(); i++) {
+        api_schema_discriminator_add(out, he_op_at(i)->name, name_op_schema(he_op_at(i), name));
+    }
+    api_schema_discriminator_end(out);
     api_out_object_end(out);
 }
 
@@ -411,10 +423,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     }
     switch (result->type) {
     case HE_RESULT_ELEMENT:
-        api_out_key(out, "allOf");
-        api_out_array_begin(out);
-        write_nullable_id(out);
-        api_out_array_end(out);
+        api_schema_reference(out, "id_or_null");
         break;
     case HE_RESULT_ELEMENTS:
     case HE_RESULT_COUNTS:
@@ -466,10 +475,5 @@ void api_operation_schemas_write(api_out *out)
         write_op_schema(out, he_op_at(i));
     }
     write_any_done(out);
-    write_any_op(out, "operation",
-                 "{\"as\":{\"type\":\"string\",\"maxLength\":64,"
-                 "\"pattern\":\"^[A-Za-z_][A-Za-z0-9_]*$\"}}");
-    write_any_op(out, "edit_one",
-                 "{\"expected_revision\":{\"type\":\"integer\",\"minimum\":1},"
-                 "\"dry_run\":{\"type\":\"boolean\"}}");
+    write_operation_schema(out);
 }

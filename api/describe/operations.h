@@ -6,9 +6,8 @@
 
 /* Writes the body of GET /v1/operations. */
 void api_operations_write(api_out *out);
-/* Writes schemas into an open components.schemas: op_NAME for each row, `operation` for any
- * operation in a list, `edit_one` for an operation that is the whole edit, `done` for the results
- * of any operation. */
+/* Writes schemas into an open components.schemas: op_NAME for each row, `operation` for any of
+ * them, `done` for the results of any operation. */
 void api_operation_schemas_write(api_out *out);
 
 #endif

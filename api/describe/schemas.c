@@ -11,7 +11,7 @@
 static const struct {
     const char *name, *json;
 } others[] = {
-    {"id", "{\"type\":\"integer\",\"minimum\":0,\"maximum\":4294967293}"},
+    {"id", "{\"type\":\"integer\",\"format\":\"int64\",\"minimum\":0,\"maximum\":4294967293}"},
     {"id_or_null", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/id\"},"
                    "{\"type\":\"null\"}]}"},
     {"reference",
@@ -37,51 +37,60 @@ static const struct {
     {"value", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/plain\"},{\"type\":\"array\","
               "\"items\":{\"$ref\":\"#/components/schemas/plain\"},\"minItems\":2,"
               "\"maxItems\":16}]}"},
-    {"plain", "{\"type\":[\"number\",\"boolean\"]}"},
+    {"plain", "{\"oneOf\":[{\"type\":\"number\"},{\"type\":\"boolean\"}]}"},
     {"values_by_name", "{\"type\":\"object\",\"additionalProperties\":"
                        "{\"$ref\":\"#/components/schemas/value\"},\"minProperties\":1}"},
-    {"domain", "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
+    {"domain",
+     "{\"type\":\"string\",\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\",\"mesh\"]}"},
     {"attribute_name", "{\"type\":\"string\",\"minLength\":1,\"maxLength\":63,\"description\":"
                        "\"At most 63 bytes of UTF-8; `position` is built in.\"}"},
-    {"type_name", "{\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
-    {"rule_name", "{\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
+    {"type_name",
+     "{\"type\":\"string\",\"enum\":[\"bool\",\"int32\",\"uint32\",\"float\",\"double\"]}"},
+    {"rule_name", "{\"type\":\"string\",\"enum\":[\"copy\",\"interpolate\",\"default\"]}"},
     {"label", "{\"type\":\"string\",\"maxLength\":1024}"},
-    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"const\":true},"
+    {"set", "{\"type\":\"object\",\"additionalProperties\":{\"type\":\"boolean\",\"const\":true},"
             "\"minProperties\":1,\"maxProperties\":1,\"description\":\"The live elements "
             "whose bool attribute of this name is true; none changes nothing.\"}"},
-    {"ids_or_set", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
-                   "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"
-                   "{\"const\":\"all\"},{\"$ref\":\"#/components/schemas/set\"}]}"},
+    {"ids_or_set",
+     "{\"oneOf\":[{\"type\":\"array\",\"items\":"
+     "{\"$ref\":\"#/components/schemas/id\"},\"minItems\":1},"
+     "{\"type\":\"string\",\"const\":\"all\"},{\"$ref\":\"#/components/schemas/set\"}]}"},
     {"pair", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id\"},\"minItems"
              "\":2,\"maxItems\":2}"},
     {"sides", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id_or_null\"},\"m"
               "inItems\":2,\"maxItems\":2}"},
-    {"triple", "{\"type\":\"array\",\"items\":{\"type\":\"integer\"},\"minItems\":3,\"maxItems\""
-               ":3}"},
-    {"scalar", "{\"type\":[\"number\",\"boolean\",\"string\"]}"},
-    {"degrees", "{\"type\":\"object\",\"propertyNames\":{\"pattern\":\"^[0-9]+$\"},\"additionalPr"
-                "operties\":{\"type\":\"integer\",\"minimum\":1}}"},
-    {"totals", "{\"type\":\"object\",\"properties\":{\"problems\":{\"type\":\"integer\",\"minimu"
-               "m\":0}},\"required\":[\"problems\"],\"additionalProperties\":{\"type\":\"integer"
-               "\",\"minimum\":0}}"},
-    {"element_kind", "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\",\"mesh\"]}"},
-    {"repair_name", "{\"enum\":[\"weld\",\"drop_degenerate\",\"drop_duplicates\",\"orient\","
-                    "\"split\",\"fill\"]}"},
-    {"op_size", "{\"enum\":[\"local\",\"whole\"]}"},
-    {"action", "{\"enum\":[\"edit\",\"undo\",\"redo\",\"replace\"]}"},
-    {"connection", "{\"enum\":[\"edge\",\"vertex\"]}"},
+    {"triple", "{\"type\":\"array\",\"items\":{\"type\":\"integer\",\"format\":\"int64\"},"
+               "\"minItems\":3,\"maxItems\":3}"},
+    {"scalar", "{\"oneOf\":[{\"type\":\"number\"},{\"type\":\"boolean\"},{\"type\":\"string\"}]}"},
+    {"degrees", "{\"type\":\"object\",\"propertyNames\":{\"pattern\":\"^[0-9]+$\"},"
+                "\"additionalProperties\":{\"type\":\"integer\",\"format\":\"int64\","
+                "\"minimum\":1}}"},
+    {"totals", "{\"type\":\"object\",\"properties\":{\"problems\":{\"type\":\"integer\","
+               "\"format\":\"int64\",\"minimum\":0}},\"required\":[\"problems\"],"
+               "\"additionalProperties\":{\"type\":\"integer\",\"format\":\"int64\","
+               "\"minimum\":0}}"},
+    {"element_kind",
+     "{\"type\":\"string\",\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\",\"mesh\"]}"},
+    {"repair_name",
+     "{\"type\":\"string\",\"enum\":[\"weld\",\"drop_degenerate\",\"drop_duplicates\",\"orient\","
+     "\"split\",\"fill\"]}"},
+    {"op_size", "{\"type\":\"string\",\"enum\":[\"local\",\"whole\"]}"},
+    {"action", "{\"type\":\"string\",\"enum\":[\"edit\",\"undo\",\"redo\",\"replace\"]}"},
+    {"connection", "{\"type\":\"string\",\"enum\":[\"edge\",\"vertex\"]}"},
     {"description",
-     "{\"type\":\"object\",\"required\":[\"openapi\",\"info\",\"servers\",\"security\""
-     ",\"paths\",\"components\"],\"properties\":{\"openapi\":{\"const\":\"3.1.0\"},\"i"
-     "nfo\":{\"$ref\":\"#/components/schemas/any_members\"},\"servers\":{\"type\":\"ar"
-     "ray\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},\"minItems\":1},"
-     "\"security\":{\"type\":\"array\",\"maxItems\":0},\"paths\":{\"$ref\":\"#/compone"
-     "nts/schemas/any_members\"},\"components\":{\"$ref\":\"#/components/schemas/any_m"
-     "embers\"}}}"},
+     "{\"type\":\"object\",\"required\":[\"openapi\",\"info\",\"servers\",\"security\",\"tags\","
+     "\"paths\",\"components\"],\"properties\":{\"openapi\":{\"type\":\"string\","
+     "\"const\":\"3.1.0\"},\"info\":{\"$ref\":\"#/components/schemas/any_members\"},"
+     "\"servers\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},"
+     "\"minItems\":1},\"security\":{\"type\":\"array\",\"maxItems\":0},"
+     "\"tags\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},"
+     "\"minItems\":1},\"paths\":{\"$ref\":\"#/components/schemas/any_members\"},"
+     "\"components\":{\"$ref\":\"#/components/schemas/any_members\"}}}"},
     {"any_members",
      "{\"type\":\"object\",\"additionalProperties\":true,\"minProperties\":1,\"descrip"
      "tion\":\"As OpenAPI 3.1 says.\"}"},
-    {"job_state", "{\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
+    {"job_state",
+     "{\"type\":\"string\",\"enum\":[\"queued\",\"running\",\"done\",\"failed\",\"cancelled\"]}"},
     {"job_result", "{\"anyOf\":[{\"$ref\":\"#/components/schemas/edited\"},"
                    "{\"$ref\":\"#/components/schemas/created\"},"
                    "{\"$ref\":\"#/components/schemas/check\"},"
@@ -96,9 +105,9 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/face_page\"},"
                    "{\"$ref\":\"#/components/schemas/attribute_values\"},"
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
-    {"role_name", "{\"enum\":[\"read\",\"write\",\"admin\",\"metrics\"]}"},
-    {"health_name", "{\"enum\":[\"alive\",\"ready\"]}"},
-    {"store_name", "{\"enum\":[\"writable\",\"full\"]}"},
+    {"role_name", "{\"type\":\"string\",\"enum\":[\"read\",\"write\",\"admin\",\"metrics\"]}"},
+    {"health_name", "{\"type\":\"string\",\"enum\":[\"alive\",\"ready\"]}"},
+    {"store_name", "{\"type\":\"string\",\"enum\":[\"writable\",\"full\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"
                 "{\"$ref\":\"#/components/schemas/edge\"},"
@@ -119,15 +128,16 @@ static const struct {
                "{\"$ref\":\"#/components/schemas/element\"},"
                "{\"$ref\":\"#/components/schemas/problem\"}]}"},
     {"of", "{\"type\":\"object\",\"propertyNames\":"
-           "{\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]},"
+           "{\"type\":\"string\",\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]},"
            "\"additionalProperties\":{\"$ref\":\"#/components/schemas/id\"},"
            "\"minProperties\":1,\"maxProperties\":1}"},
     {"of_many", "{\"type\":\"object\",\"propertyNames\":"
-                "{\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\"]},"
+                "{\"type\":\"string\",\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\"]},"
                 "\"additionalProperties\":{\"$ref\":\"#/components/schemas/ids_or_all\"},"
                 "\"minProperties\":1,\"maxProperties\":1}"},
-    {"ids_or_all", "{\"oneOf\":[{\"type\":\"array\",\"items\":"
-                   "{\"$ref\":\"#/components/schemas/id\"}},{\"const\":\"all\"}]}"},
+    {"ids_or_all",
+     "{\"oneOf\":[{\"type\":\"array\",\"items\":"
+     "{\"$ref\":\"#/components/schemas/id\"}},{\"type\":\"string\",\"const\":\"all\"}]}"},
     {"of_any", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of\"},"
                "{\"$ref\":\"#/components/schemas/of_many\"}]}"},
     {"question", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/relation_query\"},"
@@ -139,7 +149,8 @@ static const struct {
                  "{\"$ref\":\"#/components/schemas/intersections_query\"},"
                  "{\"$ref\":\"#/components/schemas/walk\"}]}"},
     {"measure_name",
-     "{\"enum\":[\"normal\",\"area\",\"angle_defect\",\"mean_curvature\",\"gaussian_curvature\","
+     "{\"type\":\"string\",\"enum\":[\"normal\",\"area\",\"angle_defect\",\"mean_curvature\","
+     "\"gaussian_curvature\","
      "\"angle\",\"length\",\"dihedral\",\"cotangent\",\"centroid\"],\"description\":\"Of vertices "
      "normal, area (the mixed one), angle_defect, mean_curvature, gaussian_curvature; of "
      "half-edges "
@@ -148,12 +159,13 @@ static const struct {
     {"measured_value",
      "{\"oneOf\":[{\"type\":\"number\"},{\"$ref\":\"#/components/schemas/point\"},"
      "{\"type\":\"null\"}]}"},
-    {"weights", "{\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
-    {"find_name", "{\"enum\":[\"halfedge\",\"edge\",\"faces\"]}"},
-    {"walk_name", "{\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\",\"shortest_path\","
+    {"weights", "{\"type\":\"string\",\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
+    {"find_name", "{\"type\":\"string\",\"enum\":[\"halfedge\",\"edge\",\"faces\"]}"},
+    {"walk_name", "{\"type\":\"string\",\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\","
+                  "\"shortest_path\","
                   "\"edge_loop\",\"edge_ring\"]}"},
-    {"step_name", "{\"enum\":[\"next\",\"prev\",\"twin\"]}"},
-    {"edit", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/edit_one\"},"
+    {"step_name", "{\"type\":\"string\",\"enum\":[\"next\",\"prev\",\"twin\"]}"},
+    {"edit", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/operation\"},"
              "{\"$ref\":\"#/components/schemas/edit_list\"}]}"},
 };
 
@@ -176,72 +188,108 @@ void api_schema_ref(api_out *out, const char *group, const char *name)
     api_out_object_end(out);
 }
 
+static void write_reference(api_out *out, const char *key, const char *name, size_t length)
+{
+    char reference[128];
+    snprintf(reference, sizeof reference, "#/components/schemas/%.*s", (int)length, name);
+    api_out_key_string(out, key, reference);
+}
+
+void api_schema_reference(api_out *out, const char *name)
+{
+    write_reference(out, "$ref", name, strlen(name));
+}
+
+void api_schema_discriminator_begin(api_out *out, const char *member)
+{
+    api_out_key(out, "discriminator");
+    api_out_object_begin(out);
+    api_out_key_string(out, "propertyName", member);
+    api_out_key(out, "mapping");
+    api_out_object_begin(out);
+}
+
+void api_schema_discriminator_add(api_out *out, const char *value, const char *name)
+{
+    write_reference(out, value, name, strlen(name));
+}
+
+void api_schema_discriminator_end(api_out *out)
+{
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
 void api_schema_ref_key(api_out *out, const char *key, const char *name)
 {
     api_out_key(out, key);
     api_schema_ref(out, "schemas", name);
 }
 
-static void write_base(api_out *out, const char *type, size_t length)
+/* The types of the tables that are no array and no other schema. */
+typedef struct base {
+    const char *name, *ref, *type, *format;
+    bool from_zero;
+} base;
+
+static const base bases[] = {
+    {"id", "id", NULL, NULL, false},
+    {"point", "point", NULL, NULL, false},
+    {"index", NULL, "integer", "int64", true},
+    {"count", NULL, "integer", "int64", true},
+    {"integer", NULL, "integer", "int64", false},
+    {"number", NULL, "number", NULL, false},
+    {"flag", NULL, "boolean", NULL, false},
+    {"text", NULL, "string", NULL, false},
+    {"time", NULL, "string", "date-time", false},
+};
+
+/* The members of the schema of a base. */
+static void write_base(api_out *out, const char *name, size_t length)
 {
-    static const struct {
-        const char *name, *json; /* `json` holds the members of the schema object */
-    } bases[] = {
-        {"id", "\"$ref\":\"#/components/schemas/id\""},
-        {"point", "\"$ref\":\"#/components/schemas/point\""},
-        {"index", "\"type\":\"integer\",\"minimum\":0"},
-        {"count", "\"type\":\"integer\",\"minimum\":0"},
-        {"integer", "\"type\":\"integer\""},
-        {"number", "\"type\":\"number\""},
-        {"flag", "\"type\":\"boolean\""},
-        {"text", "\"type\":\"string\""},
-        {"time", "\"type\":\"string\",\"format\":\"date-time\""},
-    };
-    for (size_t i = 0; i < sizeof bases / sizeof bases[0]; i++) {
-        if (strlen(bases[i].name) == length && memcmp(bases[i].name, type, length) == 0) {
-            char json[96];
-            int size = snprintf(json, sizeof json, "{%s}", bases[i].json);
-            api_out_raw(out, json, (size_t)size);
-            return;
-        }
+    size_t i = 0;
+    while (strlen(bases[i].name) != length || memcmp(bases[i].name, name, length) != 0) {
+        i++;
+        assert(i < sizeof bases / sizeof bases[0]);
     }
-    if (type[0] == '#') {
-        char name[64];
-        snprintf(name, sizeof name, "%.*s", (int)length - 1, type + 1);
-        api_schema_ref(out, "schemas", name);
+    if (bases[i].ref != NULL) {
+        api_schema_reference(out, bases[i].ref);
         return;
     }
-    assert(!"a type of the table");
+    api_out_key_string(out, "type", bases[i].type);
+    if (bases[i].format != NULL) {
+        api_out_key_string(out, "format", bases[i].format);
+    }
+    if (bases[i].from_zero) {
+        api_out_key_u64(out, "minimum", 0);
+    }
 }
 
 static void write_type(api_out *out, const char *type, size_t length, const char *doc)
 {
-    bool nullable = length > 0 && type[length - 1] == '?';
-    if (nullable || doc != NULL) {
-        api_out_object_begin(out);
-        if (doc != NULL) {
-            api_out_key_string(out, "description", doc);
-        }
-        api_out_key(out, nullable ? "anyOf" : "allOf");
+    api_out_object_begin(out);
+    if (doc != NULL) {
+        api_out_key_string(out, "description", doc);
+    }
+    if (type[length - 1] == '?') {
+        api_out_key(out, "anyOf");
         api_out_array_begin(out);
-        write_type(out, type, nullable ? length - 1 : length, NULL);
-        if (nullable) {
-            api_out_raw(out, "{\"type\":\"null\"}", 15);
-        }
+        write_type(out, type, length - 1, NULL);
+        api_out_raw(out, "{\"type\":\"null\"}", 15);
         api_out_array_end(out);
-        api_out_object_end(out);
     } else if (type[0] == '*' || type[0] == '+') {
-        api_out_object_begin(out);
         api_out_key_string(out, "type", "array");
         if (type[0] == '+') {
             api_out_key_u64(out, "minItems", 1);
         }
         api_out_key(out, "items");
         write_type(out, type + 1, length - 1, NULL);
-        api_out_object_end(out);
+    } else if (type[0] == '#') {
+        write_reference(out, "$ref", type + 1, length - 1);
     } else {
         write_base(out, type, length);
     }
+    api_out_object_end(out);
 }
 
 /* Writes the schema whose rows begin at `rows`; returns their number. */
@@ -309,6 +357,7 @@ static void write_adjacency_schema(api_out *out, const he_relation *relation)
     api_schema_ref_key(out, "of", name);
     api_out_key(out, "relation");
     api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
     api_out_key_string(out, "const", relation->name);
     api_out_object_end(out);
     snprintf(text, sizeof text, "Of %s.", he_kind_plural(relation->gives));

@@ -11,6 +11,14 @@ void api_schemas_write(api_out *out);
  * "schemas". */
 void api_schema_ref(api_out *out, const char *group, const char *name);
 void api_schema_ref_key(api_out *out, const char *key, const char *name);
+/* Writes only the member "$ref" of the group "schemas", into the object that is open. */
+void api_schema_reference(api_out *out, const char *name);
+
+/* Write the discriminator of a union: one call of _add for each value of `member`, with the name of
+ * the schema it stands for. */
+void api_schema_discriminator_begin(api_out *out, const char *member);
+void api_schema_discriminator_add(api_out *out, const char *value, const char *name);
+void api_schema_discriminator_end(api_out *out);
 /* Writes a list of strings, which ends in NULL, under a key such as "enum". */
 void api_schema_choices(api_out *out, const char *key, const char *const *choices);
 

@@ -23,7 +23,7 @@ static void write_param(api_out *out, const he_shape_param *param)
 
 static void write_shape(api_out *out, const he_shape *shape)
 {
-    static const char name[] = "{\"type\":[\"string\",\"null\"]}";
+    static const char name[] = "{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}";
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
     api_out_key_string(out, "description", shape->doc);
@@ -31,6 +31,7 @@ static void write_shape(api_out *out, const he_shape *shape)
     api_out_object_begin(out);
     api_out_key(out, "shape");
     api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
     api_out_key_string(out, "const", shape->name);
     api_out_object_end(out);
     api_out_key(out, "name");

@@ -1,0 +1,59 @@
+// plain.mjs FILE - does an OpenAPI document keep to what generators of clients understand? Prints the
+// place of each fault; the exit is 1 where there is one.
+
+import { readFileSync } from 'node:fs';
+
+const document = JSON.parse(readFileSync(process.argv[2], 'utf8'));
+const faults = [];
+const isSchema = (path) => /\/(schema|items|additionalProperties|x-item-schema)$|\/(schemas|properties)\/[^/]*$|\/(oneOf|anyOf|allOf)\/\d+$/.test(path);
+const only = (value, name) => Object.keys(value).every((key) => key === name);
+
+function checkSchema(schema, path) {
+    const say = (what) => faults.push(`${path}: ${what}`);
+    if (('enum' in schema || 'const' in schema) && !('type' in schema)) {
+        say('an enum or const without a type');
+    }
+    if (Array.isArray(schema.type)) {
+        say('a list of types');
+    }
+    if (schema.allOf?.length === 1) {
+        say('an allOf of one');
+    }
+    if ([...(schema.anyOf ?? []), ...(schema.oneOf ?? [])].some((part) => only(part, 'required'))) {
+        say('a union of requirements');
+    }
+    if (schema.type === 'integer' && !('format' in schema) && !(schema.maximum < 2 ** 31)) {
+        say('an integer that may pass 2^31 without a format');
+    }
+}
+
+function walk(value, path) {
+    if (typeof value !== 'object' || value === null || /\/(example|const)$/.test(path)) {
+        return;
+    }
+    if (isSchema(path) && !Array.isArray(value)) {
+        checkSchema(value, path);
+    }
+    for (const [key, child] of Object.entries(value)) {
+        walk(child, `${path}/${key.replaceAll('~', '~0').replaceAll('/', '~1')}`);
+    }
+}
+
+walk(document, '');
+const tags = new Set(document.tags?.map(({ name }) => name));
+for (const [path, item] of Object.entries(document.paths)) {
+    for (const [method, operation] of Object.entries(item)) {
+        if (method !== 'parameters' && !operation.tags?.every((tag) => tags.has(tag))) {
+            faults.push(`/paths/${path}/${method}: no tag, or one that is not described`);
+        }
+        for (const { content = {} } of Object.values(operation.responses ?? {})) {
+            for (const [media, { schema, 'x-item-schema': line }] of Object.entries(content)) {
+                if (schema === undefined && line === undefined) {
+                    faults.push(`/paths/${path}/${method}: ${media} without a schema`);
+                }
+            }
+        }
+    }
+}
+faults.forEach((fault) => console.log(fault));
+process.exitCode = faults.length > 0 ? 1 : 0;

@@ -1,0 +1,12 @@
+/* tags.h - the groups in which the OpenAPI document shows the routes. */
+#ifndef HE_API_DESCRIBE_TAGS_H
+#define HE_API_DESCRIBE_TAGS_H
+
+#include "api/json/json_out.h"
+
+/* The group of the route with this path; a literal. */
+const char *api_tag_of(const char *path);
+/* Writes the member "tags": each group with a sentence about it. */
+void api_tags_write(api_out *out);
+
+#endif

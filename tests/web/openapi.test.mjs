@@ -1,0 +1,79 @@
+// openapi.test.mjs - the OpenAPI document is written in what generators of clients understand, and the
+// paths that a newcomer tries first lead somewhere.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+import { startDaemon } from './daemon.mjs';
+
+const plain = fileURLToPath(new URL('../../.ci/openapi/plain.mjs', import.meta.url));
+
+// What each lint says of the document after `change`.
+async function faultsOf(folder, document, change) {
+    const copy = structuredClone(document);
+    change(copy);
+    const file = path.join(folder, 'openapi.json');
+    await writeFile(file, JSON.stringify(copy));
+    const { status, stdout } = spawnSync(process.execPath, [plain, file], { encoding: 'utf8' });
+    assert.equal(status, stdout === '' ? 0 : 1);
+    return stdout;
+}
+
+const planted = [
+    ['an enum or const without a type', ({ schemas }) => delete schemas.domain.type],
+    ['a list of types', ({ schemas }) => (schemas.label.type = ['string', 'null'])],
+    ['an allOf of one', ({ schemas }) => (schemas.created.allOf.length = 1)],
+    ['a union of requirements', ({ schemas }) => (schemas.counts.anyOf = [{ required: ['edges'] }])],
+    ['without a format', ({ schemas }) => delete schemas.id.format],
+];
+
+test('the document has none of the faults that the lint finds, and the lint finds each', async (t) => {
+    const { url } = await startDaemon(t);
+    const document = await (await fetch(`${url}/v1/openapi.json`)).json();
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-openapi-'));
+    t.after(() => rm(folder, { recursive: true }));
+    assert.equal(await faultsOf(folder, document, () => {}), '');
+    for (const [fault, plant] of planted) {
+        const said = await faultsOf(folder, document, ({ components }) => plant(components));
+        assert.match(said, new RegExp(fault), fault);
+    }
+    const untag = (copy) => delete copy.paths['/v1/meshes'].get.tags;
+    assert.match(await faultsOf(folder, document, untag), /no tag/);
+    const strip = (copy) => {
+        delete copy.paths['/v1/meshes'].get.responses[200].content['application/json'].schema;
+    };
+    assert.match(await faultsOf(folder, document, strip), /without a schema/);
+});
+
+test('each operation of a union is told apart by its discriminator', async (t) => {
+    const { url } = await startDaemon(t);
+    const { components } = await (await fetch(`${url}/v1/openapi.json`)).json();
+    const { oneOf, discriminator } = components.schemas.operation;
+    const listed = await (await fetch(`${url}/v1/operations`)).json();
+    assert.equal(discriminator.propertyName, 'op');
+    assert.deepEqual(Object.keys(discriminator.mapping), listed.operations.map(({ name }) => name));
+    assert.deepEqual(Object.values(discriminator.mapping), oneOf.map(({ $ref }) => $ref));
+    for (const [name, reference] of Object.entries(discriminator.mapping)) {
+        const schema = components.schemas[reference.slice(reference.lastIndexOf('/') + 1)];
+        assert.equal(schema.properties.op.const, name);
+    }
+});
+
+test('the first paths that one tries lead somewhere', async (t) => {
+    const { url } = await startDaemon(t);
+    const index = await (await fetch(`${url}/v1`)).json();
+    assert.equal(index.name, 'hedged');
+    for (const name of ['meshes', 'jobs', 'operations', 'openapi', 'docs']) {
+        assert.equal((await fetch(url + index[name])).status, 200, name);
+    }
+    const manual = await fetch(`${url}/docs/`);
+    assert.equal(manual.url, `${url}/docs`);
+    assert.match(await manual.text(), /<title>hedge/);
+    const refused = await (await fetch(`${url}/v1/mesh`)).json();
+    assert.match(refused.detail, /is none of meshes, jobs/);
+});
