@@ -101,7 +101,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space container fresh \
+        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
         screenshot \
         install uninstall clean ALWAYS
 
@@ -157,6 +157,7 @@ NEEDS.bench-slow   := build bench-http bench-slow
 NEEDS.bench-flood  := build bench-slow
 NEEDS.bench-large  := build bench-http
 NEEDS.bench-space  := build
+NEEDS.report        = node $(foreach name,$(REPORTS),$(NEEDS.$(name)))
 NEEDS.screenshot   := build web browser
 NEEDS.container    := container
 NEEDS.fresh        := fresh
@@ -451,6 +452,16 @@ bench-flood: $(HEDGED) $(BUILD)/tests/bench/http/paced | $(INSTALLED) ## one tok
 
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
+
+# Each benchmark that REPORTS names runs alone, and what it printed is written down in
+# tests/bench/README.md. RUNS, BENCH, SCALE, MINUTES and LOAD reach it.
+REPORTS  ?= bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space soak
+REPORTED  = $(strip make $(1) $(foreach v,BENCH RUNS SCALE MINUTES LOAD,$(if $(filter command%,$(origin $(v))),$(v)=$($(v)))))
+report: | $(INSTALLED) ## runs REPORTS="bench soak" and writes what they print into tests/bench/README.md
+	@mkdir -p build
+	@$(foreach name,$(REPORTS),echo "$(call REPORTED,$(name))" && \
+	    $(MAKE) --no-print-directory $(name) >build/$(name).txt && \
+	    node tests/bench/report.mjs $(name) "$(call REPORTED,$(name))" <build/$(name).txt &&) true
 
 $(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
 	@mkdir -p $(@D)

@@ -1,5 +1,5 @@
-// readme.test.mjs - what README.md tells its readers to paste works, with the daemon's address in
-// place of the usual one, and prints what it says.
+// readme.test.mjs - what README.md and api/GUIDE.md tell their readers to paste works, with the
+// daemon's address in place of the usual one, and prints what they say.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -11,14 +11,16 @@ import { promisify } from 'node:util';
 
 import { startDaemon } from './daemon.mjs';
 
-const readme = await readFile(new URL('../../README.md', import.meta.url), 'utf8');
+const read = (name) => readFile(new URL(`../../${name}`, import.meta.url), 'utf8');
+const readme = await read('README.md');
+const guide = await read('api/GUIDE.md');
 
 // What the lines of a block may print in all: some thirty lines of a terminal.
 const MOST_PRINTED = 3000;
 
 // The code blocks of a language, with another address.
 function blocks(language, url) {
-    const found = readme.matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\`$`, 'gms'));
+    const found = (readme + guide).matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\`$`, 'gms'));
     return [...found].map(([, code]) => code.replaceAll('http://127.0.0.1:8080', url));
 }
 
@@ -48,32 +50,73 @@ function promised(code, mark) {
     return text;
 }
 
-test('the curl lines work as pasted', async (t) => {
-    const { url } = await startDaemon(t);
-    const block = shellWith('halfedges/0', url);
+// The commands of a block, each with the beginning of the answer that the comment after it promises.
+function commandsOf(block) {
     const lines = block.replaceAll('\\\n', '').split('\n');
-    const commands = lines.filter((line) => line !== '' && !line.startsWith('#'));
-    assert.equal(commands.length, 7);
+    const commands = [];
+    for (const line of lines.filter((text) => text !== '')) {
+        if (line.startsWith('curl ')) {
+            commands.push({ line, promised: '' });
+        } else if (line.startsWith('# {')) {
+            commands.at(-1).promised = line.slice(2).replace(/\.\.\.$/, '');
+        }
+    }
+    return commands;
+}
+
+// What each command answers, which begins as the page says.
+async function answersOf(block) {
     const answers = [];
-    for (const command of commands) {
-        assert.match(command, /^curl /);
-        const printed = await run('sh', ['-c', `${command} -sS --fail-with-body`]);
+    for (const { line, promised } of commandsOf(block)) {
+        const printed = await run('sh', ['-c', `${line} -sS --fail-with-body`]);
         assert.match(printed, /\n$/);
+        assert.ok(printed.startsWith(promised), `${line}: ${printed}`);
         answers.push(JSON.parse(printed));
     }
-    const [made, halfedge, faces, edited, undone, history, before] = answers;
-    assert.equal(made.counts.faces, 2);
+    return answers;
+}
+
+test('the quick start answers what it shows, also after the daemon was killed', async (t) => {
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    const store = ['--store', `sqlite:${folder}/store`];
+    const { url, stop } = await startDaemon(t, ...store);
+    const answers = await answersOf(shellWith('halfedges/0', url));
+    assert.equal(answers.length, 5);
+    const [, halfedge, , { created, deleted }] = answers;
     assert.deepEqual(Object.keys(halfedge).slice(1, 8), [
         ...['twin', 'next', 'prev', 'origin', 'target', 'edge', 'face'],
     ]);
-    assert.deepEqual(faces.ids.sort(), [0, 1]);
-    const { created, deleted } = edited;
     const more = (kind) => created[kind].length - deleted[kind].length;
     assert.deepEqual(['vertices', 'edges', 'faces'].map(more), [1, 3, 2]);
+    await stop('SIGKILL');
+    const again = await startDaemon(t, ...store);
+    const [redone] = await answersOf(shellWith('/redo', again.url));
+    assert.equal(redone.redo, 0);
+});
+
+test('each answer that the README shows is tested', () => {
+    const shown = readme.match(/^# \{/gm).length;
+    const tested = blocks('sh', '').flatMap(commandsOf).filter(({ promised }) => promised !== '');
+    assert.equal(tested.length, shown);
+});
+
+test('the lines about shapes, files, history and questions work as pasted', async (t) => {
+    const { url } = await startDaemon(t);
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    const files = await runCurls(`cd ${folder}\n${shellWith('ball-again', url)}`);
+    const [ball, again] = parsed(files);
+    assert.equal(again.counts.faces, ball.counts.faces);
+    const lines = await runCurls(shellWith('"edge":2}', url));
+    const [, , undone, history, before] = parsed(lines);
     assert.equal(undone.redo, 1);
     assert.deepEqual(history.entries.map((entry) => entry.action), ['undo', 'edit']);
     assert.equal(before.revision, 2);
-    assert.equal(before.items.length, made.counts.vertices + 1);
+    assert.equal(before.items.length, 9);
+    const [{ results }] = parsed(await runCurls(shellWith('"queries"', url)));
+    assert.equal(results.length, 4);
+    assert.equal(results.filter((result) => 'problem' in result).length, 0);
 });
 
 test('the lines about repairs work as pasted', async (t) => {
@@ -124,18 +167,13 @@ test('no line floods a terminal, ends without a line end or changes a sample', a
     }
 });
 
-test('the lines about codings work as pasted', async (t) => {
+test('the lines about compressed bodies work as pasted', async (t) => {
     const { url } = await startDaemon(t);
     const block = shellWith('Content-Encoding: gzip', url);
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
     t.after(() => rm(folder, { recursive: true }));
-    await fetch(`${url}/v1/meshes/kite`, {
-        method: 'PUT',
-        headers: { 'Content-Type': 'application/json' },
-        body: '{"shape":"cube"}',
-    });
-    const printed = await run('sh', ['-ec', `cd ${folder}\n${block}`]);
-    assert.equal(JSON.parse(printed).counts.faces, 6);
+    const [made, sent] = parsed(await runCurls(`cd ${folder}\n${block}`));
+    assert.equal(sent.counts.faces, made.counts.faces);
 });
 
 test('the Python lines work as pasted', async (t) => {
@@ -153,8 +191,12 @@ test('the JavaScript lines work as pasted', async (t) => {
     assert.equal(printed.trim(), promised(code, '//'));
 });
 
-test('each file and make target it names is there', async () => {
-    const makefile = await readFile(new URL('../../Makefile', import.meta.url), 'utf8');
+// Headings as a link names them: "Live updates" is #live-updates.
+const anchorsOf = (text) =>
+    [...text.matchAll(/^## (.*)$/gm)].map(([, title]) => title.toLowerCase().replaceAll(' ', '-'));
+
+test('each file, heading and make target they name is there', async () => {
+    const makefile = await read('Makefile');
     for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
         assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
     }
@@ -165,7 +207,18 @@ test('each file and make target it names is there', async () => {
     for (const [, target] of makefile.matchAll(/^([a-z-]+):.*##/gm)) {
         assert.ok(named.has(target === 'all' ? 'make' : target) || parts.includes(target), target);
     }
-    for (const [, link] of readme.matchAll(/\]\(([^):]+)\)/g)) {
-        await readFile(new URL(`../../${link}`, import.meta.url));
+    for (const [text, folder] of [
+        [readme, ''],
+        [guide, 'api/'],
+        [await read('tests/bench/README.md'), 'tests/bench/'],
+    ]) {
+        for (const [, file, , anchor] of text.matchAll(/\]\(([^):#]*)(#([^)]*))?\)/g)) {
+            const linked = file === '' ? text : await read(folder + file);
+            assert.ok(anchor === undefined || anchorsOf(linked).includes(anchor), anchor);
+        }
     }
+});
+
+test('the README is a page of at most 140 lines', () => {
+    assert.ok(readme.split('\n').length - 1 <= 140);
 });
