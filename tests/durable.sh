@@ -37,7 +37,7 @@ prove backup 1
 prove restore 2
 prove golden 1
 prove cut 1 101
-prove flip 1 101
+prove flip 1 1009
 if unshare --mount true 2>/dev/null; then
     prove full 1
 fi
