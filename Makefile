@@ -27,12 +27,15 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
 # Line tables are all of it that a sanitizer's report names.
-DEBUG    := $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
+DEBUG    ?= $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
 # Lazy: evaluated when a program is linked, after .ci/deps has run.
 DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
+# Some two hundred programs hold the whole of the daemon each, in every configuration: lld needs half of
+# the time. The daemon is linked by the compiler's own.
+TEST_LD    := -fuse-ld=lld
 
 # Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.
 # What -O3 inlines makes gcc guess wrongly about values set through a pointer; lint's analyzer looks
@@ -71,22 +74,28 @@ MAIN_C     := server/boot/main.c server/version.c
 SERVER_C   := $(sort $(filter-out $(MAIN_C),$(shell find server -name '*.c')))
 SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
-SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C),$(wildcard tests/*.c tests/oracle/*.c \
-                $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
+# What only random edits are checked by, which the threaded tests do without.
+ORACLE_C   := $(sort $(wildcard tests/oracle/*.c tests/unit/scenarios_*.c) \
+                $(filter-out tests/model/test_% $(patsubst %,tests/model/%.c,corpus marks parts shapes), \
+                    $(wildcard tests/model/*.c)))
+SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C) $(ORACLE_C), \
+                $(wildcard tests/*.c $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
 BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
-# What all targets are linked with; libFuzzer brings its own main program.
+# What all targets are linked with beside the libraries below the server; libFuzzer brings its own main
+# program.
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
-                $(wildcard tests/fuzz/*.c)))
+                $(wildcard tests/fuzz/*.c)) tests/codings.c tests/pace.c tests/traffic.c \
+                tests/api/request.c server/http/syntax/http_fault.c server/http/syntax/http_syntax.c)
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 FAULTS_C   := tests/durable/inject/faults.c
 DAMAGE_C   := $(sort $(wildcard tests/durable/damage/*.c))
 HEADERS    := $(sort $(shell find core api server -name '*.h') $(wildcard tests/*.h tests/*/*.h tests/durable/damage/*.h \
                 tests/bench/side/*.h tests/bench/ours/*.h))
-ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard $(MAIN_C)) $(PROGRAM_C) $(SUPPORT_C) \
+ALL_C      := $(KERNEL_C) $(STORE_C) $(API_C) $(SERVER_C) $(wildcard $(MAIN_C)) $(PROGRAM_C) $(SUPPORT_C) $(ORACLE_C) \
               $(wildcard tests/fuzz/*.c) $(BENCH_C) $(HTTP_C) $(FAULTS_C) $(DAMAGE_C)
 
 LIBRARIES  := $(patsubst %,$(BUILD)/lib%.a,server api store kernel)
@@ -191,11 +200,11 @@ run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
 
 # --- compiling -----------------------------------------------------------------------------
 
-# A test's own lines run a few times: to optimize them as the daemon's takes longer than it saves. The
-# oracle and the models beside it run millions of times. Without the fortified functions, which at -O1
+# A test's own lines run a few times: to optimize them takes longer than it saves. The oracle and the
+# models beside it run millions of times. Without the fortified functions, which want optimization, and
 # would call libc's __recv_chk past the recv() of server/http/http_recv.c that test_srv_syntax tries.
 PLAIN := $(patsubst %,$(BUILD)/obj/tests/%/test_%.o,unit api e2e)
-$(PLAIN): private CFLAGS += $(if $(filter release,$(CONFIG)),-O1 -g1 -U_FORTIFY_SOURCE)
+$(PLAIN): private CFLAGS += -O0 $(if $(filter release,$(CONFIG)),-g1 -U_FORTIFY_SOURCE)
 
 $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
@@ -209,6 +218,7 @@ $(BUILD)/libstore.a: $(call object,$(STORE_C))
 $(BUILD)/libapi.a: $(call object,$(API_C))
 $(BUILD)/libserver.a: $(call object,$(SERVER_C))
 $(BUILD)/libsupport.a: $(call object,$(SUPPORT_C))
+$(BUILD)/liboracle.a: $(call object,$(ORACLE_C))
 $(BUILD)/%.a:
 	@mkdir -p $(@D)
 	@rm -f $@
@@ -228,8 +238,9 @@ $(HEDGED): $(call object,$(MAIN_C)) $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
-# A test that looks at the calls of a room below has the linker give it these calls.
-wrap = $(patsubst %,-Wl$(comma)--wrap=%,$(1))
+# A test that looks at the calls of a room below has the linker give it these calls. lld would give it
+# those within one source as well.
+wrap = -fuse-ld=bfd $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
 $(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
 $(BUILD)/tests/api/test_limits: private LDFLAGS += $(call wrap,st_clock_micros)
@@ -251,16 +262,19 @@ $(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_s
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
     $(call wrap,pthread_mutex_lock shutdown)
 
+ORACLED    := $(filter-out $(BUILD)/tests/unit/test_srv_%, \
+                $(filter $(BUILD)/tests/model/% $(BUILD)/tests/unit/%,$(PROGRAMS)))
+$(ORACLED): $(BUILD)/liboracle.a
 $(PROGRAMS): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/libsupport.a $(LIBRARIES) | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+	$(Q)$(CC) $(TEST_LD) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
-$(FUZZERS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) $(BUILD)/libsupport.a \
-            $(LIBRARIES) | $(INSTALLED)
+$(FUZZERS): $(BUILD)/%: $(BUILD)/obj/%.o $(call object,$(FUZZ_PARTS)) \
+            $(filter-out %/libserver.a,$(LIBRARIES)) | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
+	$(Q)$(CC) $(TEST_LD) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
 -include $(patsubst %.o,%.d,$(call object,$(ALL_C)))
 
