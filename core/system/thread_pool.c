@@ -32,7 +32,7 @@ struct st_pool {
     size_t capacity; /* capacity of each queue */
     queue queues[ST_SHARES];
     size_t most_long;     /* most tasks of LONG and JOB that may run at once */
-    size_t idle;          /* threads that wait for `wake`, also one that was woken but does not run yet */
+    size_t idle;          /* threads that wait for `wake` or were woken and do not run yet */
     double clock;         /* stamp of the task that was begun last */
     double stamps[FLOWS]; /* stamp of the last task of each flow */
     uint64_t submitted;
@@ -127,9 +127,10 @@ static bool is_empty(const st_pool *pool)
     return count == 0;
 }
 
-/* Unlocks the pool, and wakes a thread if it would find something to do. A thread is woken only
- * then, and without the lock, which it takes at once: for a task of microseconds, waking threads in
- * vain costs more than the task. Who has ended a task looks for another without being woken. */
+/* Unlocks the pool, and wakes a thread if there is a task that it can begin: waking threads in vain
+ * costs more than a task of some microseconds. The woken thread needs the lock at once, so the
+ * signal is sent after the lock is released. A thread that has ended a task looks for another
+ * without a signal. */
 static void unlock(st_pool *pool)
 {
     const bool wakes = pool->idle > 0 && next_share(pool) != ST_SHARES;
