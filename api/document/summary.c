@@ -210,8 +210,11 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
     if (api_at_revision_wanted(x, &revision) || api_not_modified(x, "summary")) {
         return;
     }
-    if (x->head && x->codings.best == API_IDENTITY) {
-        /* The length is unknown. */
+    if (x->head && x->codings.allowed[API_IDENTITY]) {
+        /* The length is unknown, and with it whether GET would compress the answer. The answer to
+         * HEAD is that without a coding, whose tag is as good as the coded one's in every
+         * precondition. */
+        x->codings.best = API_IDENTITY;
         api_answer_stream(x, 200, "application/json", -1, read_nothing, NULL, NULL);
     }
 }

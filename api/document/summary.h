@@ -38,8 +38,8 @@ void api_write_brief(api_out *out, const st_card *card);
 void api_summary_get(api_exchange *x);
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
 /* Handles GET and HEAD of a mesh that is not in memory. Answers 304, and answers HEAD if the client
- * accepts no content coding (otherwise the tag would depend on the length of the body). HEAD does
- * not notice damaged content. */
+ * accepts an answer without a content coding: then HEAD tells of that one, even where GET
+ * compresses a long summary. HEAD does not notice damaged content. */
 void api_summary_cold(api_exchange *x, st_cold *cold);
 /* Called by the handler of a write to answer with the summary. */
 void api_answer_summary(api_exchange *x);

@@ -197,6 +197,15 @@ static void head_of_a_cold_mesh_loads_nothing(void **state)
     api_bench *b = restart(begin());
     expect_head(b, "identity", 0);
     assert_int_equal(loads("m"), 1);
+    b = restart(b);
+    expect_head(b, "gzip, zstd, br", 1);
+    b = restart(b);
+    expect_head(b, "*", 2);
+    /* Nothing but a coded answer is taken, of which the length is needed. */
+    b = restart(b);
+    const char *const coded[] = {"Accept-Encoding", "gzip, identity;q=0", NULL};
+    bench_done(bench_expect(200, bench_send(b, "HEAD", "/v1/meshes/m", coded, NULL)));
+    assert_int_equal(loads("m"), 4);
     expect_code(b, 404, "no_such_mesh", "HEAD", "/v1/meshes/nosuch", NULL);
     end(b);
 }
