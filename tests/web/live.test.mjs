@@ -157,6 +157,20 @@ test('a stream that is cut is said, and goes on where it was', async (t) => {
     assert.equal(await page.getByRole('alert').count(), 0);
 });
 
+test('an edit before a stream that opens late is shown', async (t) => {
+    const { daemon, page } = await openMesh(t, CUBE);
+    const { id: other } = await post(daemon, '', GRID);
+    const { asked, release } = await hold(page, `**/meshes/${other}/events*`);
+    await page.getByRole('button', { name: 'Refresh' }).click();
+    await page.locator(`#meshes button[data-mesh="${other}"]`).click();
+    await asked;
+    // The page stops waiting for the stream, and shows the mesh.
+    await waitForFrame(page, { mesh: other, revision: 1 });
+    await edit(daemon, other, { op: 'face_poke', face: 0 });
+    release();
+    await waitForFrame(page, { mesh: other, revision: 2 });
+});
+
 test('a mesh that is deleted while it is open is said, and stays to be seen', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     await goTo(page, 'face', 0);

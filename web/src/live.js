@@ -29,10 +29,12 @@ export class Live {
     #last = null; // the id of the last event
     #delay = SOON;
     #timer = 0;
+    #isLate = false; // the page did not wait for the stream
     #isClosed = false;
 
     // `on.event(name, data)` is called for each event, `on.state(state)` after a change of state,
-    // `on.back()` when a lost stream continues: events may have been missed.
+    // `on.back()` when a lost stream continues, or the first one opens after the page has stopped waiting
+    // for it: events may have been missed.
     constructor(mesh, on) {
         this.#mesh = mesh;
         this.#on = on;
@@ -41,7 +43,10 @@ export class Live {
     // Opens the stream; resolves when it is open, or when there is none for now.
     open() {
         return new Promise((resolve) => {
-            const timer = setTimeout(resolve, PATIENCE);
+            const timer = setTimeout(() => {
+                this.#isLate = true;
+                resolve();
+            }, PATIENCE);
             this.#listen(() => {
                 clearTimeout(timer);
                 resolve();
@@ -80,9 +85,10 @@ export class Live {
     }
 
     #opened() {
-        const wasLost = this.state === 'lost';
+        const hasMissed = this.state === 'lost' || this.#isLate;
+        this.#isLate = false;
         this.#setState('on');
-        if (wasLost) {
+        if (hasMissed) {
             this.#on.back();
         }
     }

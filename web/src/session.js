@@ -26,8 +26,8 @@ export class Session {
     #onError;
     #withBoundary = true;
     #opening = null;
-    // About the open mesh: {live, latest, lineage, materials}; `latest` is the newest revision
-    // known.
+    // About the open mesh: {live, latest, hasMissed, lineage, materials}; `latest` is the newest
+    // revision known, `hasMissed` says that events may have been missed.
     #followed = null;
     #running = null; // promise of the running fetch
     #wanted = { once: false, whole: false };
@@ -80,6 +80,7 @@ export class Session {
             this.selection.reset(mesh);
             this.#onChange('mesh');
             this.#heardOf(followed, 0);
+            this.#catchUp(followed);
         } catch (error) {
             followed.live.close();
             if (error.name !== 'AbortError') {
@@ -94,7 +95,7 @@ export class Session {
     }
 
     #follow(mesh) {
-        const followed = { latest: 0, lineage: new Lineage(), materials: new Materials(mesh) };
+        const followed = { latest: 0, hasMissed: false, lineage: new Lineage(), materials: new Materials(mesh) };
         followed.live = new Live(mesh, {
             event: (name, data) => this.#receive(followed, name, data),
             state: (state) => {
@@ -103,11 +104,21 @@ export class Session {
                 }
             },
             back: () => {
-                this.#fetchSoon(followed, { once: true });
-                this.#readMaterials(followed);
+                followed.hasMissed = true;
+                this.#catchUp(followed);
             },
         });
         return followed;
+    }
+
+    // Asks for what events may not have told. While a mesh is still being read, this waits until it is
+    // shown.
+    #catchUp(followed) {
+        if (followed.hasMissed && followed === this.#followed) {
+            followed.hasMissed = false;
+            this.#fetchSoon(followed, { once: true });
+            this.#readMaterials(followed);
+        }
     }
 
     #receive(followed, name, data) {
