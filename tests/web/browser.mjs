@@ -16,8 +16,26 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-// What a page does not show within so many milliseconds fails: a guard against what never comes.
-export const LONGEST = 300000;
+// How often a page answers, at least a second apart, until its test fails: a guard against what never
+// comes. It counts answers and not seconds, so that a machine that is slow or stands still for a while
+// fails no test. What hangs without an answer is ended by the runner of the tests.
+const MOST_ANSWERS = 600;
+const APART = 1000;
+
+const pause = () => new Promise((resolve) => setTimeout(resolve, APART).unref());
+
+// Close a page that lives for too long: whoever waits for it then hears why.
+async function guard(page) {
+    for (let answers = 0; answers < MOST_ANSWERS; answers++) {
+        await pause();
+        // A page that is just navigating fails, which is an answer too.
+        await page.evaluate(() => {}).catch(() => {});
+        if (page.isClosed()) {
+            return;
+        }
+    }
+    await page.context().close({ reason: `the page answered ${MOST_ANSWERS} times, and still waits` });
+}
 
 // The graphics of the page are drawn by software: what puts its layers together need not be.
 const FLAGS = [
@@ -35,6 +53,7 @@ const FLAGS = [
 
 export function launch() {
     return chromium.launch({
+        timeout: 0, // it starts, or ends by itself
         executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
         args: FLAGS,
     });
@@ -54,7 +73,8 @@ export async function openPageIn(
         ...options,
     });
     const page = await context.newPage();
-    page.setDefaultTimeout(LONGEST);
+    page.setDefaultTimeout(0);
+    guard(page);
     const wrong = [];
     page.on('pageerror', (error) => wrong.push(`page error: ${error.stack}`));
     page.on('console', (message) => {
@@ -72,6 +92,7 @@ export async function openPageIn(
             console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`);
         });
     });
+    await page.addInitScript(keepTold);
     if (init) {
         await page.addInitScript(init);
     }
@@ -79,6 +100,26 @@ export async function openPageIn(
     t.after(() => assert.deepEqual(wrong, []));
     await page.goto(daemon.url + path);
     return page;
+}
+
+// In the page: what messages of success said, which disappear after some seconds.
+function keepTold() {
+    window.told = [];
+    new MutationObserver((changes) => {
+        for (const node of changes.flatMap(({ addedNodes }) => [...addedNodes])) {
+            if (node.role === 'status') {
+                window.told.push(node.textContent);
+            }
+        }
+    }).observe(document, { childList: true, subtree: true });
+}
+
+// Wait until the page has told of a success, whether or not it still shows that.
+export function waitForTold(page, pattern) {
+    return page.waitForFunction(
+        ([source, flags]) => window.told.some((text) => new RegExp(source, flags).test(text)),
+        [pattern.source, pattern.flags],
+    );
 }
 
 // Wait for a frame of a revision with a selection such as 'face:3', and what faces looked like at a

@@ -3,10 +3,6 @@
 import { EventEmitter, once } from 'node:events';
 import { createServer, request as send } from 'node:http';
 
-import { LONGEST } from './browser.mjs';
-
-const soon = (emitter, name) => once(emitter, name, { signal: AbortSignal.timeout(LONGEST) });
-
 // {url, next(), closers, stop()}: next() is the next answer of levels the page asks for, of which
 // it has had nothing yet:
 //
@@ -32,7 +28,7 @@ export async function holdLevels(t, daemon) {
         ...daemon,
         url: `http://127.0.0.1:${server.address().port}`,
         async next() {
-            const [held] = await soon(asked, 'levels');
+            const [held] = await once(asked, 'levels');
             return held;
         },
     };
@@ -49,7 +45,7 @@ async function hold(url, answer) {
         },
         end: () => answer.end(),
         breakOff: () => answer.destroy(),
-        closed: () => answer.destroyed || soon(answer, 'close'),
+        closed: () => answer.destroyed || once(answer, 'close'),
     };
 }
 

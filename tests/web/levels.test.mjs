@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { checkAccessible, isSurface, readCanvas, waitForFrame } from './browser.mjs';
+import { checkAccessible, isSurface, readCanvas, waitForFrame, waitForTold } from './browser.mjs';
 import { cuttable } from './cuttable.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { holdLevels } from './held.mjs';
@@ -150,7 +150,7 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
     await post(daemon, `/${sphere}/edits`, { op: 'face_poke', face: 0 });
     await waitForFrame(page, { revision: 2 });
     await waitForMesh(page);
-    await page.getByRole('status').filter({ hasText: 'Back to the mesh' }).waitFor();
+    await waitForTold(page, /Back to the mesh/);
 
     await levels(page).click();
     await waitForFaces(page, FACES + 2);
@@ -276,7 +276,7 @@ test('a mesh that changes while its levels come is shown as it is now', async (t
     await sendTo(page, answer, 0.5);
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
     await waitForFrame(page, { mesh, revision: 2 });
-    await page.getByRole('status').filter({ hasText: 'Back to the mesh' }).waitFor();
+    await waitForTold(page, /Back to the mesh/);
     await checkGivenUp(page);
     await answer.closed();
     assert.equal(await page.getByRole('alert').count(), 0);
@@ -303,7 +303,7 @@ test('levels of another revision than the one that is shown are not', async (t) 
         await route.fulfill({ body });
     });
     await levels(page).click();
-    await page.getByRole('status').filter({ hasText: 'Back to the mesh' }).waitFor();
+    await waitForTold(page, /Back to the mesh/);
     await checkGivenUp(page);
     await waitForFrame(page, { mesh, revision: 1 });
     assert.equal(await page.getByRole('alert').count(), 0);

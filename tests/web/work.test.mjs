@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { checkAccessible, waitForFrame } from './browser.mjs';
+import { checkAccessible, waitForFrame, waitForTold } from './browser.mjs';
 import { get, post, startDaemon } from './daemon.mjs';
 import { expectToast, fillVector, isEdit } from './page.mjs';
 import { openMesh, openPage } from './visit.mjs';
@@ -105,7 +105,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
     assert.ok(await page.getByRole('button', { name: 'Undo', exact: true }).isDisabled());
     await checkAccessible(page, 'working');
     release();
-    await page.getByRole('status').filter({ hasText: /compact.*revision 2/ }).waitFor();
+    await waitForTold(page, /compact.*revision 2/);
     await checkAccessible(page, 'done');
     await waitForFrame(page, { mesh, revision: 2 });
     assert.ok(await page.locator('#work').isHidden());
@@ -120,7 +120,8 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
 });
 
 test('an operation that is refused as a job says why', async (t) => {
-    const { page } = await openMesh(t, CUBE);
+    // Where the form is filled slowly the page tries the edit before it is sent.
+    const { page } = await openMesh(t, CUBE, { allowed: [/status of 400/] });
     await page.locator('#operation').selectOption('plane_split');
     await fillVector(page, 'point', [0, 0, 0]);
     await fillVector(page, 'normal', [0, 0, 0]);
@@ -188,8 +189,7 @@ test('an upload is given up while it is sent and while it is read', async (t) =>
     // The daemon's own job, to its end.
     await page.unrouteAll();
     await upload('whole.off');
-    await page.getByRole('status').filter({ hasText: /Read whole\.off.*3 vertices, 1 face/ })
-        .waitFor();
+    await waitForTold(page, /Read whole\.off.*3 vertices, 1 face/);
     await page.locator('#canvas[data-revision="1"]').waitFor();
     assert.equal((await get(daemon, '')).items[0].name, 'whole');
 });
