@@ -80,11 +80,11 @@ static bool sync_fails(void)
     return fails;
 }
 
-/* --- a file: ours, and the system's behind it --- */
+/* --- a file: ours, which calls the system's --- */
 
 typedef struct disk_file {
     sqlite3_file base;
-    bool writes; /* the database itself, open for writing */
+    bool writes; /* it is the database itself, open for writing */
     sqlite3_file *real;
 } disk_file;
 
@@ -204,7 +204,7 @@ static int file_open(sqlite3_vfs *vfs, const char *name, sqlite3_file *file, int
 void disk_install(void)
 {
     static sqlite3_vfs mine;
-    (void)st_db_prepare(); /* which SQLite takes only before it has started */
+    (void)st_db_prepare(); /* SQLite accepts this only before it has started */
     sqlite3_vfs *real = sqlite3_vfs_find(NULL);
     mine = *real;
     mine.pNext = NULL;

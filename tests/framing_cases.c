@@ -13,7 +13,7 @@
 #define LAST   "0\r\n\r\n"
 
 #define BYTES(text) text, sizeof(text) - 1
-/* Answered by a handler. */
+/* A case that a handler answers. */
 #define TAKEN(name, bytes, status)                               \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, NULL, 0, 0 \
@@ -22,7 +22,7 @@
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 0, 0 \
     }
-/* A fault in the bytes. */
+/* A case with a fault in the bytes. */
 #define FAULT(name, bytes, status, code)                         \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 1, 1 \

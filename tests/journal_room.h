@@ -1,16 +1,17 @@
-/* journal_room.h - what the journals of tests do alike: rooms for bodies, and no kept keys. */
+/* journal_room.h - what the journals of tests have in common: space for bodies, and no
+ * Idempotency-Keys. */
 #ifndef TESTS_JOURNAL_ROOM_H
 #define TESTS_JOURNAL_ROOM_H
 
 #include "journal/journal.h"
 
-/* A room for `need`, or `refuse` where that is not ST_OK: but a removal is admitted although the
- * disk is full. Its memory is the system's, so that tests of failing allocations see those of the
- * store alone. */
+/* Makes a room for `need`. If `refuse` is not ST_OK it is returned instead, except that deletions
+ * are accepted on a full disk. The memory comes from the C library, so that tests of failing
+ * allocations affect the store alone. */
 st_status journal_room_new(st_status refuse, const st_room_need *need, st_room **out);
 void journal_room_free(st_room *room);
 
-/* `keys` of a journal that forgets them. */
+/* The `keys` of a journal that stores none. */
 st_status journal_keys_none(void *self, const char *id, st_take_key *take, void *context);
 
 #endif

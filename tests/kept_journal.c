@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* A content in parts. */
+/* A content, as staged parts. */
 struct st_stage {
     size_t parts, capacity;
     struct {
@@ -27,7 +27,7 @@ struct st_stage {
 /* Counted by its mesh and by readers. */
 typedef struct kept_record {
     size_t uses;
-    st_record record; /* texts and body are owned; of the key nothing is kept */
+    st_record record; /* texts and body are owned; its key is not stored */
     char name[ST_MESH_NAME + 1];
     char ops[256];
     bool sum_is_wrong;
@@ -35,7 +35,7 @@ typedef struct kept_record {
 
 typedef struct kept_mesh {
     st_card card;
-    kept_record *base; /* with a stage */
+    kept_record *base; /* made from a stage */
     kept_record **records;
     size_t count, capacity, opened, parts;
     struct kept_mesh *next;
@@ -46,16 +46,16 @@ struct kept_journal {
     pthread_cond_t changed;
     kept_mesh *meshes; /* in the order of ids */
     uint64_t newest;
-    size_t out; /* rooms, stages and readers */
+    size_t out; /* rooms, stages and readers that exist */
     st_status refuse;
-    size_t staged_edits; /* that there were */
+    size_t staged_edits; /* number of edits that were staged */
     bool ignores;
     bool stopped;
     size_t waiting;
     uint64_t secret[2];
 };
 
-/* Reads what was kept when it was opened. */
+/* Reads what was stored when it was opened. */
 struct st_reader {
     kept_journal *journal;
     char id[ST_MESH_ID + 1];
@@ -233,7 +233,7 @@ static kept_record *copy_of(const kept_mesh *mesh, const st_record *record)
     return out;
 }
 
-/* A body that is a content, as parts. */
+/* Encodes a content as parts. */
 static st_stage *stage_of(const unsigned char *body, size_t size)
 {
     st_stage *stage = calloc(1, sizeof *stage);
@@ -246,7 +246,7 @@ static st_stage *stage_of(const unsigned char *body, size_t size)
     return stage;
 }
 
-/* A mesh begins with a base. */
+/* The first record of a mesh is a base. */
 static void keep_first(kept_journal *journal, const st_record *record)
 {
     kept_mesh *mesh = calloc(1, sizeof *mesh);
@@ -497,7 +497,7 @@ static void tell_health(void *self, st_health *out)
 
 st_journal kept_journal_open(kept_journal *journal)
 {
-    st_journal out = st_journal_memory(); /* whose `listen` says that all is durable */
+    st_journal out = st_journal_memory(); /* it reports that everything is durable */
     out.self = journal;
     out.keeps = true;
     memcpy(out.secret, journal->secret, sizeof out.secret);

@@ -37,7 +37,7 @@ void mirror_clear(mirror *m)
     *m = (mirror){0};
 }
 
-/* A row of the table behind those that are there. */
+/* Appends a row to the table. */
 static void add_material(mirror *m, const char *name, const double numbers[9], bool two_sided)
 {
     size_t length = m->materials == NULL ? 0 : strlen(m->materials);
@@ -284,7 +284,7 @@ static void read_numbers(const cJSON *list, double *out, size_t count)
     }
 }
 
-/* The shortest text of a float is another double than the float is. */
+/* Rounds to float: the shortest text of a float reads back as a different double. */
 static void round_numbers(const mirror_column *c, double *values)
 {
     for (size_t k = 0; k < c->components && c->single; k++) {
@@ -477,7 +477,7 @@ static void apply_attributes(mirror *m, const cJSON *attributes)
     }
 }
 
-/* Every element of a set is alive, or none is. */
+/* Requires that all elements of a set are live, or that none is. */
 static void require_set(const mirror *m, const cJSON *sets, bool live)
 {
     const cJSON *set, *item;
@@ -509,7 +509,7 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     require_set(m, member(data, "modified"), true);
     apply_columns(m, data);
     const cJSON *materials = cJSON_GetObjectItem(data, "materials");
-    if (materials != NULL) { /* the whole table comes where a row of it changed */
+    if (materials != NULL) { /* if a row changed, the whole table is sent */
         mirror_set_materials(m, materials);
     }
     apply_deleted(m, member(data, "deleted"));
@@ -531,7 +531,7 @@ static mirror_row row_of(const mirror_table *table, size_t i)
     return i < table->count ? table->rows[i] : (mirror_row){0};
 }
 
-/* Minus zero is not zero, and a NaN is itself. */
+/* Compares bits: minus zero differs from zero, and a NaN equals itself. */
 static bool same_bits(const double *a, const double *b, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

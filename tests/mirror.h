@@ -1,6 +1,6 @@
-/* mirror.h - a client's own copy of a mesh: plain tables, filled from a dump and kept by events.
+/* mirror.h - a client's copy of a mesh: plain tables, filled from a dump and updated by events.
  *
- * It knows nothing of half-edges: what an event does not say, it does not have. */
+ * It derives nothing: what an event does not contain is not in the copy. */
 #ifndef TESTS_MIRROR_H
 #define TESTS_MIRROR_H
 
@@ -10,7 +10,8 @@
 
 enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
 
-/* A vertex: position and half-edge; a half-edge: next, prev, origin, face; a face: half-edge. */
+/* Links of a vertex: half-edge; of a half-edge: next, prev, origin, face; of a face: half-edge. A
+ * vertex also has a position. */
 typedef struct mirror_row {
     bool live;
     double position[3];
@@ -26,46 +27,47 @@ typedef struct mirror_column {
     he_kind domain;
     char name[64];
     size_t components, rows;
-    bool single; /* numbers are floats */
+    bool single; /* the numbers are floats */
     double fallback[MIRROR_COMPONENTS];
-    char *labels;    /* a line each; NULL where it has none */
-    double *values;  /* of rows; beyond them the default */
-    size_t capacity; /* rows that there is room for */
+    char *labels;    /* one per line; NULL: none */
+    double *values;  /* one per row; rows beyond them have the default */
+    size_t capacity; /* number of rows allocated */
 } mirror_column;
 
 typedef struct mirror {
     uint64_t revision;
-    mirror_table tables[HE_KIND_COUNT]; /* of vertices, half-edges and faces */
+    mirror_table tables[HE_KIND_COUNT]; /* for vertices, half-edges and faces */
     mirror_column *columns;
     size_t column_count;
-    char *materials; /* the table as text, a line a row; NULL where it is empty */
+    char *materials; /* the table as text, one line per row; NULL: empty */
 } mirror;
 
 void mirror_clear(mirror *m);
-/* What `mesh` holds, at `revision`. */
+/* Copies `mesh` at `revision`. */
 void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
-/* A line of the collection of a kind. */
+/* Adds one line of the collection of a kind. */
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
-/* One of GET .../attributes; its values come by pages of GET .../attributes/{domain}/{name}. */
+/* Adds an attribute of GET .../attributes; its values are added from pages of GET
+ * .../attributes/{domain}/{name}. */
 void mirror_add_attribute(mirror *m, const cJSON *attribute);
 void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page);
-/* The list of GET .../materials. */
+/* Sets the list of GET .../materials. */
 void mirror_set_materials(mirror *m, const cJSON *list);
 
 typedef enum mirror_step {
     MIRROR_APPLIED,
-    MIRROR_KNOWN, /* a revision it has */
-    MIRROR_LOST   /* stale, or not of its revision: it must be taken anew */
+    MIRROR_KNOWN, /* the copy has this revision already */
+    MIRROR_LOST   /* stale, or based on another revision: fetch the mesh again */
 } mirror_step;
 
-/* The data of an `edit`. Fails the test where the sets contradict the copy. */
+/* Applies the data of an `edit` event. Fails the test if the sets contradict the copy. */
 mirror_step mirror_apply(mirror *m, const cJSON *data);
 
-/* Link for link, value for value? `text` names what differs. */
+/* Are all links and values equal? If not, `text` names the difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
-/* The first live element from `from` on, then from the start; HE_NONE when there is none. Edges
- * are looked up as half-edges. */
+/* Returns the first live element from `from` on, wrapping around; HE_NONE if there is none. Edges
+ * are searched as half-edges. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

@@ -30,7 +30,7 @@ static double random_number(uint64_t *state)
     return ldexp((double)(*state >> 11), -53);
 }
 
-/* --- simple ones --- */
+/* --- simple polygons --- */
 
 static void disc(uint32_t n, he_vec3 *out)
 {
@@ -46,7 +46,7 @@ static void star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* All points but two at the bottom are tips or bottoms of gaps. */
+/* All points but two at the bottom are tips of teeth or bottoms of gaps. */
 static void comb(uint32_t n, he_vec3 *out)
 {
     out[0] = (he_vec3){0, 0, 0};
@@ -65,7 +65,7 @@ static void tilted_comb(uint32_t n, he_vec3 *out)
     turn_all(n, out, TURN / 8);
 }
 
-/* Teeth from both sides that reach between each other. */
+/* Teeth from both sides that reach into each other's gaps. */
 static void interlocked(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -75,7 +75,7 @@ static void interlocked(uint32_t n, he_vec3 *out)
     }
 }
 
-/* The teeth of interlocked(), longer and turned. */
+/* The teeth of interlocked(), longer and rotated. */
 static void zigzag(uint32_t n, he_vec3 *out)
 {
     interlocked(n, out);
@@ -89,7 +89,7 @@ static void zigzag(uint32_t n, he_vec3 *out)
 static void spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
-    /* So many turns that sides do not cut through the next one. */
+    /* The number of turns for which sides do not cross the next turn. */
     double turns = fmin(40, cbrt(0.03 * half * half));
     for (uint32_t i = 0; i < half; i++) {
         double angle = TURN * turns * i / half, radius = 1 + angle / TURN;
@@ -98,7 +98,7 @@ static void spiral(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Each turn is a third of the one around it: all scales at once. */
+/* Each turn has a third of the size of the turn around it: all scales in one polygon. */
 static void deep_spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -110,7 +110,7 @@ static void deep_spiral(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Between two arcs that nearly touch, at 45 degrees: all corners but four turn right. */
+/* Two arcs that nearly touch, at 45 degrees: all corners but four are reflex. */
 static void hourglass(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -122,7 +122,7 @@ static void hourglass(uint32_t n, he_vec3 *out)
     turn_all(n, out, TURN / 8);
 }
 
-/* A square with a bite of many corners. */
+/* A square with a notch of many corners. */
 static void bite(uint32_t n, he_vec3 *out)
 {
     static const he_vec3 corners[] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}};
@@ -135,7 +135,7 @@ static void bite(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Many corners on each side of a square, by exact numbers. */
+/* Many corners on each side of a square, with exact coordinates. */
 static void straight_sides(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -148,7 +148,7 @@ static void straight_sides(uint32_t n, he_vec3 *out)
     }
 }
 
-/* What a text file leaves of a disc: corners that turn either way by rounding. */
+/* A disc as a text file stores it: by rounding, corners are convex or reflex. */
 static void rounded_disc(uint32_t n, he_vec3 *out)
 {
     disc(n, out);
@@ -166,7 +166,8 @@ static void random_star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Cells of a square grid joined to a tree; each has its open sides, and 16 when it was reached. */
+/* Cells of a square grid connected as a tree; each has a bit for each open side, and 16 when it was
+ * reached. */
 typedef struct cells {
     uint32_t side, *open;
 } cells;
@@ -209,7 +210,7 @@ static he_vec3 corner_of_cell(const cells *c, uint32_t at, uint32_t which)
     return (he_vec3){column + corner[which][0], row + corner[which][1], 0};
 }
 
-/* With the wall on the right, until the beginning. */
+/* Follows the wall on the right back to the start. */
 static uint32_t walk_outline(const cells *c, he_vec3 *out)
 {
     uint32_t at = 0, d = 0, made = 0;
@@ -229,7 +230,8 @@ static uint32_t walk_outline(const cells *c, he_vec3 *out)
     return made;
 }
 
-/* The outline of a tree of cells, at most four corners each; the rest lies on straight sides. */
+/* The outline of a tree of cells, with at most four corners per cell; further corners lie on
+ * straight sides. */
 static void maze(uint32_t n, he_vec3 *out)
 {
     cells c = {.side = (uint32_t)sqrt(n / 4.0) + 1};
@@ -240,7 +242,7 @@ static void maze(uint32_t n, he_vec3 *out)
     }
     grow_tree(&c, n / 4, stack);
     uint32_t made = walk_outline(&c, out), left = n - made;
-    /* As many corners as are missing into each side, those of the first sides last. */
+    /* Adds the missing corners to the sides, those of the first sides last. */
     he_vec3 end = out[0];
     for (uint32_t i = made, to = n; i-- > 0;) {
         uint32_t extra = (uint32_t)((uint64_t)left * (i + 1) / made - (uint64_t)left * i / made);
@@ -256,7 +258,7 @@ static void maze(uint32_t n, he_vec3 *out)
     free(stack);
 }
 
-/* --- others --- */
+/* --- polygons that are not simple --- */
 
 static void one_point(uint32_t n, he_vec3 *out)
 {
@@ -282,7 +284,7 @@ static void scribble(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Turns about its centre nearly as often as it has points. */
+/* Winds around its centre nearly as often as it has points. */
 static void dense_star(uint32_t n, he_vec3 *out)
 {
     const uint32_t half = n / 2;
@@ -292,7 +294,7 @@ static void dense_star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Around a disc a few hundred times. */
+/* Winds around a disc a few hundred times. */
 static void wound(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -300,7 +302,7 @@ static void wound(uint32_t n, he_vec3 *out)
     }
 }
 
-/* On four points again and again. */
+/* Visits four points again and again. */
 static void repeated(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -308,7 +310,7 @@ static void repeated(uint32_t n, he_vec3 *out)
     }
 }
 
-/* A disc with an inner ring, joined by a bridge that is walked both ways. */
+/* A disc with a hole, connected by a bridge that is walked in both directions. */
 static void keyhole(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -320,7 +322,7 @@ static void keyhole(uint32_t n, he_vec3 *out)
     out[n - 1] = out[half];
 }
 
-/* A figure of eight. */
+/* A figure eight. */
 static void crossed(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {

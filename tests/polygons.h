@@ -8,15 +8,16 @@
 
 typedef struct polygon_shape {
     const char *name;
-    bool simple; /* without a point that lies on two of its sides, other than its corners */
-    /* The places of n corners, counter-clockwise; z stays 0. n is at least 64 and even. */
+    bool simple; /* no point lies on two of its sides, except its corners */
+    /* Makes the positions of n corners, counter-clockwise, with z = 0. n is at least 64 and
+     * even. */
     void (*make)(uint32_t n, he_vec3 *out);
 } polygon_shape;
 
 extern const polygon_shape polygon_shapes[];
 extern const unsigned polygon_shape_count;
 
-/* A mesh of one face over the points; NULL without memory. */
+/* Makes a mesh of one face with these corners; returns NULL when memory is out. */
 he_mesh *polygon_mesh(const he_vec3 *points, uint32_t n);
 
 #endif

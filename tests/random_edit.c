@@ -12,7 +12,7 @@
 typedef struct draft {
     md_random *random;
     const mirror *mesh;
-    uint32_t halfedge; /* what is drawn lies about it */
+    uint32_t halfedge; /* arguments are chosen near it */
     char *text;
     size_t length;
 } draft;
@@ -35,7 +35,7 @@ static uint32_t link_of(const draft *d, uint32_t halfedge, enum link which)
     return d->mesh->tables[HE_HALFEDGE].rows[halfedge].link[which];
 }
 
-/* A few steps away, over faces and edges. */
+/* Walks a few steps across faces and edges. */
 static uint32_t near_halfedge(draft *d)
 {
     uint32_t h = d->halfedge;
@@ -74,7 +74,7 @@ static uint32_t element(draft *d, he_kind kind)
     return HE_NONE;
 }
 
-/* Along a hole: the corners of a face that would fill a part of it. */
+/* Puts corners along a hole, of a face that would fill a part of it. */
 static void put_cycle(draft *d, uint32_t count)
 {
     uint32_t h = d->halfedge;
@@ -89,7 +89,7 @@ static void put_point(draft *d)
         2 * md_unit(d->random) - 1);
 }
 
-/* Few: more steps would make a large mesh of it. */
+/* Puts a small number: more steps would make the mesh large. */
 static void put_whole(draft *d, const he_param *p)
 {
     enum { MANY = 400 };
@@ -105,7 +105,7 @@ static void put_number(draft *d, const he_param *p)
     }
     bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
-    /* A large one leaves nothing of a mesh. */
+    /* a large tolerance would merge the whole mesh */
     high = strcmp(p->name, "tolerance") == 0 ? 0.05 : high;
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }
@@ -163,7 +163,7 @@ static void put_value(draft *d, const he_param *p)
     }
 }
 
-/* Of alternatives one is taken, at random. */
+/* Of alternative parameters, one is chosen at random. */
 static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];
@@ -180,7 +180,7 @@ static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
            (md_chance(d->random, 40) || (required && later == 0));
 }
 
-/* The half-edge from the target of h to the vertex v, HE_NONE without one. */
+/* Returns the half-edge from the target of h to the vertex v, or HE_NONE. */
 static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
 {
     uint32_t first = link_of(d, h, NEXT), k = first;
@@ -193,7 +193,7 @@ static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
     return HE_NONE;
 }
 
-/* Three edges around a neck: a cycle with six faces. False when there is none. */
+/* Puts three edges around a neck: a cycle with six faces. Returns false if there is none. */
 static bool put_neck(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count;
@@ -236,7 +236,7 @@ static bool on_loop(const draft *d, uint32_t loop, uint32_t h)
     return false;
 }
 
-/* Half-edges of two holes. False when there are not so many. */
+/* Puts half-edges of two holes. Returns false if there are fewer. */
 static bool put_holes(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count, hole = HE_NONE;
@@ -262,7 +262,7 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
     draft d = {.random = r, .mesh = m, .text = text};
     char taken[HE_OP_PARAMS + 1] = "";
     d.halfedge = any(&d, HE_HALFEDGE);
-    /* Holes are few beside faces, and some operations are about them. */
+    /* Holes are rare, and some operations need one. */
     for (uint32_t tries = 0;
          md_chance(r, 97) && tries < 60 && link_of(&d, d.halfedge, FACE) != HE_NONE; tries++) {
         if (tries == 0 && md_chance(r, 60)) {

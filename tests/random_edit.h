@@ -1,5 +1,6 @@
-/* random_edit.h - random operations as a request spells them, drawn from the operation table and
- * from a client's copy of the mesh, with arguments that lie close together so that many succeed. */
+/* random_edit.h - random operations as requests spell them, made from the operation table and from
+ * a client's copy of the mesh. The arguments lie close together, so that many operations
+ * succeed. */
 #ifndef TESTS_RANDOM_EDIT_H
 #define TESTS_RANDOM_EDIT_H
 
@@ -10,7 +11,8 @@
 
 enum { RANDOM_EDIT_TEXT = 1024 };
 
-/* Rows of the table by index. The mesh has an edge; its id is m, where another mesh is asked for.
+/* Makes an edit with the row of this index. The mesh must have an edge; operations that need
+ * another mesh name the mesh m.
  */
 void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDIT_TEXT]);
 

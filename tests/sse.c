@@ -27,7 +27,7 @@ void sse_add(sse *s, const char *bytes, size_t length)
     s->length += length;
 }
 
-/* Cut the first block off, up to its blank line. */
+/* Cuts the first block off, up to its blank line. */
 static bool next_block(sse *s)
 {
     for (size_t i = 0; i + 1 < s->length; i++) {

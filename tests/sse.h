@@ -1,4 +1,4 @@
-/* sse.h - a reader of text/event-stream: bytes in, events out. */
+/* sse.h - a parser for text/event-stream. */
 #ifndef TESTS_SSE_H
 #define TESTS_SSE_H
 
@@ -6,22 +6,22 @@
 #include <stddef.h>
 
 typedef struct sse {
-    char *bytes; /* not yet read */
+    char *bytes; /* not parsed yet */
     size_t length, capacity;
-    char *block; /* the one read last */
-    char id[64]; /* the last that came, with an event or without */
-    size_t idle; /* comments */
+    char *block; /* the block parsed last */
+    char id[64]; /* the last id received, with or without an event */
+    size_t idle; /* number of comments */
     size_t blocks;
 } sse;
 
 typedef struct sse_event {
-    const char *name; /* "message" where none was said */
-    const char *data; /* ends in NUL; both until the next call */
+    const char *name; /* "message" if the event has no name */
+    const char *data; /* ends in NUL; both texts live until the next call */
 } sse_event;
 
 void sse_clear(sse *s);
 void sse_add(sse *s, const char *bytes, size_t length);
-/* The next event that has data; false when it has not come as a whole. */
+/* Returns the next event that has data; false if it has not arrived completely. */
 bool sse_next(sse *s, sse_event *out);
 
 #endif

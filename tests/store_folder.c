@@ -67,7 +67,8 @@ void folder_write(const char *folder, const char *name, const unsigned char *byt
     }
 }
 
-/* The -shm is made anew from the -wal: a killed process may leave any. */
+/* The -shm file is not copied: SQLite rebuilds it from the -wal, whatever a killed process
+ * leaves. */
 void folder_copy(const char *from, const char *to)
 {
     for (size_t i = 0; i < COPIED; i++) {
@@ -80,7 +81,7 @@ void folder_copy(const char *from, const char *to)
     }
 }
 
-/* --- what was told --- */
+/* --- what the journal reported --- */
 
 static void on_moved(void *context, uint64_t position)
 {

@@ -1,4 +1,4 @@
-/* store_folder.h - folders for stores of the tests, and records to put into one. */
+/* store_folder.h - folders for stores of tests, and records to write to them. */
 #ifndef TESTS_STORE_FOLDER_H
 #define TESTS_STORE_FOLDER_H
 
@@ -8,45 +8,46 @@
 
 enum { FOLDER_PATH = 256 };
 
-/* Makes an empty folder of its own. */
+/* Makes a new empty folder. */
 void folder_make(char out[FOLDER_PATH]);
-/* Removes it with the files in it. */
+/* Removes the folder with the files in it. */
 void folder_remove(const char *folder);
-/* Copies the files of a store as they are, which is what a killed process leaves. */
+/* Copies the files of a store as they are, like those that a killed process leaves. */
 void folder_copy(const char *from, const char *to);
-/* A file of it, whole; the caller frees the bytes. NULL where there is none. */
+/* Reads a file of the folder; the caller frees the bytes. Returns NULL if there is none. */
 unsigned char *folder_read(const char *folder, const char *name, size_t *size);
 void folder_write(const char *folder, const char *name, const unsigned char *bytes, size_t size);
 
-/* A journal and what it told. */
+/* A journal and what it reported. */
 typedef struct told_journal {
     st_journal journal;
     pthread_mutex_t lock;
     pthread_cond_t changed;
     uint64_t position;
     unsigned losses;
-    st_loss loss; /* the last */
+    st_loss loss; /* the last loss */
 } told_journal;
 
 void told_begin(told_journal *told, const st_journal *journal);
-void told_wait(told_journal *told, uint64_t position); /* until it is durable or lost */
+void told_wait(told_journal *told, uint64_t position); /* waits until it is durable or lost */
 unsigned told_losses(told_journal *told);
 void told_end(told_journal *told); /* closes the journal */
 
-/* A mesh as far as a journal knows it. */
+/* A mesh as a journal sees it. */
 typedef struct kept_mesh {
     char id[ST_MESH_ID + 1], name[ST_MESH_NAME + 1];
     uint64_t incarnation, number, revision, metadata;
     const he_mesh *content;
 } kept_mesh;
 
-/* A record that makes the mesh, or a whole new content of it. The body is the caller's matter. */
+/* Makes a record that creates the mesh, or replaces its whole content. The caller provides the
+ * body. */
 st_record kept_content(kept_mesh *mesh);
 st_record kept_edit(kept_mesh *mesh);
 st_record kept_rename(kept_mesh *mesh, const char *name);
 st_record kept_remove(kept_mesh *mesh);
-/* Append one record with this body, or the coded content for a content without a stage. Returns its
- * position, 0 where it is refused. */
+/* Appends one record with this body, or with the encoded content if a content has no stage. Returns
+ * its position, 0 if it is refused. */
 uint64_t kept_append(const st_journal *journal, st_record record, const kept_mesh *mesh,
                      const void *body, size_t size);
 st_status kept_status(void); /* of the last refusal */

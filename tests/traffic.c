@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* Written by hand: cJSON's memory is the api's, and may just be made to fail. */
+/* Written by hand: cJSON allocates through the api, whose allocations a test may be making fail. */
 static void write_string(FILE *out, const char *text)
 {
     fputc('"', out);
@@ -73,7 +73,7 @@ void traffic_record(const char *method, const char *target, const traffic_messag
     write_message(out, "answer", answer);
     fputs("}\n", out);
     assert_int_equal(fclose(out), 0);
-    /* One write a line: the threads of a test share the file. */
+    /* One write per line, because the threads of a test share the file. */
     snprintf(path, sizeof path, "%s/c-%d.ndjson", folder, (int)getpid());
     int fd = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     assert_true(fd >= 0);

@@ -1,20 +1,20 @@
-/* traffic.h - what a test asked and was told, for the last step of `make test`:
- * tests/web/check-traffic.mjs compares it with the served OpenAPI document.
+/* traffic.h - records the requests of tests and their answers for the last step of `make test`:
+ * tests/web/check-traffic.mjs compares them with the served OpenAPI document.
  *
- * One line of JSON an exchange is appended to a file of this process in the folder TRAFFIC; without
- * that variable nothing is kept. Bodies are base64, since they may be any bytes. */
+ * Each exchange is appended as one line of JSON to a file of this process in the folder TRAFFIC;
+ * without that variable nothing is recorded. Bodies are base64, since they may be any bytes. */
 #ifndef TESTS_TRAFFIC_H
 #define TESTS_TRAFFIC_H
 
 #include <stddef.h>
 
-/* Of a longer body this much is kept, and `length` beside it says that there was more. What is not
- * JSON is not looked into. */
+/* Longer bodies are cut at this length, which `length` shows. The content of bodies that are not
+ * JSON is not checked. */
 enum { TRAFFIC_JSON = 1 << 20, TRAFFIC_OTHER = 4 << 10 };
 
 typedef struct traffic_message {
-    const char *head; /* "Name: value" lines that end in CR LF, a start line before them or not */
-    const char *body; /* NULL: not known; "": none */
+    const char *head; /* "Name: value" lines that end in CR LF, with or without a start line */
+    const char *body; /* NULL: unknown; "": none */
     size_t length;
 } traffic_message;
 

@@ -1,17 +1,17 @@
-/* writing.h - writes of a stored mesh in one line each, for tests. */
+/* writing.h - writes to a stored mesh in one call each, for tests. */
 #ifndef TESTS_WRITING_H
 #define TESTS_WRITING_H
 
 #include "store/write.h"
 
-/* The content, recording, or NULL. */
+/* Begins a write; returns the content, which records its changes, or NULL. */
 static inline he_mesh *writing_begin(st_mesh *mesh, st_write *write)
 {
     return st_write_begin(mesh, NULL, write) == ST_OK ? write->content : NULL;
 }
 
-/* Commits an edit, with the new facts to `info` unless that is NULL. Without memory to find its
- * changes the write is aborted. */
+/* Commits an edit and copies the new facts to `info` unless it is NULL. If there is no memory to
+ * find its changes, aborts the write. */
 static inline bool writing_commit(st_write *write, const char *ops, st_mesh_info *info)
 {
     if (st_write_changes(write, NULL) != HE_OK) {
@@ -40,7 +40,7 @@ static inline st_status writing_step(st_mesh *mesh, st_action which, uint32_t st
     return status;
 }
 
-/* Takes `content`, and the name unless it is NULL. */
+/* Replaces the content; takes it, and sets the name unless it is NULL. */
 static inline st_status writing_replace(st_mesh *mesh, he_mesh *takes, const char *name,
                                         st_mesh_info *info)
 {

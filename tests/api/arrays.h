@@ -1,4 +1,4 @@
-/* arrays.h - a client of GET .../geometry: all rows once, then what changed of them. */
+/* arrays.h - a client of GET .../geometry: fetches all rows once, then changes. */
 #ifndef TESTS_API_ARRAYS_H
 #define TESTS_API_ARRAYS_H
 
@@ -13,20 +13,23 @@ typedef struct arrays {
     char *rows[2];
     uint32_t count[2];
     char frame[32];
-    uint64_t whole, changes, bytes; /* answers so far, and the bytes of changes */
+    /* number of answers with all rows and with changes, and the bytes of the latter */
+    uint64_t whole, changes, bytes;
 } arrays;
 
 void arrays_forget(arrays *c);
-/* The answer to what the arrays knows, and bring it up to date with one. */
+/* arrays_ask requests what changed since the arrays' revision, arrays_apply applies such an answer,
+ * and arrays_update does both. */
 bench_reply arrays_ask(api_bench *b, const char *mesh, const arrays *c);
 void arrays_apply(arrays *c, const char *body, size_t length);
 void arrays_update(api_bench *b, const char *mesh, arrays *c);
 void arrays_assert_same(const arrays *a, const arrays *b);
-/* Each live face's triangles in order in one run, and nothing else but zeros; each vertex its row.
+/* Checks that the triangles of each live face are consecutive and in order, that all other slots
+ * are zeros, and that each vertex has its row.
  */
 void arrays_check(const arrays *c, const he_mesh *m);
 
-/* Little-endian, at any address. */
+/* Reads little-endian numbers at any address. */
 uint32_t arrays_u32(const char *p);
 uint64_t arrays_u64(const char *p);
 

@@ -1,5 +1,5 @@
-/* fan.h - a vertex with many triangles around it, which a search for intersections takes long to
- * look through where they cross. Included once per program. */
+/* fan.h - a vertex with many triangles around it; where they cross, a search for intersections
+ * takes long. Include it once per program. */
 #ifndef TESTS_API_FAN_H
 #define TESTS_API_FAN_H
 
@@ -36,7 +36,8 @@ static inline void fan_add(fan_text *t, const char *format, ...)
     assert_true(t->length < t->room);
 }
 
-/* A vertex with triangles to `spokes` places around it; every stride-th is the next corner. */
+/* Creates a mesh of a vertex with triangles to `spokes` places around it; each next corner is
+ * `stride` places further. */
 static inline void put_fan(api_bench *b, const char *path, int spokes, int stride)
 {
     fan_text t = fan_text_new(128 * (size_t)spokes);

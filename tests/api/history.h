@@ -1,4 +1,4 @@
-/* history.h - a short history to ask about: what test_history.c and test_past.c share. */
+/* history.h - a short history for test_history.c and test_past.c. */
 #ifndef TESTS_API_HISTORY_H
 #define TESTS_API_HISTORY_H
 
@@ -32,7 +32,7 @@ static inline const char *history_code(const bench_reply *r)
     return cJSON_GetObjectItemCaseSensitive(r->json, "code")->valuestring;
 }
 
-/* Revision 2 pokes a face of a cube, 3 deletes another, 4 undoes that. */
+/* Revision 2 pokes a face of a cube, 3 deletes another one, 4 undoes that. */
 static inline api_bench *history_begin(void)
 {
     api_bench *b = bench_new();

@@ -1,8 +1,8 @@
-/* polygons.h - a small mesh as lists of corners, and everything about it found by searching them.
+/* polygons.h - a small mesh as lists of corners, in which everything is found by searching.
  *
- * Slow and obvious: the answers of the API are compared with these. Only what the design leaves
- * open is taken from the API, by pg_learn, which checks that it is allowed: the half-edge a vertex
- * or face stores, and how boundary links chain the fans of a bow-tie. */
+ * It is slow and obvious, and the answers of the API are compared with it. Where the design leaves
+ * a choice, pg_learn takes it from the API and checks that it is allowed: the half-edge that a
+ * vertex or face stores, and the order in which boundary links connect the fans of a bow-tie. */
 #ifndef TESTS_API_POLYGONS_H
 #define TESTS_API_POLYGONS_H
 
@@ -25,36 +25,38 @@ typedef struct pg_mesh {
     unsigned vertex_first[PG_VERTICES], face_first[PG_FACES];
 } pg_mesh;
 
-/* Faces as strings of one-digit vertices: "012,023"; `vertices` at least. Edges are numbered as
- * they appear and run as the face does that shows them first. */
+/* Makes a mesh from faces as strings of one-digit vertices: "012,023"; it has at least `vertices`
+ * vertices. Edges are numbered in the order of their appearance and directed as in the face where
+ * they appear first. */
 void pg_make(pg_mesh *pg, const char *faces, unsigned vertices);
-/* The same for any list of corners: PG_NONE ends a face. */
+/* Makes a mesh from any list of corners: PG_NONE ends a face. */
 void pg_make_corners(pg_mesh *pg, const unsigned *corners, size_t count, unsigned vertices);
 
-/* What the API says, where it may choose. Fails the test when it may not. */
+/* Takes the API's choice. Fails the test if it is not allowed. */
 void pg_learn_vertex(pg_mesh *pg, unsigned v, unsigned halfedge);
 void pg_learn_face(pg_mesh *pg, unsigned f, unsigned halfedge);
 void pg_learn_next(pg_mesh *pg, unsigned h, unsigned next);
 
-/* `what` is a relation of `kind` ("vertex", "faces"). */
+/* Finds a relation `what` of `kind` ("vertex", "faces"). */
 void pg_relation(const pg_mesh *pg, const char *kind, unsigned id, const char *what, bool clockwise,
                  pg_list *out);
 bool pg_is_isolated(const pg_mesh *pg, unsigned v);
 bool pg_is_boundary(const pg_mesh *pg, unsigned v);
 unsigned pg_fans(const pg_mesh *pg, unsigned v);
 double pg_length(const pg_mesh *pg, unsigned e);
-/* Half of sum p[i] x p[i + 1], and how long that is. */
+/* Returns half of sum p[i] x p[i + 1], and its length. */
 double pg_area(const pg_mesh *pg, unsigned f, double out[3]);
 
 void pg_breadth_first(const pg_mesh *pg, const char *kind, unsigned from, unsigned depth,
                       unsigned limit, pg_list *ids, pg_list *depths);
-/* Distances between all vertices, HUGE_VAL where there is no way. */
+/* Finds the distances between all vertices; HUGE_VAL: not connected. */
 void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_VERTICES]);
-/* Straight on through vertices of four edges, or across faces of four sides. */
+/* Follows edges straight on through vertices of four edges, or across faces of four sides. */
 void pg_edges(const pg_mesh *pg, bool ring, unsigned edge, pg_list *out, bool *closed);
-/* Each loop begins with its lowest half-edge; loops by that. Returns how many. */
+/* Finds the boundary loops, each starting with its lowest half-edge, in the order of these. Returns
+ * their number. */
 unsigned pg_boundaries(const pg_mesh *pg, pg_list loops[PG_FACES]);
-/* For each face the lowest face of its component. */
+/* Finds the lowest face of the component of each face. */
 void pg_components(const pg_mesh *pg, bool by_vertex, unsigned lowest[PG_FACES]);
 
 #endif

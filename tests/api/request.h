@@ -1,4 +1,4 @@
-/* request.h - requests to the api without a socket, against the store the daemon uses. */
+/* request.h - requests to the api without a socket, on the same kind of store as the daemon. */
 #ifndef TESTS_API_REQUEST_H
 #define TESTS_API_REQUEST_H
 
@@ -11,61 +11,62 @@
 typedef struct api_bench api_bench; /* a service over an empty store */
 
 api_bench *bench_new(void);
-/* Over another journal than that in memory. */
+/* Makes one with another journal than the one in memory. */
 api_bench *bench_new_over(const st_journal *journal);
-/* `upload` bytes are the most a body of a mesh may have; 0 for as many as bench_new allows. */
+/* Makes one with a limit for undo and one for bodies of meshes; `upload` 0: the limit of
+ * bench_new. */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
-/* A service that asks for tokens, those of `file` (api/token/token_file.h). */
+/* Makes a service that requires the tokens in `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* The same with limits for clients without a token, and of `burst` seconds; `file` NULL: no tokens
- * are asked for. */
+/* Makes a service with limits for clients without a token, with a burst of `burst` seconds; `file`
+ * NULL: no tokens are required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
-/* Requests come from this address from now on, 0 at first; `is_beyond`: by a connection that is one
- * more than that may have. */
+/* Sets the address of further requests, 0 at first; `is_beyond`: the address has one connection
+ * more than allowed. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
-/* What POST /v1/admin/reload reads from now on. */
+/* Sets what POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* POST /v1/admin/backup gives a file with this text from now on; NULL: nothing is kept. */
+/* Makes POST /v1/admin/backup answer a file with this text; NULL: the store is in memory only. */
 void bench_keep(api_bench *b, const char *text);
-/* Requests carry this token from now on, where they have no Authorization; NULL: none. */
+/* Adds this token to further requests without Authorization; NULL: none. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);
-/* Jobs wait until this runs them: without threads, in their order, up to `most`. */
+/* Runs up to `most` waiting jobs, in order, on this thread; jobs run only here. */
 void bench_run_jobs(api_bench *b, size_t most);
-/* How many may wait; BENCH_JOBS at first. */
+/* How many jobs may wait; BENCH_JOBS at first. */
 enum { BENCH_JOBS = 32 };
 void bench_limit_jobs(api_bench *b, size_t most);
 
 typedef struct bench_reply {
     int status;
-    char *body; /* ends in NUL; streams are read to their end, and ended where they would wait */
+    char *body; /* ends in NUL; streams are read to their end, or until they would wait */
     size_t length;
-    cJSON *json;       /* NULL when the body is none */
-    const char *route; /* template, "-" when none matched */
+    cJSON *json;       /* NULL: the body is not JSON */
+    const char *route; /* template, "-" if no route matched */
     api_header headers[API_ANSWER_HEADERS];
     size_t header_count;
-    api_exchange *exchange; /* what the headers live in */
+    api_exchange *exchange; /* owner of the headers */
 } bench_reply;
 
-/* `target` is path and query. `headers` are pairs name, value that end in NULL, or NULL; a body
- * without a Content-Type among them is application/json; one that is "" is not sent. `body` NULL
- * sends none. */
+/* Sends a request. `target` is path and query. `headers` are pairs of name and value that end in
+ * NULL, or NULL. A body without a Content-Type is sent as application/json; a Content-Type of "" is
+ * left out. `body` NULL: no body. */
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
 bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
                              const char *const *headers, const char *body, size_t length);
-/* The same without parsing the answer; false when there was no memory for any. */
+/* Sends a request without parsing the answer; returns false when memory is out. */
 bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
                const char *body, size_t length, bench_reply *out);
-const char *bench_header(const bench_reply *r, const char *name); /* "" when absent */
+const char *bench_header(const bench_reply *r, const char *name); /* returns "" when absent */
 void bench_reply_free(bench_reply *r);
 
-/* The usual cases. */
+/* Shorthands for common requests. */
 bench_reply bench_get(api_bench *b, const char *target);
 bench_reply bench_post(api_bench *b, const char *target, const char *body);
-/* The answer as it came; with another status the test fails and says what came instead. */
+/* Returns the answer; if its status is another one, the test fails and prints it. */
 bench_reply bench_expect(int status, bench_reply r);
 void bench_done(bench_reply r);
 

@@ -1,4 +1,4 @@
-/* specimens.h - small meshes in the API, and the texts it is expected to answer with. Included once
+/* specimens.h - small meshes in the API, and the texts that it must answer with. Include it once
  * per program. */
 #ifndef TESTS_API_SPECIMENS_H
 #define TESTS_API_SPECIMENS_H
@@ -63,7 +63,7 @@ static inline bool is_number(const char *p, const char *start)
     return (isdigit((unsigned char)*p) || *p == '-') && (p == start || strchr("[:,", p[-1]));
 }
 
-/* The same text, but for the last digits of numbers. */
+/* Are the texts equal except for the last digits of numbers? */
 static inline bool same(const char *a, const char *e)
 {
     const char *a_start = a, *e_start = e;
@@ -136,7 +136,7 @@ static inline unsigned member(const bench_reply *r, const char *name)
 /* --- specimens --- */
 
 /* Closed, open, bow-tie, isolated vertices, polygons, faces that share two edges, two components,
- * two components that touch at a vertex, three fans about a vertex, genus 1. */
+ * two components that touch at a vertex, three fans around a vertex, genus 1. */
 static const char *const specimens[] = {
     "",
     "012",
@@ -176,7 +176,7 @@ static inline void put_mesh(api_bench *b, const pg_mesh *pg)
     bench_reply_free(&r);
 }
 
-/* What the server may choose is asked once. */
+/* Asks the server once for the choices that it is free to make. */
 static inline void learn(api_bench *b, pg_mesh *pg)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -196,7 +196,7 @@ static inline void learn(api_bench *b, pg_mesh *pg)
     }
 }
 
-/* The mesh has an isolated vertex beyond those of the faces. */
+/* The mesh has an isolated vertex in addition to those of the faces. */
 static inline api_bench *begin(const char *faces, pg_mesh *pg)
 {
     api_bench *b = bench_new();

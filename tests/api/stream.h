@@ -1,4 +1,4 @@
-/* stream.h - listening to a mesh without a socket, and keeping a copy of it by what is heard. */
+/* stream.h - listening to the events of a mesh without a socket, and updating a copy from them. */
 #ifndef TESTS_API_STREAM_H
 #define TESTS_API_STREAM_H
 
@@ -15,27 +15,28 @@ typedef struct listener {
     pthread_cond_t changed;
     bool woken;
     sse events;
-    sse_event event; /* of the last `next` */
+    sse_event event; /* the result of the last stream_next */
     cJSON *data;
 } listener;
 
-/* NULL where it is refused for want of memory; else the status is 200. `last` is a Last-Event-ID or
- * NULL. */
+/* Returns NULL if the request was refused because memory is out; any other refusal fails the test.
+ * `last` is a Last-Event-ID or NULL. */
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last);
 listener *stream_open(api_bench *b, const char *path, const char *query, const char *last);
 void stream_close(listener *l);
-/* The next event; "" at the end of the stream, and where it would wait and `patient` is false. */
+/* Returns the name of the next event; "" at the end of the stream, and where it would wait if
+ * `patient` is false. */
 const char *stream_next(listener *l, bool patient);
-/* Members of its data: "" where there is no such text. */
+/* Return members of its data; "" if there is no such text. */
 const char *stream_text(const listener *l, const char *member);
 uint64_t stream_number(const listener *l, const char *member);
 
-/* The mesh "m", with a reference. */
+/* Returns the mesh "m", with a reference. */
 st_mesh *stream_mesh(api_bench *b);
-/* What it is now. */
+/* Copies its present state. */
 void stream_dump(api_bench *b, mirror *m);
 void stream_require(api_bench *b, const mirror *copy, const char *after);
-/* Read everything there is. How often the copy had to be taken anew. */
+/* Reads all events. Returns how often the copy had to be fetched again. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy);
 
 #endif

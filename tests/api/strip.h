@@ -1,5 +1,4 @@
-/* strip.h - two polygons to write attributes of: what test_attributes.c and test_attribute_writes.c
- * share. */
+/* strip.h - two polygons whose attributes test_attributes.c and test_attribute_writes.c write. */
 #ifndef TESTS_API_STRIP_H
 #define TESTS_API_STRIP_H
 
@@ -16,7 +15,7 @@ static inline void strip_send(api_bench *b, int status, const char *method, cons
     bench_reply_free(&r);
 }
 
-/* A strip of polygons with a dead face and a dead vertex when `edited`. */
+/* Makes a strip of polygons, with a dead face and a dead vertex if `edited`. */
 static inline void strip_make(api_bench *b, const char *id, bool edited)
 {
     char target[64];

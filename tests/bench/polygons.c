@@ -1,7 +1,7 @@
-/* The figures of triangulation: meshes of short polygons with many reflex corners, and polygons of
- * 10,000 to a million corners that are hard to cut.
+/* Benchmark of triangulation: meshes of short polygons with many reflex corners, and polygons of
+ * 10,000 to a million corners that are hard to triangulate.
  *
- *     build/tests/bench/polygons [CORNERS...]                                                   */
+ *     build/tests/bench/polygons [CORNERS...] */
 #include "polygons.h"
 
 #include "geometry/triangulation.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* Time of the processor: other work on the machine does not count. */
+/* Returns processor time: other work on the machine does not count. */
 static double seconds(void)
 {
     struct timespec now;
@@ -20,7 +20,7 @@ static double seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* --- short polygons, one after the other as an export cuts them --- */
+/* --- short polygons, one after another as an export triangulates them --- */
 
 enum { SHORT_POLYGONS = 64, SHORT_ROUNDS = 200, SHORT_MOST = 256 };
 
@@ -33,7 +33,7 @@ static double random_number(uint64_t *state)
     return ldexp((double)(*state >> 11), -53);
 }
 
-/* Each corner has an angle of its own, so no two sides cross. */
+/* Each corner has its own angle, so no two sides cross. */
 static void short_star(uint32_t n, uint64_t *state, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -43,7 +43,7 @@ static void short_star(uint32_t n, uint64_t *state, he_vec3 *out)
     }
 }
 
-/* Teeth of random length above a straight back. */
+/* Teeth of random length on a straight side. */
 static void short_comb(uint32_t n, uint64_t *state, he_vec3 *out)
 {
     out[0] = (he_vec3){0, 0, 0};
@@ -53,8 +53,8 @@ static void short_comb(uint32_t n, uint64_t *state, he_vec3 *out)
     }
 }
 
-/* Adds up the time of all rounds. The sum of the corners' numbers, each times its place, tells
- * whether the triangles of two runs are equal. */
+/* Adds up the time of all rounds. The checksum (corner numbers times their positions) shows whether
+ * two runs give equal triangles. */
 static void measure_short(const char *name, uint32_t n,
                           void (*make)(uint32_t n, uint64_t *state, he_vec3 *out))
 {
@@ -91,7 +91,7 @@ static void measure_short(const char *name, uint32_t n,
     fflush(stdout);
 }
 
-/* --- long ones --- */
+/* --- long polygons --- */
 
 static void measure(const polygon_shape *shape, uint32_t n)
 {

@@ -1,8 +1,8 @@
-/* The figures of questions about space: making a tree of boxes, rays, nearest points,
- * intersections, and curvature, on a bumpy torus of about a million triangles; and intersections
- * where all triangles share a vertex.
+/* Benchmark of spatial queries: making a tree of boxes, rays, nearest points, intersections, and
+ * curvature, on a bumpy torus of about a million triangles; and intersections where all triangles
+ * share a vertex.
  *
- *     build/tests/bench/space                                                                   */
+ *     build/tests/bench/space */
 #include "build/build.h"
 #include "geometry/vec3.h"
 #include "mesh/walk.h"
@@ -76,7 +76,7 @@ static void show(const char *what, double took, const he_budget *budget, uint32_
            (double)(UINT64_MAX - budget->left) / ASKED, hits, ASKED);
 }
 
-/* The tree of boxes, and all pairs of faces that meet. */
+/* The tree of boxes, and all pairs of intersecting faces. */
 static void show_intersections(const char *what, const he_mesh *m, const he_bvh *tree)
 {
     he_budget budget = {.left = UINT64_MAX};
@@ -90,7 +90,7 @@ static void show_intersections(const char *what, const he_mesh *m, const he_bvh 
     he_ids_clear(&pairs);
 }
 
-/* A disc, a cone, or a disc that is folded as often as there are spokes. */
+/* A disc, a cone, or a disc that is folded once per spoke. */
 static void show_fan(const char *what, double height, double stride)
 {
     enum { SPOKES = 60000 };

@@ -1,9 +1,9 @@
-/* What it costs that edits are durable: edits a second of one writer and of 64, on 64 meshes and on
- * one, each writer waiting until its edit is durable before it makes the next one. In turn and on
- * one file system: the bytes of these records written to a growing file with fdatasync after each;
- * the store on SQLite; the store that keeps nothing, where an edit is as durable as it will be.
+/* Benchmark of durability: edits per second of one writer and of 64, on 64 meshes and on one; each
+ * writer waits until its edit is durable before the next one. Measured in turn on one file system:
+ * the bytes of such records written to a growing file with fdatasync after each; the store on
+ * SQLite; the store in memory, where nothing has to become durable.
  *
- *     build/tests/bench/store FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk that is meant */
+ *     build/tests/bench/store FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk to measure */
 #include "base/mem.h"
 #include "build/build.h"
 #include "edit/local/vertex.h"
@@ -29,7 +29,7 @@ typedef enum row {
     RAW,         /* one file, one writer */
     ONE,         /* SQLite, one writer */
     MANY,        /* SQLite, 64 writers on 64 meshes */
-    MANY_ON_ONE, /* and on one */
+    MANY_ON_ONE, /* SQLite, 64 writers on one mesh */
     MEMORY,
     MEMORY_ON_ONE,
     ROWS
@@ -56,12 +56,12 @@ static void require(bool good, const char *what)
     }
 }
 
-/* --- the records on their way --- */
+/* --- counting records --- */
 
-static st_journal below; /* what the journal of the store is made of */
+static st_journal below; /* the journal that the store uses */
 static atomic_size_t record_bytes, records;
 
-/* Counts what a record takes on disk. */
+/* Counts the bytes that a record takes on disk. */
 static uint64_t append(void *self, st_room *room, const st_record *list, size_t count)
 {
     unsigned char head[RECORD_ROOM];
@@ -157,7 +157,7 @@ static void wait_for(double time)
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 }
 
-/* Edits a second. */
+/* Returns edits per second. */
 static double run_writers(const st_journal *journal, size_t writers, size_t meshes, double time)
 {
     static writer all[MOST_WRITERS];
@@ -228,7 +228,7 @@ static double run_memory(size_t meshes, double time)
     return run_writers(&journal, MOST_WRITERS, meshes, time);
 }
 
-/* As many bytes as a record has, again and again. */
+/* Writes as many bytes as a record has, again and again. */
 static double run_raw(const char *folder, size_t size, double time)
 {
     char path[1000], bytes[RECORD_ROOM];
@@ -269,7 +269,7 @@ int main(int count, char **arguments)
     const double time = count > 3 ? strtod(arguments[3], NULL) : 1;
     double rates[ROWS][MOST_ROUNDS], median[ROWS];
     st_memory_install(0);
-    (void)run_sqlite(folder, 1, 1, 0.1); /* how large are records? */
+    (void)run_sqlite(folder, 1, 1, 0.1); /* finds the size of records */
     const size_t size = record_bytes / (records > 0 ? records : 1);
     for (size_t i = 0; i < rounds; i++) {
         rates[RAW][i] = run_raw(folder, size, time);

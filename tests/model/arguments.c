@@ -84,7 +84,7 @@ void md_give_points(md_draft *d, const char *name, uint32_t count, bool list)
     arg->list = list;
 }
 
-/* --- elements: mostly alive, sometimes deleted, sometimes never issued ---------------------- */
+/* --- elements: mostly live, sometimes deleted, sometimes never issued ----------------------- */
 
 uint32_t md_live(md_draft *d, he_kind kind)
 {
@@ -217,7 +217,7 @@ bool md_is_live_boundary(const he_mesh *m, uint32_t h)
            he_is_boundary_halfedge(m, (he_halfedge){h});
 }
 
-/* --- for people --- */
+/* --- printing --- */
 
 void md_describe(const md_call *c, char text[MD_CALL_TEXT])
 {

@@ -1,5 +1,5 @@
-/* arguments.h - arguments of a call by their name, and elements to give: mostly alive, sometimes
- * deleted, sometimes never issued. */
+/* arguments.h - arguments of a call by name, and elements to use as arguments: mostly live,
+ * sometimes deleted, sometimes never issued. */
 #ifndef TESTS_MODEL_ARGUMENTS_H
 #define TESTS_MODEL_ARGUMENTS_H
 
@@ -10,27 +10,27 @@
 enum { MD_LIST = 12, MD_CALL_TEXT = 400 };
 
 typedef struct md_call {
-    size_t row; /* of the table */
+    size_t row; /* in the table of operations */
     const he_op *op;
     he_arg args[HE_OP_PARAMS];
     uint32_t ids[HE_OP_PARAMS][MD_LIST];
     he_vec3 points[HE_OP_PARAMS][MD_LIST];
 } md_call;
 
-/* The call as a request would spell it. */
+/* Writes the call as a request would spell it. */
 void md_describe(const md_call *c, char text[MD_CALL_TEXT]);
 
-/* Parameters are found by name or plural; one that is missing fails the test. */
+/* Finds parameters by name or plural; a missing one fails the test. */
 size_t md_index(const md_call *c, const char *name);
 const he_arg *md_get(const md_call *c, const char *name);
 
-/* A call while it is made up. */
+/* State of making up a call. */
 typedef struct md_draft {
     md_call *c;
     const or_mesh *o;
     const he_mesh *m;
     md_random *r;
-    bool far; /* points too are as large as doubles get */
+    bool far; /* points may be as large as doubles get */
 } md_draft;
 
 void md_give_id(md_draft *d, const char *name, uint32_t id);
@@ -39,19 +39,21 @@ void md_give_flag(md_draft *d, const char *name, bool flag);
 void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t count, bool list);
 void md_give_points(md_draft *d, const char *name, uint32_t count, bool list);
 
-/* A live one where there is any. */
+/* Returns a live element if there is one. */
 uint32_t md_live(md_draft *d, he_kind kind);
 uint32_t md_pick(md_draft *d, he_kind kind);
-/* Give up to `most` elements, as one id or as a list; now and then one twice. How many it were. */
+/* Puts up to `most` elements, as one id or as a list, sometimes with a repeated one. Returns their
+ * number. */
 uint32_t md_pick_some(md_draft *d, const char *one, const char *many, he_kind kind, uint32_t most);
 uint32_t md_boundary_halfedge(md_draft *d);
-/* Give `point` and `normal`: anywhere, or through three vertices. */
+/* Puts `point` and `normal`: random ones, or those of a plane through three vertices. */
 void md_give_plane(md_draft *d);
 
-/* or_require of all elements of a list, and HE_REPEATED_ELEMENT. */
+/* Calls or_require for all elements of a list, and returns HE_REPEATED_ELEMENT, too. */
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg);
 bool md_is_live_boundary(const he_mesh *m, uint32_t h);
-/* The origins along the hole of a boundary half-edge, at most OR_CORNERS; 0 when there are more. */
+/* Finds the origins along the hole of a boundary half-edge, at most OR_CORNERS; returns 0 if there
+ * are more. */
 uint32_t md_hole(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS]);
 
 #endif

@@ -102,7 +102,7 @@ static uint64_t play_vertex_split(const md_call *c, or_mesh *o, const he_mesh *m
     uint64_t sides = left == HE_NONE ? 0 : or_require(o, HE_VERTEX, left);
     sides |= right == HE_NONE ? 0 : or_require(o, HE_VERTEX, right);
     if (sides != 0) {
-        /* Some other reason that holds as well may be noticed first. */
+        /* Another reason that also holds may be reported first. */
         bool null = left == HE_NONE || right == HE_NONE;
         uint32_t v = md_get(c, "vertex")->id;
         bool there = refused == 0;
@@ -123,13 +123,13 @@ static bool draw_face_add(md_draft *d)
     uint32_t n = 0;
     uint32_t h = md_boundary_halfedge(d);
     switch (md_is_live_boundary(d->m, h) ? md_below(d->r, 6) : md_below(d->r, 3)) {
-    case 0: /* any vertices */
+    case 0: /* random vertices */
         n = md_from(d->r, 2, 5);
         for (uint32_t i = 0; i < n; i++) {
             v[i] = md_pick(d, HE_VERTEX);
         }
         break;
-    case 1: /* the other side of a face, or the same side */
+    case 1: /* the other side of a face, or its own side */
     {
         uint32_t f = md_live(d, HE_FACE);
         if (or_require(d->o, HE_FACE, f) != 0 || d->o->face[f].count > MD_LIST) {
@@ -260,7 +260,7 @@ static uint64_t play_face_split(const md_call *c, or_mesh *o, const he_mesh *m)
     }
     refused |= missing;
     if (refused != 0) {
-        /* With something amiss, that both corners are one and the same may be noticed first. */
+        /* If another reason holds, two equal corners may be reported first. */
         return refused | OR_BIT(HE_NOT_A_CORNER) | OR_BIT(HE_SAME_CORNER);
     }
     return or_face_split(o, f, corner[0], corner[1]);
@@ -272,7 +272,7 @@ static bool draw_edge(md_draft *d)
     return true;
 }
 
-/* Faces beside a live edge, or a face, must not outgrow the oracle. */
+/* Faces beside a live edge, or a live face, must not outgrow the oracle. */
 static bool edge_has_room(const or_mesh *o, uint32_t e, uint32_t most)
 {
     uint32_t corners = 0;
@@ -471,7 +471,8 @@ static uint64_t play_edge_collapse(const md_call *c, or_mesh *o, const he_mesh *
                             to->given ? to->points : NULL);
 }
 
-/* A turn about z, a shift, and now and then a mirror: what it does many times over stays small. */
+/* A rotation about z, a translation, and sometimes a mirror: repeated many times, it stays in
+ * range. */
 static bool draw_transform(md_draft *d)
 {
     double angle = md_unit(d->r) * 6;
@@ -484,7 +485,7 @@ static bool draw_transform(md_draft *d)
     arg->given = true;
     memcpy(arg->matrix, matrix, sizeof matrix);
     if (md_chance(d->r, 5)) {
-        /* Everything that is not near the plane x = 0 leaves the range of doubles. */
+        /* Everything that is not near the plane x = 0 overflows. */
         bool overflows = false;
         for (uint32_t v = 0; v < d->o->vertices; v++) {
             overflows = overflows || (d->o->vertex[v].alive && d->o->vertex[v].at.x > 0.2);
@@ -668,11 +669,11 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     c->row = md_below(r, (uint32_t)he_op_count());
     c->op = he_op_at(c->row);
     if (he_mesh_faces(m) > 0 && he_mesh_boundary_halfedges(m) == 0 && md_chance(r, 10)) {
-        choose(c, "dual"); /* few meshes are closed, and those not for long */
+        choose(c, "dual"); /* closed meshes are rare and do not stay closed */
     }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);
-    /* What little there is should not be gone at once. */
+    /* Spares a mesh with few faces. */
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
     }

@@ -2,7 +2,7 @@
 
 #include "mesh/walk.h"
 
-/* An interior vertex where there is one near. */
+/* Returns an interior vertex if there is one near. */
 static uint32_t draw_interior(md_draft *d)
 {
     uint32_t v = md_pick(d, HE_VERTEX);
@@ -14,7 +14,8 @@ static uint32_t draw_interior(md_draft *d)
     return v;
 }
 
-/* Have the faces about v no more corners that it is not next to than the oracle can hold in one? */
+/* Does a face with all corners of the faces around v, except its neighbours, fit into the
+ * oracle? */
 static bool has_room_about(const or_mesh *o, uint32_t v)
 {
     uint32_t corners = 0;
@@ -82,7 +83,7 @@ static uint64_t play_vertex_split_corners(const md_call *c, or_mesh *o, const he
     if (he_origin(m, a).i != he_origin(m, b).i) {
         return OR_BIT(HE_DIFFERENT_ORIGINS);
     }
-    /* At a bow-tie the order of the fans is hedge's. */
+    /* At a bow-tie the order of the fans is hedge's choice. */
     for (he_halfedge h = a; h.i != b.i; h = he_turn_ccw(m, h)) {
         moved[count++] = he_target(m, h).i;
     }

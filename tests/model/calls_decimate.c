@@ -38,8 +38,8 @@ static bool draw_decimate(md_draft *d)
     return true;
 }
 
-/* Which edges are collapsed is hedge's choice. It is asked for it on a copy, and each must be one
- * that edge_collapse allows; what becomes of ids and faces follows from that. */
+/* hedge chooses which edges to collapse. A copy of its mesh shows the choice; each collapse must be
+ * one that edge_collapse allows, and ids and faces must be as these give. */
 static uint64_t play_decimate(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     const he_arg *faces = md_get(c, "faces"), *most = md_get(c, "max_error");

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The origins along the loop of h; 0 when h does not live or its loop is too long. */
+/* Finds the origins along the loop of h; returns 0 if h is not live or its loop is too long. */
 static uint32_t loop_of(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS])
 {
     if (h >= he_mesh_issued(m, HE_HALFEDGE) || !he_mesh_is_live(m, HE_HALFEDGE, h)) {
@@ -66,7 +66,7 @@ static bool draw_loop_bridge(md_draft *d)
         for (int tries = 0; tries < 20 && (on_one_loop(d->m, a, b) || meet(d->m, a, b)); tries++) {
             b = md_boundary_halfedge(d);
         }
-        /* There mostly is only one hole. */
+        /* Usually there is only one hole. */
         if (on_one_loop(d->m, a, b) && md_chance(d->r, 80)) {
             return false;
         }
@@ -142,7 +142,8 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
     if (n != k) {
         return OR_BIT(HE_LOOP_LENGTH);
     }
-    /* b runs from y[0] to y[1], and comes to lie on a from x[0] to x[1]: the wrong way round. */
+    /* b runs from y[0] to y[1] and is laid on a from x[0] to x[1]: the two run in opposite
+     * directions. */
     for (uint32_t i = 0; i < n; i++) {
         against[i] = y[(n + 1 - i) % n];
     }
@@ -151,7 +152,7 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* --- loop_split --- */
 
-/* Three corners that are neighbours of each other but share no face, if there are such. */
+/* Finds three mutually adjacent corners that share no face, if there are any. */
 static bool find_neck(md_draft *d, uint32_t e[3])
 {
     const or_mesh *o = d->o;
@@ -209,7 +210,8 @@ static uint64_t play_loop_split(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* --- plane_cut --- */
 
-/* Is some face so nearly in the plane, or so small there, that rounding decides where it faces? */
+/* Is some face so nearly in the plane, or its part there so small, that rounding decides its
+ * direction? */
 static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal, double within)
 {
     double length = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
@@ -260,8 +262,8 @@ static bool draw_plane_cut(md_draft *d)
            size.longest < OR_CORNERS;
 }
 
-/* The steps of the cut are rows of their own: each is done to a copy by hedge, for the ids and for
- * the links of holes, and to the oracle. What is done where is found here. */
+/* The steps of the cut are operations of their own: hedge runs each on a copy, which gives ids and
+ * links of holes, and the oracle runs it, too. What is cut where is found here. */
 typedef struct cutting {
     or_mesh *o;
     he_mesh *copy;
@@ -326,7 +328,8 @@ static uint64_t delete_side(cutting *c)
         if (refused != 0 || !o->vertex[v].alive || !away) {
             continue;
         }
-        /* Corners of faces that stay are not on the other side, so this one has none. */
+        /* All faces at this corner are deleted, since faces that stay have no corners on the other
+         * side. */
         refused |= or_vertex_delete(o, v, false);
         if (refused == 0 && he_mesh_is_live(c->copy, HE_VERTEX, v) &&
             he_is_isolated(c->copy, (he_vertex){v})) {

@@ -8,15 +8,15 @@
 static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
 enum { NAMES = sizeof names / sizeof *names };
 
-/* The attribute `material` of faces without labels, as marks.c makes some, names no materials. */
+/* The attribute `material` of faces, made by marks.c without labels, names no materials. */
 static bool clashes(const he_mesh *m)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
     return column != NULL && !he_is_material_column(column);
 }
 
-/* The model keeps no attributes: what a material looks like is the unit tests', what it does not
- * touch is the model's. */
+/* The model has no attributes: unit tests check the values of materials, the model checks that
+ * nothing else changes. */
 static bool draw_material_set(md_draft *d)
 {
     he_arg *name = &d->c->args[md_index(d->c, "name")];

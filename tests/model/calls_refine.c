@@ -11,7 +11,7 @@ static void give_scheme(md_draft *d, or_scheme scheme)
     arg->choice = (int)scheme;
 }
 
-/* Does what a step makes fit into the oracle, with room to go on? */
+/* Does the result of a step fit into the oracle, with space left? */
 static bool fits(const or_mesh *o, or_scheme scheme, uint32_t faces, uint32_t corners)
 {
     enum { ROOM = 200 };
@@ -21,8 +21,8 @@ static bool fits(const or_mesh *o, or_scheme scheme, uint32_t faces, uint32_t co
            o->edges + edges + corners + ROOM < OR_EDGES && o->faces + corners + ROOM < OR_FACES;
 }
 
-/* Small meshes mostly, since one becomes four. Many steps are for the limit, which four faces pass
- * by far. */
+/* Mostly small meshes, since one face becomes four. Many steps test the limit, which four faces
+ * exceed by far. */
 static bool draw_subdivide(md_draft *d)
 {
     enum { FEW = 3, MANY = 40, LEAST_BEYOND = 4, BEYOND = 12 };

@@ -18,7 +18,7 @@ static void find_starts(const he_mesh *m, uint32_t start[OR_FACES])
     }
 }
 
-/* Do the named faces leave room for what drawing them off makes? */
+/* Is there space for what extruding the named faces makes? */
 static bool have_room(const or_mesh *o, const he_arg *faces)
 {
     uint32_t corners = 0;
@@ -29,7 +29,7 @@ static bool have_room(const or_mesh *o, const he_arg *faces)
            o->faces + corners < OR_FACES && corners < 4 * OR_LIST;
 }
 
-/* A few faces that hang together, mostly; a whole small component now and then. */
+/* Mostly a few connected faces; sometimes a whole small component. */
 static void pick_patch(md_draft *d)
 {
     uint32_t ids[MD_LIST];
@@ -57,7 +57,7 @@ static void pick_patch(md_draft *d)
     md_give_ids(d, "faces", ids, n, true);
 }
 
-/* One whose corners are in two places only. */
+/* Picks a face whose corners are in two places only. */
 static bool pick_flat(md_draft *d)
 {
     uint32_t start = md_below(d->r, d->o->faces + 1);
@@ -93,7 +93,7 @@ static or_region region_of(const md_call *c, const uint32_t *start)
     return (or_region){f->ids, start, (uint32_t)f->count, md_get(c, "region")->flag};
 }
 
-/* With a distance the faces must have a direction that rounding cannot turn. */
+/* With a distance, the faces must have a direction that rounding cannot change. */
 static bool is_clear(md_draft *d, bool inset)
 {
     uint32_t start[OR_FACES];
@@ -154,7 +154,8 @@ static uint64_t play_face_inset(const md_call *c, or_mesh *o, const he_mesh *m)
     return or_face_inset(o, region_of(c, start), factor->given ? factor->number : 0, distance);
 }
 
-/* Where so much lies about a face that hedge may refuse the work, limits.h has to do. */
+/* Not where a face has such large surroundings that hedge may refuse the work, which limits.h
+ * tests. */
 static bool draw_face_collapse(md_draft *d)
 {
     uint32_t f = md_pick(d, HE_FACE);
@@ -253,7 +254,7 @@ static uint64_t play_dual(const md_call *c, or_mesh *o, const he_mesh *m)
 static or_mesh *other_oracle;
 static he_mesh *other;
 
-/* Numbers where marks are truths clash with those. */
+/* Adds numbers; if marks are bools, the two clash. */
 static bool add_numbers(he_mesh *m)
 {
     he_column *column = NULL;

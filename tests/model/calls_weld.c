@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-/* --- vertices made one ---------------------------------------------------------------------- */
+/* --- merging vertices ----------------------------------------------------------------------- */
 
-/* The ends of two boundary edges that follow each other, so that the edges become one. */
+/* Chooses ends of two consecutive boundary edges, so that the edges become one. */
 static uint32_t draw_zip(md_draft *d, uint32_t v[2])
 {
     he_halfedge h = {md_boundary_halfedge(d)};
@@ -41,7 +41,7 @@ static uint32_t draw_face_corners(md_draft *d, uint32_t *v)
     return d->o->face[f].count;
 }
 
-/* Vertices on the boundary, of which there may be bow-ties afterwards. */
+/* Chooses vertices on the boundary, which may make bow-ties. */
 static uint32_t draw_boundary(md_draft *d, uint32_t v[2])
 {
     for (uint32_t i = 0; i < 2; i++) {
@@ -51,7 +51,7 @@ static uint32_t draw_boundary(md_draft *d, uint32_t v[2])
     return v[0] == v[1] ? 0 : 2;
 }
 
-/* Somewhat more than the distance of two vertices, a little, or none. */
+/* Slightly more than the distance of two vertices, a small value, or 0. */
 static double draw_tolerance(md_draft *d)
 {
     if (md_chance(d->r, 3)) {
@@ -156,7 +156,7 @@ static uint64_t play_weld(const md_call *c, or_mesh *o, const he_mesh *m)
     return play_near(c, o, true);
 }
 
-/* --- bow-ties taken apart ------------------------------------------------------------------- */
+/* --- separating bow-ties -------------------------------------------------------------------- */
 
 static bool draw_vertex_separate(md_draft *d)
 {
@@ -174,7 +174,7 @@ static bool draw_vertex_separate(md_draft *d)
     return md_chance(d->r, 30);
 }
 
-/* The first neighbours of the fans that leave v: all but that which ends with the stored
+/* Finds the first neighbours of the fans that leave v: all but the fan that ends with the stored
  * half-edge. */
 static uint32_t leaving(const he_mesh *m, uint32_t v, uint32_t starts[OR_VERTICES])
 {
@@ -200,7 +200,7 @@ static uint64_t separate(or_mesh *o, const he_mesh *m, const uint32_t *v, size_t
     }
     for (size_t i = 0; i < count && refused == 0; i++) {
         uint32_t n = leaving(m, v[i], starts);
-        /* Some of them may have been given another vertex since. */
+        /* Some of them may have another vertex by now. */
         for (uint32_t k = 0; k < n; k++) {
             he_halfedge h = he_find_halfedge(m, (he_vertex){v[i]}, (he_vertex){starts[k]});
             const or_edge *e = &o->edge[h.i / 2];

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What leaves the oracle room to grow. */
+/* Larger meshes leave the oracle no space to grow. */
 enum { MOST_VERTICES = OR_VERTICES / 2, MOST_FACES = OR_FACES / 3, MOST_BYTES = 1 << 20 };
 
 static char *read_bytes(const char *path, size_t *length)
@@ -24,7 +24,7 @@ static char *read_bytes(const char *path, size_t *length)
     return bytes;
 }
 
-/* Into the box of -2 to 2. */
+/* Scales into the box from -2 to 2. */
 static void fit(he_soup *soup)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};

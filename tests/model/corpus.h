@@ -1,4 +1,4 @@
-/* corpus.h - meshes of files, as the oracle's. */
+/* corpus.h - meshes of files for the oracle. */
 #ifndef TESTS_MODEL_CORPUS_H
 #define TESTS_MODEL_CORPUS_H
 
@@ -9,9 +9,10 @@ typedef struct md_file {
     he_mesh *mesh;
 } md_file;
 
-/* How many files there are, by name; both the list and the meshes are the caller's. */
+/* Finds the files, sorted by name, and returns their number; the caller frees the list and the
+ * meshes. */
 size_t md_corpus_read(md_file **out);
-/* Fill an empty oracle with what lives in a mesh that has no dead elements. */
+/* Copies the live elements of a mesh without dead ones into an empty oracle. */
 void md_take(or_mesh *o, const he_mesh *m);
 
 #endif

@@ -10,10 +10,10 @@
 typedef struct limit {
     const char *row;
     he_mesh *(*make)(void);
-    const char *element; /* its first argument, of id `id`; NULL for none */
+    const char *element; /* name of its first argument, whose id is `id`; NULL: none */
     uint32_t id;
-    const char *number;     /* its second one, 0.1 */
-    const char *name;       /* its argument `name` */
+    const char *number;     /* name of its second argument, which is 0.1 */
+    const char *name;       /* value of its argument `name` */
     he_mesh *(*mesh)(void); /* its argument `mesh` */
 } limit;
 

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Bit for bit: -0 and 0 differ. */
+/* Compares bits: -0 and 0 differ. */
 static bool same_point(he_vec3 a, he_vec3 b)
 {
     uint64_t bits[2][3];
@@ -20,7 +20,7 @@ static bool same_bytes(const he_column *a, const he_column *b, uint32_t row)
     return memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) == 0;
 }
 
-/* What the first component names: of NULL the default of the other. */
+/* Returns the label of the first component; if `column` is NULL, of the other column's default. */
 static const char *name_in(const he_column *column, const he_column *other, uint32_t row)
 {
     const he_column *from = column != NULL ? column : other;
@@ -29,7 +29,7 @@ static const char *name_in(const he_column *column, const he_column *other, uint
     return he_labels_get(from->labels, index);
 }
 
-/* Values of columns that came or went are in no set, but for those with labels. */
+/* Values of columns that were added or removed are in no set, except those with labels. */
 static bool same_in(const he_column *a, const he_column *b, uint32_t row)
 {
     bool labels = (a == NULL || a->labels != NULL) && (b == NULL || b->labels != NULL);
@@ -113,7 +113,7 @@ static bool lives(const he_mesh *m, he_kind kind, uint32_t id)
     return id < he_mesh_issued(m, kind) && he_mesh_is_live(m, kind, id);
 }
 
-/* Take id off the front of a sorted list, if it is there. */
+/* Takes id from the front of a sorted list, if it is there. */
 static bool take(const he_ids *list, size_t *at, uint32_t id)
 {
     bool there = *at < list->count && list->ids[*at] == id;

@@ -1,5 +1,5 @@
-/* net.h - the sets an edit reports, against what two states of a mesh show when compared element
- * by element. */
+/* net.h - compares the sets that an edit reports with the differences of the two states of the
+ * mesh. */
 #ifndef TESTS_MODEL_NET_H
 #define TESTS_MODEL_NET_H
 
@@ -7,7 +7,7 @@
 
 enum { MD_NET_TEXT = 160 };
 
-/* Do created, deleted and modified say how `is` came from `was`? */
+/* Do created, deleted and modified describe how `is` differs from `was`? */
 bool md_net_matches(const he_mesh *was, const he_mesh *is, const he_changes *changes,
                     char text[MD_NET_TEXT]);
 

@@ -1,32 +1,31 @@
-/* parts.h - what random meshes are put together from: vertices anywhere in a small box, and faces
- * of them. */
+/* parts.h - pieces of random meshes: vertices in a small box, and faces between them. */
 #ifndef TESTS_MODEL_PARTS_H
 #define TESTS_MODEL_PARTS_H
 
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* How many; the first. */
+/* Adds n vertices; returns the first. */
 uint32_t md_add_vertices(or_mesh *o, md_random *r, uint32_t n);
-/* A face of the vertices from `first` on, in order or backwards. */
+/* Adds a face of the vertices from `first` on, in order or backwards. */
 void md_add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards);
 
-/* Of 3 to 12 sides. */
+/* Adds a polygon of 3 to 12 sides. */
 void md_add_polygon(or_mesh *o, md_random *r, bool both_sides);
-/* Two rings of 3 to 12. Of a hundred quads between them `triangles` are two triangles, of a hundred
- * caps `caps` are there. */
+/* Adds a prism over 3 to 12 sides. `triangles` percent of its quads are split, `caps` percent of
+ * its caps exist. */
 void md_add_prism(or_mesh *o, md_random *r, uint32_t triangles, uint32_t caps);
-/* A fan about a vertex, closed below by another fan (0), by a polygon (1), or not. */
+/* Adds a fan around a vertex, closed below by another fan (0), by a polygon (1), or open. */
 void md_add_pyramid(or_mesh *o, md_random *r, uint32_t below);
-/* Polygons that share nothing but one vertex. */
+/* Adds polygons that share one vertex and nothing else. */
 void md_add_bowtie(or_mesh *o, md_random *r);
 
-/* Cells of a grid, either direction of which may wrap: sheet, tube or torus. The white squares of a
- * checkerboard are missing. */
+/* Cells of a grid that may wrap in each direction: sheet, tube or torus. In a checkerboard the
+ * white squares are missing. */
 typedef struct md_sheet {
     uint32_t columns, rows;
     bool wrap_x, wrap_y, board;
-    uint32_t triangles; /* cells in a hundred that are two */
+    uint32_t triangles; /* percentage of cells that are two triangles */
 } md_sheet;
 
 void md_add_grid(or_mesh *o, md_random *r, md_sheet sheet);

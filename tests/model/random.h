@@ -1,5 +1,5 @@
-/* random.h - numbers that follow from a seed (the splitmix64 sequence of Steele, Lea and Flood,
- * "Fast splittable pseudorandom number generators", 2014). */
+/* random.h - random numbers from a seed (the splitmix64 sequence of Steele, Lea and Flood, "Fast
+ * splittable pseudorandom number generators", 2014). */
 #ifndef TESTS_MODEL_RANDOM_H
 #define TESTS_MODEL_RANDOM_H
 
@@ -18,7 +18,7 @@ static inline uint64_t md_bits(md_random *r)
     return z ^ (z >> 31);
 }
 
-/* 0..n-1; n is not 0. */
+/* Returns 0..n-1; n is not 0. */
 static inline uint32_t md_below(md_random *r, uint32_t n)
 {
     return (uint32_t)((md_bits(r) >> 32) * n >> 32);
@@ -29,13 +29,13 @@ static inline uint32_t md_from(md_random *r, uint32_t low, uint32_t high)
     return low + md_below(r, high - low + 1);
 }
 
-/* True with a probability of percent in a hundred. */
+/* Returns true with a probability of `percent` in a hundred. */
 static inline bool md_chance(md_random *r, uint32_t percent)
 {
     return md_below(r, 100) < percent;
 }
 
-/* 0 <= x < 1 */
+/* Returns 0 <= x < 1. */
 static inline double md_unit(md_random *r)
 {
     return (double)(md_bits(r) >> 11) * 0x1p-53;

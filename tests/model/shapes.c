@@ -112,7 +112,7 @@ void md_fill_polygons(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* Of a mesh of quads; the last vertex takes its id. */
+/* Drops a vertex from a mesh of quads; the last vertex takes its id. */
 static void drop_vertex(or_mesh *o, uint32_t v)
 {
     uint32_t last = --o->vertices;
@@ -124,7 +124,7 @@ static void drop_vertex(or_mesh *o, uint32_t v)
     }
 }
 
-/* Two tori of quads that share the rim of a hole in each. */
+/* Two tori of quads that share the rim of a hole. */
 void md_fill_genus_2(or_mesh *o, md_random *r)
 {
     uint32_t torus[2];
@@ -138,7 +138,7 @@ void md_fill_genus_2(or_mesh *o, md_random *r)
             rim[i][k] = o->face[torus[i]].v[k];
         }
     }
-    /* The rims run against each other. */
+    /* The two rims run in opposite directions. */
     for (uint32_t f = torus[1]; f < o->fresh; f++) {
         for (uint32_t k = 0; k < 4; k++) {
             for (uint32_t j = 0; j < 4; j++) {
@@ -149,7 +149,7 @@ void md_fill_genus_2(or_mesh *o, md_random *r)
             }
         }
     }
-    /* The highest first, so that what takes its place is no rim. */
+    /* From the highest on, so that the vertex that takes its id is not on a rim. */
     static const int order[4] = {2, 3, 1, 0};
     for (int k = 0; k < 4; k++) {
         drop_vertex(o, rim[1][order[k]]);
@@ -200,7 +200,8 @@ void md_fill_bowties(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* About one vertex: not quite all the way round, all the way, or closed by a face of as many sides.
+/* A fan around one vertex: not quite all the way around, all the way, or closed by a face with as
+ * many sides.
  */
 void md_fill_fan_1000(or_mesh *o, md_random *r)
 {
@@ -244,7 +245,7 @@ void md_fill_tetrahedron(or_mesh *o, md_random *r)
     (void)or_add_face(o, (uint32_t[]){v + 2, v, v + 3}, 3);
 }
 
-/* Where the sum of two coordinates may be beyond the range of doubles. */
+/* The sum of two coordinates may overflow. */
 void md_fill_far(or_mesh *o, md_random *r)
 {
     md_add_grid(o, r, (md_sheet){md_from(r, 1, 3), md_from(r, 1, 3), false, false, false, 50});

@@ -1,16 +1,16 @@
 /* shapes.h - random meshes to start from, by family: closed and open, triangles to 12-gons, with
- * handles, bow-ties, several components, isolated vertices, or nothing at all. */
+ * handles, bow-ties, several components, isolated vertices, or empty. */
 #ifndef TESTS_MODEL_SHAPES_H
 #define TESTS_MODEL_SHAPES_H
 
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* Coordinates of the far mesh end here: two of them need not have a sum. */
+/* The largest coordinate of the far mesh: the sum of two may overflow. */
 #define MD_FAR 1.6e308
 
-/* Add vertices and faces to an empty oracle. */
-void md_fill_mixed(or_mesh *o, md_random *r); /* a bit of everything but the last five */
+/* These functions add vertices and faces to an empty oracle. */
+void md_fill_mixed(or_mesh *o, md_random *r); /* a mixture of everything but the last five */
 void md_fill_closed_triangles(or_mesh *o, md_random *r);
 void md_fill_open_triangles(or_mesh *o, md_random *r);
 void md_fill_quads(or_mesh *o, md_random *r);
@@ -24,10 +24,10 @@ void md_fill_doubled_square(or_mesh *o, md_random *r);
 void md_fill_tetrahedron(or_mesh *o, md_random *r);
 void md_fill_far(or_mesh *o, md_random *r);
 
-/* Fill an empty oracle. Edges get the ids he_build promises: by first appearance, running as that
- * face does. */
+/* Fills an empty oracle. Edges get the ids that he_build promises: in the order of their first
+ * appearance, directed as in that face. */
 void md_shape(or_mesh *o, md_random *r, void (*fill)(or_mesh *, md_random *));
-/* The same through he_build; NULL when it refuses. */
+/* Makes the mesh by he_build; returns NULL if it refuses. */
 he_mesh *md_build(const or_mesh *o);
 
 #endif

@@ -1,4 +1,4 @@
-/* tally.h - what was seen of each row of the table, start by start and in all. */
+/* tally.h - the outcomes of each operation, for each start and in total. */
 #ifndef TESTS_MODEL_TALLY_H
 #define TESTS_MODEL_TALLY_H
 
@@ -19,12 +19,13 @@ typedef struct md_tally {
 } md_tally;
 
 void md_tally_add(md_tally *sum, const md_tally *part);
-/* One line. */
+/* Prints one line. */
 void md_tally_print(const md_tally *tally, const char *name);
-/* A line for each row, each after `before`: how often it was done, each refusal given, and after
- * `never:` those it declares that were not. */
+/* Prints a line for each operation, each after `before`: how often it succeeded, how often it was
+ * refused for each reason, and after `never:` the declared refusals that did not occur. */
 void md_tally_print_rows(const md_tally *tally, const char *before);
-/* Rows that never succeeded; refusals declared and never given. */
+/* Return the number of operations that never succeeded, and of declared refusals that never
+ * occurred. */
 size_t md_tally_idle(const md_tally *tally);
 size_t md_tally_missing(const md_tally *tally);
 

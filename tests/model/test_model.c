@@ -1,12 +1,13 @@
-/* Random edits against the oracle, from every start of starts.h: after each, success or refusal,
- * counts, ids, cycles, ends, links and rings must be what oracle.h says, and he_check must pass; a
- * refusal or a failed allocation must leave the mesh as it was; undo, redo and rollback must lead
- * back bit for bit; the reported sets must be the ones a comparison of both states finds. On every
- * start, large ones too, all this is of the whole mesh and after every edit.
+/* Random edits compared with the oracle, from every start of starts.h. After each edit, success or
+ * refusal, counts, ids, cycles, ends, links and rings must be as oracle.h says, and he_check must
+ * pass. A refusal or a failed allocation must leave the mesh unchanged. Undo, redo and rollback
+ * must restore it bit for bit. The reported sets must be those found by comparing both states. On
+ * every start, large ones too, all this is checked for the whole mesh after every edit.
  *
- * Each start has its share of the edits. What was seen is printed start by start, row by row, and
- * in all at the end. With ENOUGH edits every row must have succeeded; with ALL every row from every
- * start but files and the far mesh, and every refusal that some row declares must have been given.
+ * Each start has its share of the edits. The outcomes are printed by start and by operation, and in
+ * total at the end. With ENOUGH edits every operation must have succeeded; with ALL every operation
+ * must have succeeded from every start but files and the far mesh, and every declared refusal must
+ * have occurred.
  *
  * EDITS (50000) and SEED (from the clock) come from the environment. */
 #include "base/mem.h"
@@ -94,8 +95,8 @@ static he_mesh *copy_of(const world *w)
 /* --- allocations that fail ------------------------------------------------------------------ */
 
 typedef struct famine {
-    uint32_t left; /* allocations that succeed */
-    bool lasts;    /* do those after the first failure fail too? */
+    uint32_t left; /* allocations that still succeed */
+    bool lasts;    /* do all allocations after the first failure fail, too? */
     bool struck;
 } famine;
 
@@ -114,8 +115,8 @@ static void *resize_until(void *context, void *memory, size_t size)
     return realloc(memory, size);
 }
 
-/* Run the call with the first, second, third ... allocation failing, until one runs to its end. Of
- * very many not all are tried. */
+/* Runs the call with the first, second, third ... allocation failing, until one run succeeds. If
+ * there are very many, not all are tried. */
 static he_status run_starved(world *w, const he_mesh *before, const he_delta *delta,
                              he_results *results, he_error *err)
 {
@@ -174,7 +175,7 @@ static void require_net(const world *w, const he_mesh *was, const he_delta *delt
     he_changes_clear(&changes);
 }
 
-/* Back a random number of steps and forth again. */
+/* Undoes a random number of steps and redoes them. */
 static void undo_and_redo(world *w)
 {
     if (w->steps == 0) {
@@ -203,7 +204,7 @@ static void undo_and_redo(world *w)
     w->tally->undone += w->steps - to;
 }
 
-/* Run the call and take it back as if it had never been published. */
+/* Runs the call and rolls it back. */
 static void rehearse(world *w, const he_mesh *before)
 {
     he_results results = {0};
@@ -229,7 +230,7 @@ static void require_declared_change(const world *w, const he_mesh *before)
     }
 }
 
-/* A result called vertex, edge or face is the one the edit made, where it made just one. */
+/* A result called vertex, edge or face must be the new element, if there is exactly one. */
 static void require_results(const world *w, const he_mesh *before, const he_results *results)
 {
     for (size_t i = 0; i < he_op_results(w->call.op); i++) {
@@ -297,8 +298,8 @@ static void refused(world *w, uint64_t expected, he_status status, const he_erro
     he_mesh_free(before);
 }
 
-/* Nothing makes more than some hundred elements, or some for each corner of the longest face or
- * hole and each neighbour. */
+/* An edit makes at most some hundred elements, or some for each corner of the longest face or hole
+ * and for each neighbour. */
 static bool has_room(const world *w)
 {
     const or_mesh *o = w->oracle;
@@ -356,7 +357,7 @@ static uint64_t number_from(const char *name, uint64_t fallback)
     return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
 }
 
-/* One mesh, for a while. */
+/* Edits one mesh for a while. */
 static void live(world *w, uint64_t edits)
 {
     char text[OR_TEXT] = "";
@@ -396,7 +397,7 @@ static void start_from(world *w, const md_start *start, uint64_t edits, md_tally
     (void)fflush(stdout);
 }
 
-/* Files get too few edits for the rarest rows, the far mesh does not suit them all. */
+/* Files get too few edits for the rarest operations, and the far mesh does not suit them all. */
 static void require_all_rows(const md_start *start, const md_tally *tally)
 {
     if (start->file == NULL && !start->far && md_tally_idle(tally) > 0) {

@@ -19,7 +19,7 @@ static bool differ(char text[OR_TEXT], const char *format, ...)
     return false;
 }
 
-/* The corners of hedge's face f, false when its loop does not come back. */
+/* Reads the corners of hedge's face f; returns false if its loop does not close. */
 static bool read_face(const he_mesh *m, uint32_t f, or_face *out)
 {
     out->alive = out->locked = false;
@@ -87,7 +87,7 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Either edge may survive, in its direction. */
+/* Either of the two edges may survive, with its direction. */
 static bool adopt_joined(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
     bool alive[2];
@@ -143,8 +143,8 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Corners i..k of a polygon are closed by a triangle left of k->i, and so on inside. Directed
- * sides are unique, so the triangles are found, not guessed. */
+/* A triangle left of k->i closes corners i..k of a polygon, and so on inside. Directed sides are
+ * unique, so the triangles can be found without guessing. */
 static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_t k,
                          uint32_t *triangles)
 {
@@ -163,7 +163,7 @@ static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_
     return chain_is_cut(o, p, i, j, triangles) && chain_is_cut(o, p, j, k, triangles);
 }
 
-/* 1 or -1 when a face has corners on that side of the plane only, else 0. */
+/* Returns 1 or -1 if a face has corners on that side of the plane only, else 0. */
 static int side_of_part(const or_mesh *o, const or_face *f)
 {
     bool above = false;
@@ -175,9 +175,9 @@ static int side_of_part(const or_mesh *o, const or_face *f)
     return above == below ? 0 : above ? 1 : -1;
 }
 
-/* The parts of a cut face, found from the one that keeps its id by crossing diagonals: each on one
- * side of the plane, its neighbours on the other, and together the whole cycle once. Parts joined
- * by one diagonal less than they are make a disk. */
+/* Finds the parts of a cut face from the part that keeps the id, by crossing diagonals. Each must
+ * be on one side of the plane, its neighbours on the other, and together they must have the whole
+ * cycle once. If there is one diagonal less than parts, they form a disk. */
 static bool parts_make_up(const or_mesh *o, uint32_t i, uint32_t first_new, uint32_t *made)
 {
     const or_face *was = &o->cut[i].was;
@@ -380,8 +380,8 @@ static bool faces_match(const or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Turning about v from its stored half-edge must run through each fan from its first neighbour to
- * its last; the order of the fans is hedge's. */
+/* Turning around v from its stored half-edge must visit each fan from its first neighbour to its
+ * last; the order of the fans is hedge's choice. */
 static bool ring_matches(const or_mesh *o, const he_mesh *m, uint32_t v, char text[OR_TEXT])
 {
     uint32_t degree = or_degree(o, v);

@@ -20,18 +20,18 @@ uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep
     return or_face_delete(o, faces, n, keep_isolated);
 }
 
-/* --- edge_cut: faces about a vertex that touch along edges make fans, along uncut ones parts ----
+/* --- edge_cut: the faces around a vertex form fans, which cut edges divide into parts ---------
  */
 
-/* A part of a fan that gets a new vertex: some of the faces about v. */
+/* A part of a fan that gets a new vertex: some of the faces around v. */
 typedef struct part {
-    uint32_t v, start; /* the half-edge at which it begins */
+    uint32_t v, start; /* the half-edge where it begins */
     bool face[OR_FACES];
 } part;
 
 enum { PARTS = 40, AROUND = OR_CORNERS };
 
-/* The faces about one vertex; those with the same number belong together. */
+/* The faces around one vertex; faces with equal numbers are connected. */
 typedef struct around {
     uint32_t count, face[AROUND], fan[AROUND], part[AROUND];
 } around;
@@ -77,7 +77,8 @@ static around look_around(const or_mesh *o, uint32_t v, const bool cut[])
     return a;
 }
 
-/* The part that keeps the vertex, of the fan of face i: that of the lowest cut edge's first side.
+/* Finds the part that keeps the vertex in the fan of face i: the part of the lowest cut edge's
+ * first side.
  */
 static uint32_t part_that_stays(const or_mesh *o, const around *a, uint32_t i, uint32_t v,
                                 const bool cut[])
@@ -115,7 +116,7 @@ static void add_parts(const or_mesh *o, uint32_t v, const bool cut[], part *part
     }
 }
 
-/* Does this edge go with the part? A cut one does with its first side. */
+/* Does this edge move with the part? A cut edge moves with its first side. */
 static bool goes_along(const or_mesh *o, const part *p, uint32_t e, const bool cut[])
 {
     uint32_t a = o->edge[e].a;
@@ -181,7 +182,7 @@ uint64_t or_edge_cut(or_mesh *o, const uint32_t *e, uint32_t count)
     for (uint32_t k = 0; k < o->edges; k++) {
         edges[k] = o->edge[k];
     }
-    /* Lowest half-edge first. */
+    /* In the order of their lowest half-edge. */
     for (uint32_t done = 0; done < n; done++) {
         part *next = NULL;
         for (uint32_t i = 0; i < n; i++) {
@@ -226,7 +227,7 @@ static bool same_place(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Is anything locked about a vertex that becomes another? */
+/* Is anything locked around a vertex that is merged into another? */
 static bool locked_at_end(const or_mesh *o, uint32_t goes, uint32_t stays, or_keep keep)
 {
     bool moves = keep != OR_A && !same_place(o->vertex[goes].at, o->vertex[stays].at);
@@ -255,7 +256,7 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
     if (refused != 0) {
         return refused;
     }
-    /* The faces of the two run along the edge in opposite directions. */
+    /* The faces of the two must run along the edge in opposite directions. */
     if (forward != backward) {
         uint32_t swap = goes[0];
         goes[0] = goes[1];

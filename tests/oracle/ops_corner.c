@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-/* The neighbours of v, counter-clockwise from `start`; v has one closed fan. */
+/* Finds the neighbours of v, counter-clockwise from `start`; v has one closed fan. */
 static uint32_t ring_of(const or_mesh *o, uint32_t v, uint32_t start, uint32_t ring[OR_VERTICES])
 {
     uint32_t n = 0;
@@ -14,7 +14,7 @@ static uint32_t ring_of(const or_mesh *o, uint32_t v, uint32_t start, uint32_t r
     return n;
 }
 
-/* Is v locked, or an edge or face about it? */
+/* Is v locked, or an edge or face around it? */
 static uint64_t locked_about(const or_mesh *o, uint32_t v)
 {
     bool locked = o->vertex[v].locked;
@@ -69,7 +69,7 @@ static bool holds(const uint32_t *list, uint32_t count, uint32_t x)
     return false;
 }
 
-/* Put w before the corner at place i. */
+/* Inserts w before the corner at place i. */
 static void insert_at(or_face *f, uint32_t i, uint32_t w)
 {
     assert(f->count < OR_CORNERS);

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Angles closer to pi than this are anybody's. */
+/* For angles closer to pi than this, both answers are allowed. */
 static const double SLACK = 1e-6;
 
 static bool is_triangle(const or_mesh *o, uint32_t f)
@@ -11,7 +11,7 @@ static bool is_triangle(const or_mesh *o, uint32_t f)
     return f != OR_NONE && o->face[f].count == 3;
 }
 
-/* At c, between a and b; 0 where one of them is at c. */
+/* The angle at c between a and b; 0 if one of them is at c. */
 static double angle_at(const or_mesh *o, uint32_t c, uint32_t a, uint32_t b)
 {
     he_vec3 at = o->vertex[c].at;
@@ -26,7 +26,8 @@ static double angle_at(const or_mesh *o, uint32_t c, uint32_t a, uint32_t b)
                : atan2(sqrt(n.x * n.x + n.y * n.y + n.z * n.z), along);
 }
 
-/* How much the angles opposite to an edge between triangles exceed pi; -4 for any other edge. */
+/* Returns by how much the angles opposite to an edge between triangles exceed pi; -4 for any other
+ * edge. */
 static double excess(const or_mesh *o, uint32_t e)
 {
     uint32_t a = o->edge[e].a;
@@ -40,7 +41,7 @@ static double excess(const or_mesh *o, uint32_t e)
            angle_at(o, or_after(&o->face[g], a), a, b) - acos(-1);
 }
 
-/* left of the sides of a face becomes `what`. */
+/* Sets `left` of the sides of a face to `what`. */
 static void say(or_mesh *o, uint32_t f, uint32_t what)
 {
     for (uint32_t i = 0; i < o->face[f].count; i++) {

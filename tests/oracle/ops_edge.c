@@ -15,7 +15,7 @@ static uint32_t left_of(const or_mesh *o, uint32_t a, uint32_t b)
     return o->left[a][b];
 }
 
-/* Put w between a and the corner after it. */
+/* Inserts w between a and the corner after it. */
 static void insert_after(or_face *f, uint32_t a, uint32_t w)
 {
     uint32_t i = or_place(f, a) + 1;
@@ -32,7 +32,7 @@ static void remove_corner(or_face *f, uint32_t v)
     f->count--;
 }
 
-/* w on e: the old id keeps the end that half-edge 2e leaves. */
+/* Puts w on e: the old id keeps the end that half-edge 2e leaves. */
 static uint32_t cut_edge(or_mesh *o, uint32_t e, double t)
 {
     uint32_t a = o->edge[e].a;
@@ -99,15 +99,14 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
     return 0;
 }
 
-/* The corner the diagonal goes to in the face left of a->b: the one after b. */
+/* The end of the diagonal in the face left of a->b: the corner after b. */
 static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
 {
     uint32_t f = left_of(o, a, b);
     return f == OR_NONE ? OR_NONE : or_after(&o->face[f], b);
 }
 
-/* In the face that runs a, w, b, c: cut off the triangle w, b, c. The part with `keeper` keeps the
- * id. */
+/* Cuts the triangle w, b, c off the face a, w, b, c, ... The part with `keeper` keeps the id. */
 static void cut_corner(or_mesh *o, uint32_t f, uint32_t w, uint32_t b, uint32_t c, uint32_t keeper)
 {
     or_face rest = o->face[f];
@@ -183,7 +182,7 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* Beside u,v,c and v,u,d only the triangles u,c,d and v,d,c. */
+/* Besides u,v,c and v,u,d there are only the triangles u,c,d and v,d,c. */
 static bool is_tetrahedron(const or_mesh *o, uint32_t u, uint32_t v, uint32_t c, uint32_t d)
 {
     uint32_t f = left_of(o, u, c);
@@ -235,7 +234,7 @@ static uint32_t features_at(const or_mesh *o, uint32_t v)
     return n;
 }
 
-/* What locks and feature lines forbid of u going to v. */
+/* Returns what locks and feature lines forbid when u is merged into v. */
 static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves)
 {
     uint64_t refused = 0;
@@ -261,7 +260,7 @@ static bool same_point(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Is the point at t further from v than rounding can lead? */
+/* Is the point at t certainly different from v, whatever the rounding? */
 static bool surely_off(double u, double v, double t)
 {
     double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;

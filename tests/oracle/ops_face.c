@@ -57,7 +57,7 @@ uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to)
     if (o->joined[from][to] != OR_NONE) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
-    /* The old id lies left of from->to: it runs from `to` on, back to `from`. */
+    /* The old id stays left of from->to: it runs from `to` on, back to `from`. */
     or_face old = {.alive = true};
     or_face new = {.alive = true};
     for (uint32_t s = k;; s = (s + 1) % face->count) {
@@ -103,7 +103,7 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     for (uint32_t i = 0; i < keeps->count; i++) {
         joined.v[joined.count++] = keeps->v[(start + i) % keeps->count];
     }
-    /* That ends at a; what follows is the other face from a to b, without both. */
+    /* That part ends at a. The other face follows, from a to b, without both. */
     start = or_place(goes, a);
     for (uint32_t i = 1; i + 1 < goes->count; i++) {
         assert(joined.count < OR_CORNERS);
@@ -115,7 +115,7 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* A vertex somewhere inside the box of some corners. */
+/* Adds a vertex somewhere in the bounding box of some corners. */
 static uint32_t add_inside(or_mesh *o, const uint32_t *v, uint32_t count)
 {
     uint32_t w = or_add_vertex(o, (he_vec3){0, 0, 0});
@@ -153,7 +153,7 @@ static bool is_side(const or_face *f, uint32_t a, uint32_t b)
     return or_after(f, a) == b || or_after(f, b) == a;
 }
 
-/* Is there a diagonal of f that is an edge already, or could be one of g's too? */
+/* Is there a diagonal of f that is an edge already, or that may also be one of g's? */
 static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
 {
     for (uint32_t i = 0; i < f->count; i++) {
@@ -170,7 +170,7 @@ static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
     return false;
 }
 
-/* Which diagonals are drawn is hedge's choice, so is whether one of them is taken. */
+/* The choice of diagonals is hedge's, and so is whether a diagonal doubles an edge. */
 static void cut_up(or_mesh *o, uint32_t id, const or_face *was, uint32_t start)
 {
     assert(o->cuts < OR_LIST);

@@ -50,8 +50,8 @@ static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
 }
 
-/* Of the ways to pair the corners of loops of one length by which no two edges join the same two
- * vertices: the least sum of squares, infinite when there is none. */
+/* Of all pairings of the corners of two loops of equal length by which no two edges join the same
+ * two vertices: returns the least sum of squares, infinite if there is no such pairing. */
 static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
 {
     double least = INFINITY;
@@ -80,8 +80,9 @@ uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_
     if (o->twist == INFINITY) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
-    /* Between loops of different lengths hedge chooses corner by corner, so whether an edge is
-     * doubled is not known; nor whether it finds a pairing before it has tried its number. */
+    /* Between loops of different lengths hedge chooses corner by corner, so the oracle does not
+     * know whether an edge would be doubled, nor whether hedge finds a pairing within its number of
+     * attempts. */
     bool can_double = false;
     for (uint32_t i = 0; i < n && n != m; i++) {
         for (uint32_t k = 0; k < m; k++) {
@@ -109,8 +110,8 @@ static bool is_side(const or_face *loop, uint32_t a, uint32_t b)
     return false;
 }
 
-/* A face of the strip has one side of each loop, or of one of them as a triangle; its other sides
- * go from one loop to the other. */
+/* A face of the strip has one side of each loop, or (a triangle) of one loop; its other sides
+ * connect the loops. */
 static bool is_in_strip(const or_mesh *o, const or_face *f)
 {
     const or_face *a = &o->bridge[0];
@@ -131,8 +132,8 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-/* Between loops of one length, all corners of which hedge looks at: does no other way round that is
- * allowed make shorter rungs? */
+/* For loops of equal length, of which hedge tries all rotations: is there no allowed one with
+ * shorter rungs? */
 static bool is_least_twisted(const or_mesh *o)
 {
     const or_face *a = &o->bridge[0];
@@ -167,7 +168,7 @@ bool or_strip_is_right(const or_mesh *o, uint32_t first_new)
 
 /* --- loop_join --- */
 
-/* What v is after b[i] has become a[i]. */
+/* What v becomes when b[i] is merged into a[i]. */
 static uint32_t becomes(const uint32_t *a, const uint32_t *b, uint32_t n, uint32_t v)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -313,7 +314,7 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3])
     if (repeats(faces, 6)) {
         return OR_BIT(HE_SHARED_FACE);
     }
-    /* What lies right of the cycle: counter-clockwise from the corner before to the one after. */
+    /* The corners right of the cycle: counter-clockwise from the corner before to the one after. */
     uint32_t beyond[3][OR_VERTICES];
     uint32_t around[3][OR_VERTICES];
     uint32_t count[3];

@@ -19,7 +19,7 @@ static bool has_edge(const or_mesh *o, uint32_t v)
 }
 
 /* 1e-9 of the longest side of the box around the vertices that have edges. The model's meshes are
- * not small beside their coordinates, so that rounding asks for less. */
+ * not small relative to their coordinates, so rounding needs no larger tolerance. */
 static double tolerance_of(const or_mesh *o)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};
@@ -34,7 +34,7 @@ static double tolerance_of(const or_mesh *o)
     return 1e-9 * fmax(0, fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z)));
 }
 
-/* False when some vertex is closer to the end of the tolerance than rounding can tell. */
+/* Returns false if a vertex is so close to the limit of the tolerance that rounding decides. */
 static bool find_distances(const or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
                            double distance[OR_VERTICES])
 {
@@ -93,8 +93,8 @@ or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
     return size;
 }
 
-/* Where the plane meets the sides of a face: vertices, or the vertices to come, which are named by
- * their edges. */
+/* Finds where the plane meets the sides of a face: at vertices, or at vertices to be made, which
+ * are named by their edges. */
 static uint32_t meetings(const or_mesh *o, const or_face *f, uint32_t out[2 * OR_CORNERS])
 {
     uint32_t n = 0;
@@ -121,8 +121,8 @@ static bool holds(const uint32_t *list, uint32_t n, uint32_t x)
     return false;
 }
 
-/* Would a diagonal between two meetings of cut i double an edge that is there, or a diagonal of
- * another cut? Where both are the only ones there are, it is certain. */
+/* May a diagonal between two meeting points of cut i double an existing edge, or a diagonal of
+ * another cut? It is certain if both cuts have exactly two meeting points. */
 static bool can_double(const or_mesh *o, uint32_t i, bool *certain)
 {
     const or_face *f = &o->face[o->cut[i].id];
@@ -202,7 +202,7 @@ void or_plane_vertices(or_mesh *o)
         (void)or_edge_bisect(o, e, o->distance[a] / apart);
         o->distance[o->vertices - 1] = 0;
         if (fabs(apart) < 1e-4) {
-            /* So flat that rounding decides where on the edge it is. */
+            /* The edge is so flat that rounding decides where the point is. */
             he_vec3 p = o->vertex[a].at;
             he_vec3 q = o->vertex[b].at;
             w->near = false;

@@ -4,13 +4,13 @@
 #include <math.h>
 #include <string.h>
 
-/* --- parts: which of the listed faces go together, and where they end ------------------------ */
+/* --- parts: connected sets of the listed faces, and their rims ------------------------------ */
 
 typedef struct part {
     uint32_t faces[OR_LIST];
     uint32_t count;
     bool in[OR_FACES];
-    /* Directed sides at which it ends. */
+    /* The directed sides on its rim. */
     uint32_t from[OR_LIST * 4], to[OR_LIST * 4];
     uint32_t rim;
 } part;
@@ -25,14 +25,14 @@ static bool is_listed(or_region region, uint32_t f)
     return false;
 }
 
-/* The corner i places after that where a face begins. */
+/* The corner i places after the first one of a face. */
 static uint32_t corner(const or_mesh *o, or_region region, uint32_t f, uint32_t i)
 {
     const or_face *face = &o->face[f];
     return face->v[(or_place(face, region.start[f]) + i) % face->count];
 }
 
-/* Around `first`, breadth-first. */
+/* Finds the part of `first`, breadth-first. */
 static void find_part(const or_mesh *o, or_region region, uint32_t first, part *p)
 {
     memset(p, 0, sizeof *p);
@@ -181,7 +181,7 @@ bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset)
     return false;
 }
 
-/* --- drawing a part off ---------------------------------------------------------------------- */
+/* --- separating a part ----------------------------------------------------------------------- */
 
 static void draw_off(or_mesh *o, const part *p)
 {
@@ -224,7 +224,7 @@ static bool is_finite(he_vec3 a, he_vec3 b)
     return isfinite(a.x + b.x) && isfinite(a.y + b.y) && isfinite(a.z + b.z);
 }
 
-/* What is wrong with where the part is to go. */
+/* Returns the refusals for the translation of a part. */
 static uint64_t check_shift(const or_mesh *o, const part *p, const he_vec3 *by)
 {
     uint64_t refused = by == NULL && is_all_flat(o, p) ? OR_BIT(HE_NO_NORMAL) : 0;
@@ -242,7 +242,7 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
     static part p;
     bool done[OR_FACES] = {false};
     uint64_t refused = 0;
-    /* Each part is on its own, so the order in which they come does not matter. */
+    /* The parts are independent, so their order does not matter. */
     for (uint32_t k = 0; k < region.count; k++) {
         find_part(o, region, region.faces[k], &p);
         refused |= check_part(o, &p, true) | check_shift(o, &p, by);
@@ -275,7 +275,7 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
                 o->vertex[v].near = true;
             }
         }
-        /* Sides belong to nothing that is listed; sides between parts are found anew. */
+        /* New sides belong to no listed face; sides between parts are found again. */
         uint64_t wrong = or_derive(o);
         assert(wrong == 0);
         (void)wrong;
@@ -283,7 +283,7 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
     return refused;
 }
 
-/* Within a box about where it comes from. */
+/* Allows positions within a box around the old one. */
 static void may_move(or_vertex *v, double reach)
 {
     v->inside = true;
@@ -291,7 +291,7 @@ static void may_move(or_vertex *v, double reach)
     v->high = (he_vec3){v->at.x + reach, v->at.y + reach, v->at.z + reach};
 }
 
-/* The mean of the means of the part's faces about v. */
+/* The mean of the centroids of the part's faces around v. */
 static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 sum = {0, 0, 0};
@@ -311,7 +311,7 @@ static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
     return sum;
 }
 
-/* From a corner on the rim to the middle of what it belongs to. */
+/* The vector from a corner on the rim to the middle of its faces. */
 static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 from = o->vertex[v].at;
@@ -319,7 +319,7 @@ static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
     return (he_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
 }
 
-/* What is wrong with where the rim is to go. */
+/* Returns the refusals for the movement of the rim. */
 static uint64_t check_way(const or_mesh *o, const part *p, bool by_factor)
 {
     uint64_t refused = 0;

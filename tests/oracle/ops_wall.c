@@ -7,7 +7,7 @@
 
 uint64_t or_edge_extrude(or_mesh *o, const uint32_t *e, uint32_t count, he_vec3 by)
 {
-    /* Along the hole, where one arrives from and leaves to. */
+    /* Predecessors and successors along the hole. */
     uint32_t from[OR_VERTICES];
     uint32_t to[OR_VERTICES];
     uint32_t copy[OR_VERTICES];
@@ -78,7 +78,7 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     }
     out[n++] = x;
     out[n++] = v;
-    /* Back to where the fan begins. */
+    /* Goes back to the beginning of the fan. */
     x = w;
     while (o->left[x][v] != OR_NONE) {
         x = or_after(&o->face[o->left[x][v]], v);
@@ -91,8 +91,8 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     return n;
 }
 
-/* In every face of the fan the corner v becomes a cut towards the corner before it and one towards
- * the corner after it, where there are cuts. */
+/* In each face of the fan, replaces the corner v by the cut towards the corner before it and the
+ * cut towards the corner after it, if these exist. */
 static void cut_faces(or_mesh *o, uint32_t v, const uint32_t cut[OR_VERTICES])
 {
     for (uint32_t f = 0; f < o->faces; f++) {
@@ -103,7 +103,7 @@ static void cut_faces(or_mesh *o, uint32_t v, const uint32_t cut[OR_VERTICES])
         uint32_t before = or_before(face, v);
         uint32_t after = or_after(face, v);
         if (cut[before] == OR_NONE && cut[after] == OR_NONE) {
-            continue; /* another fan */
+            continue; /* belongs to another fan */
         }
         or_face was = *face;
         face->count = 0;

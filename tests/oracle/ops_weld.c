@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- vertices made one ---------------------------------------------------------------------- */
+/* --- merging vertices ----------------------------------------------------------------------- */
 
-/* Corners become what they join; neighbours that are the same are one. */
+/* Replaces corners by the vertices that they are merged into; equal neighbours become one. */
 static void draw_together(or_face *f, const uint32_t *to)
 {
     uint32_t first = to[f->v[0]];
@@ -31,7 +31,7 @@ static bool repeats(const or_face *f)
     return false;
 }
 
-/* What is wrong with how faces meet at edges; those in `skip` do not count. */
+/* Returns what is wrong with how faces meet at edges; faces in `skip` do not count. */
 static uint64_t clashes(const or_mesh *o, const bool *skip)
 {
     static uint8_t uses[OR_VERTICES][OR_VERTICES];
@@ -77,7 +77,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
         any |= same[f];
     }
     uint64_t refused = clashes(o, same);
-    /* With faces that are the same beside others that are not, either is a fair word. */
+    /* If some faces are equal and others clash, both refusals are correct. */
     refused |= refused != 0 && any ? clashes(o, none) : 0;
     for (uint32_t f = 0; f < o->faces; f++) {
         o->face[f].alive &= !same[f];
@@ -85,7 +85,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     return refused;
 }
 
-/* Of edges that join the same two the lowest stays, unless no face is left there. */
+/* Of edges with the same ends the lowest stays, unless it has no face left. */
 static void weld_edges(or_mesh *o, const uint32_t *to)
 {
     for (uint32_t e = 0; e < o->edges; e++) {
@@ -210,7 +210,7 @@ bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES])
     return clear;
 }
 
-/* --- bow-ties taken apart ------------------------------------------------------------------- */
+/* --- separating bow-ties -------------------------------------------------------------------- */
 
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count)
 {

@@ -251,7 +251,7 @@ uint32_t or_degree(const or_mesh *o, uint32_t v)
     return v < o->known_vertices ? o->degree[v] : 0;
 }
 
-/* Open fans: each begins at a neighbour no face comes from. */
+/* Returns the number of open fans: each begins at a neighbour that no face precedes. */
 static uint32_t open_fans(const or_mesh *o, uint32_t v)
 {
     uint32_t n = 0;

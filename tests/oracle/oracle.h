@@ -1,33 +1,33 @@
-/* oracle.h - a mesh without half-edges: slow, obvious, and written from the meaning of the
+/* oracle.h - a mesh without half-edges: slow, obvious, and written from the specification of the
  * operations alone.
  *
  * The oracle knows three lists: vertices with a position, faces as cycles of vertex ids, edges as
  * pairs of vertex ids (the first is the origin of half-edge 2e). There are no links. Everything
- * else is found again after each operation by looking at every face:
+ * else is computed again after each operation by visiting every face:
  *
  *     left[a][b]    the face that runs from a to b, OR_NONE when none does
  *     joined[a][b]  the edge between a and b, OR_NONE when none does
  *     around[a]     the degree[a] vertices b for which there is left[a][b] or left[b][a]
  *
- * An operation of the oracle answers with the set of all refusals that apply, one bit a status. The
- * set is empty when it succeeded. Which of several reasons hedge names is its own choice.
+ * An operation of the oracle returns the set of all refusals that apply, one bit per status; the
+ * set is empty on success. If several apply, hedge may report any of them.
  *
  * New vertices get the next id. New faces and edges have no ids at first, since the specification
  * does not order them: or_adopt finds them in hedge's mesh by their corners and ends. Who survives
  * is specified, so ids that were there before are compared by id.
  *
- * What is locked or a feature is not the oracle's to know: it is told before each operation.
+ * The oracle does not track locks and features: the test passes them before each operation.
  *
- * There is room for a fan of a thousand triangles and what grows on it (OR_VERTICES and so on); the
- * model test starts a new mesh before it runs out. Only what is used is ever touched, so a small
- * mesh costs what a small mesh does. */
+ * The tables hold a fan of a thousand triangles and edits of it (OR_VERTICES and so on); the model
+ * test starts a new mesh before they are full. Only rows in use are visited, so a small mesh takes
+ * little time. */
 #ifndef TESTS_ORACLE_ORACLE_H
 #define TESTS_ORACLE_ORACLE_H
 
 #include "mesh/mesh.h"
 
-/* Rows of the tables are an odd number of cache lines long, so that a column of them is not all in
- * one place of the cache. */
+/* Rows of the tables are an odd number of cache lines long, so that the entries of a column use
+ * different cache sets. */
 enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200, OR_LIST = 1200 };
 
 #define OR_NONE        UINT32_MAX
@@ -36,8 +36,8 @@ enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200,
 typedef struct or_vertex {
     bool alive;
     bool locked;
-    bool near;   /* `at` was computed here: compare with a tolerance, then take hedge's */
-    bool inside; /* `at` is not specified: anything within low..high will do */
+    bool near;   /* `at` was computed here: compared with a tolerance, then replaced by hedge's */
+    bool inside; /* `at` is not specified: anything within low..high is correct */
     he_vec3 at, low, high;
 } or_vertex;
 
@@ -53,27 +53,27 @@ typedef struct or_face {
 } or_face;
 
 typedef struct or_mesh {
-    uint32_t vertices, edges, faces; /* issued */
-    uint32_t fresh;                  /* faces beyond `faces` that wait for their ids */
-    /* Faces that became triangles of hedge's choice: their cycle as it was. `id` is OR_NONE where
-     * all triangles are new (a filled hole). By plane_split: faces that became parts on one side of
-     * the plane, and or_adopt makes the vertices of `was` that are new. */
+    uint32_t vertices, edges, faces; /* numbers of ids issued */
+    uint32_t fresh;                  /* faces after `faces` that have no ids yet */
+    /* Faces that became triangles of hedge's choice: their old cycles. `id` is OR_NONE if all
+     * triangles are new (a filled hole). For plane_split: faces that became parts on one side of
+     * the plane; or_adopt makes the new vertices in `was`. */
     struct {
         uint32_t id, start;
         or_face was;
     } cut[OR_LIST];
     uint32_t cuts;
     bool by_plane;
-    bool chosen[OR_FACES];        /* what plane_split is to cut */
-    double distance[OR_VERTICES]; /* from the plane; 0 in it */
-    /* Refusals that depend on those triangles, or on rounding: hedge may give them or succeed. In
-     * `before` are the lists to go back to if it does, NULL where nothing is changed in them. */
+    bool chosen[OR_FACES];        /* faces that plane_split cuts */
+    double distance[OR_VERTICES]; /* from the plane; 0: in it */
+    /* Refusals that depend on those triangles, or on rounding: hedge may refuse or succeed.
+     * `before` has the lists to go back to if it refuses, NULL if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
-    bool bridging;     /* loop_bridge: new faces of hedge's choice join these two loops */
-    or_face bridge[2]; /* as they go round their holes */
-    double twist;      /* of the least twisted pairing without a doubled edge, if equally long */
-    bool either;       /* edge_join: `joining` are the two edges of which one survives */
+    bool bridging;     /* loop_bridge: new faces of hedge's choice connect these two loops */
+    or_face bridge[2]; /* in the direction around their holes */
+    double twist;      /* the least twist without a doubled edge, if the loops are equally long */
+    bool either;       /* edge_join: one of the two edges in `joining` survives */
     uint32_t joining[2];
     or_vertex vertex[OR_VERTICES];
     or_edge edge[OR_EDGES];
@@ -82,7 +82,8 @@ typedef struct or_mesh {
     uint32_t joined[OR_VERTICES][OR_VERTICES];
     uint32_t around[OR_VERTICES][OR_VERTICES];
     uint32_t degree[OR_VERTICES];
-    /* What the tables hold: rows of vertices, and of each edge the pair it was joined under. */
+    /* The extent of the tables: rows of vertices, and for each edge the pair under which it was
+     * entered. */
     uint32_t known_vertices, known_edges;
     uint32_t pair[OR_EDGES][2];
 } or_mesh;
@@ -97,7 +98,7 @@ uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
 uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
 void or_remove_last_face(or_mesh *o);
 
-/* The lists as they are between two operations, to go back to. or_restore frees them too. */
+/* The lists between two operations, to go back to. or_restore also frees them. */
 typedef struct or_lists {
     uint32_t vertices, edges, faces;
     or_vertex *vertex;
@@ -108,55 +109,58 @@ typedef struct or_lists {
 or_lists *or_save(const or_mesh *o);
 void or_restore(or_mesh *o, or_lists *lists);
 void or_forget(or_lists *lists);
-/* hedge may refuse this with `may`: then or_decline goes back to `before`, which is the oracle's.
+/* hedge may refuse this operation with `may`: or_decline then goes back to `before`, which the
+ * oracle owns.
  */
 void or_doubt(or_mesh *o, or_lists *before, uint64_t may);
 
-/* --- looking -------------------------------------------------------------------------------- */
+/* --- queries -------------------------------------------------------------------------------- */
 
-/* Fill left and joined from the lists. Answers with what no mesh can hold: HE_TOO_FEW_CORNERS,
+/* Fills `left` and `joined` from the lists. Returns what no mesh can represent: HE_TOO_FEW_CORNERS,
  * HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
 uint64_t or_derive(or_mesh *o);
-/* One entry of left, or of joined, by hand. */
+/* Each sets one entry, of `left` or of `joined`. */
 void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f);
 void or_set_joined(or_mesh *o, uint32_t e);
 
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
 uint32_t or_live_faces(const or_mesh *o);
-/* Place of v in the cycle of f, OR_NONE when it is no corner. */
+/* Returns the place of v in the cycle of f; OR_NONE if it is no corner. */
 uint32_t or_place(const or_face *f, uint32_t v);
 uint32_t or_after(const or_face *f, uint32_t v);
 uint32_t or_before(const or_face *f, uint32_t v);
 uint32_t or_degree(const or_mesh *o, uint32_t v);
-bool or_on_boundary(const or_mesh *o, uint32_t v); /* true of an isolated vertex */
+bool or_on_boundary(const or_mesh *o, uint32_t v); /* also true for an isolated vertex */
 uint32_t or_fans(const or_mesh *o, uint32_t v);
-/* Neighbours of v, no more than `room`. */
+/* Finds the neighbours of v, at most `room`. */
 uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t room);
-/* Counter-clockwise from x about v: the next neighbour of the same fan, OR_NONE at its end. */
+/* Returns the next neighbour of the same fan counter-clockwise from x around v; OR_NONE at its
+ * end. */
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
-/* Does the open fan at v that begins with neighbour x end with y, and is there another? */
+/* Does the open fan at v that begins with neighbour x end with y, and is there another one? */
 bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
 /* --- operations (ops_*.c) --------------------------------------------------------------------- */
 
-/* HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
+/* Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
 uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
-/* left or right may be OR_NONE; to NULL leaves the new vertex where v is. */
+/* left or right may be OR_NONE; if `to` is NULL the new vertex is at v. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
 
 uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_join(or_mesh *o, uint32_t v);
 uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
-/* u, the origin, goes; v stays, at `to` or at t between them. */
+/* u, the origin, is deleted; v stays, at `to` or at t between them. */
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
-/* Its two halves. What is refused only if v moves, which rounding decides, is added to *doubt. */
+/* The two halves of or_edge_collapse. Refusals that apply only if v moves, which rounding decides,
+ * are added to *doubt. */
 uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
                            uint64_t *doubt);
 void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
@@ -172,43 +176,44 @@ uint64_t or_face_add(or_mesh *o, const uint32_t *v, uint32_t count);
 uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep_isolated);
 uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to);
 uint64_t or_face_join(or_mesh *o, uint32_t e);
-/* start is the origin of the stored half-edge of f; at NULL means somewhere inside. */
+/* `start` is the origin of the stored half-edge of f; `at` NULL means somewhere inside. */
 uint64_t or_face_poke(or_mesh *o, uint32_t f, uint32_t start, const he_vec3 *at);
-/* Each keeps the triangle of its stored half-edge, which leaves start[i]. */
+/* Each face keeps the triangle of its stored half-edge, which leaves start[i]. */
 uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *start, uint32_t count);
 
 typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
-/* The hole as hedge's boundary links go round it: at a bow-tie that is hedge's choice. */
+/* The hole in the order of hedge's boundary links, which at a bow-tie is hedge's choice. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
-/* (ops_corner.c) `start` is a neighbour of v about which hedge's stored half-edge begins: its face
- * stays, or v comes to lie towards it. `moved` are the neighbours that go to the new vertex. */
+/* (ops_corner.c) `start` is the neighbour of v where hedge's stored half-edge begins: its face
+ * stays, or v moves towards it. `moved` are the neighbours that move to the new vertex. */
 uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
 uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
 uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
 
-/* (ops_weld.c) Vertex v becomes part of to[v], or is itself that; the mean of all, or where to[v]
- * was. or_weld_near finds `to` for a tolerance: false when rounding decides. */
+/* (ops_weld.c) Merges vertex v into to[v], which may be v itself; the result is at the mean of all,
+ * or at to[v]. or_weld_near finds `to` for a tolerance; it returns false if rounding decides. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
 bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
-/* The fans about v that leave it, by the first neighbour of each: which one stays, and in which
- * order the others get their vertices, is hedge's choice. */
+/* `starts` are the first neighbours of the fans around v that leave it: hedge chooses which one
+ * stays, and in which order the others get their vertices. */
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 uint64_t or_delete_isolated(or_mesh *o);
-/* Holes as hedge's links go round them. */
+/* Holes in the order of hedge's links. */
 uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
-/* b[i] becomes one with a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
+/* Merges b[i] into a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
 uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
                       uint32_t n);
 uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
-/* The vertices of the cycle of three edges, as the first one runs; false when they are none. */
+/* Finds the vertices of a cycle of three edges, in the direction of the first one; returns false if
+ * they form none. */
 bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
-/* Once plane_split has cut everything: on which side is a face? */
+/* After plane_split has cut everything: is the face above the plane? */
 bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
 /* (ops_region.c) start[f] is the origin of the stored half-edge of face f, where its corners begin.
- * `by` NULL: `distance` along the normal. A factor of 0: by `distance`; where the corners of an
- * inset come to lie is only known to be near their old places. */
+ * `by` NULL: `distance` along the normal. A factor of 0: by `distance`; the new corners of an inset
+ * are then only known to be near the old ones. */
 typedef struct or_region {
     const uint32_t *faces, *start;
     uint32_t count;
@@ -216,60 +221,62 @@ typedef struct or_region {
 } or_region;
 uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
-/* Is the direction a face, or the whole region, faces so uncertain that rounding decides? Not where
- * the corners are in two places only: such faces certainly have none. */
+/* Is the direction of a face, or of the whole region, so uncertain that rounding decides it? Faces
+ * whose corners are in two places only are certain: they have none. */
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* (ops_whole.c) NULL faces for all. */
+/* (ops_whole.c) `faces` NULL: all faces. */
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
-/* All of `other` that lives, with the ids in their order. */
+/* Appends all live elements of `other`, in the order of ids. */
 void or_append(or_mesh *o, const or_mesh *other);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
 
-/* (ops_refine.c) One step; start[f] is the origin of the stored half-edge of face f. */
+/* (ops_refine.c) Makes one step; start[f] is the origin of the stored half-edge of face f. */
 typedef enum or_scheme { OR_LOOP, OR_CATMULL_CLARK, OR_LINEAR, OR_SQRT3 } or_scheme;
 uint64_t or_subdivide(or_mesh *o, or_scheme scheme, const uint32_t *start);
 
 /* A NULL tolerance stands for hedge's, NULL faces for all; start[f] is the origin of the stored
- * half-edge of face f. Which corners in the plane are joined in a face with more than two is
- * hedge's choice, as long as every part lies on one side of the plane. */
+ * half-edge of face f. In a face with more than two corners in the plane, hedge chooses which are
+ * joined, as long as every part lies on one side of the plane. */
 uint64_t or_plane_split(or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
                         const uint32_t *faces, uint32_t count, const uint32_t *start);
-/* What that would make at most, and whether a vertex is so near to where the tolerance ends that
- * rounding decides. */
+/* The maximum size of the result, and whether a vertex is so close to the limit of the tolerance
+ * that rounding decides. */
 typedef struct or_plane_size {
-    uint32_t crossed, cut, longest; /* edges, faces, corners of the longest face afterwards */
+    /* number of edges and faces, and corners of the longest face afterwards */
+    uint32_t crossed, cut, longest;
     bool doubtful;
 } or_plane_size;
 or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
                                const double *tolerance);
 
-/* One flip that hedge's delaunay reports: false with a sentence unless the edge lies between two
- * triangles, the angles opposite to it ask for it, and edge_flip allows it. The order of the flips
- * is hedge's choice. Afterwards no edge of `looked` may ask for a flip that is allowed. */
+/* Applies one flip that hedge's delaunay reports. Returns false with a sentence unless the edge
+ * lies between two triangles, the opposite angles require a flip, and edge_flip allows it. hedge
+ * chooses the order of the flips. Afterwards no edge of `looked` may require an allowed flip. */
 bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t room);
 bool or_delaunay_done(or_mesh *o, const bool looked[], char *text, size_t room);
 
-/* --- against hedge (match.c) ------------------------------------------------------------------ */
+/* --- comparison with hedge (match.c) ---------------------------------------------------------- */
 
 enum { OR_TEXT = 256 };
 
-/* The vertices that plane_split puts on edges, by rising edge, and the faces to be cut with them.
+/* Makes the vertices that plane_split puts on edges, by ascending edge, and inserts them into the
+ * faces to be cut.
  */
 void or_plane_vertices(or_mesh *o);
-/* Do the faces from `first_new` on make up the strip of loop_bridge? */
+/* Do the faces from `first_new` on form the strip of loop_bridge? */
 bool or_strip_is_right(const or_mesh *o, uint32_t first_new);
-/* Take over the ids hedge gave to what the last operation made, then or_derive. False with a
- * sentence when hedge's mesh has other new elements than the oracle. or_decline is for a refusal
- * in `may`: the oracle goes back to before the operation. */
+/* or_adopt takes over the ids that hedge gave to new elements, then calls or_derive. Returns false
+ * with a sentence if hedge's mesh has other new elements. or_decline handles a refusal in `may`:
+ * the oracle goes back to its state before the operation. */
 void or_decline(or_mesh *o);
 bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
-/* Is hedge's mesh this one in every count, cycle, end, link, ring and position? */
+/* Does hedge's mesh equal this one in all counts, cycles, ends, links, rings and positions? */
 bool or_matches(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
 
 #endif

@@ -1,7 +1,7 @@
-/* The least a libmicrohttpd server can do: the same bytes for every request. The yardstick of
- * tests/bench/http.sh.
+/* The least that a libmicrohttpd server can do: it sends fixed bytes for every request.
+ * tests/bench/http.sh compares hedged with it.
  *
- *     bare WORKERS BODY      prints the port it listens on, and ends when stdin does             */
+ *     bare WORKERS BODY      prints the port it listens on, and ends when stdin does */
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>

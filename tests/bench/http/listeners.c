@@ -1,5 +1,5 @@
-/* What listeners cost: memory of each while nothing happens, and how long an edit takes to reach
- * them all, from the first byte of the request to the last listener's event.
+/* Benchmark of listeners: the memory of each while nothing happens, and the time from the first
+ * byte of an edit to the last listener's event.
  *
  *     listeners PORT PID LISTENERS ROUNDS */
 #include <arpa/inet.h>
@@ -57,7 +57,7 @@ static void say(int fd, const char *method, const char *path, const char *body)
 
 static char buffer[BUFFER];
 
-/* Until `end` has come. */
+/* Reads until `end` has arrived. */
 static void hear(int fd, const char *end)
 {
     size_t length = 0;
@@ -90,7 +90,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Every listener gets one event, which arrives as one chunk and ends in a blank line. */
+/* Waits until each listener has received one event, which arrives as one chunk and ends in a blank
+ * line. */
 static void hear_all(int epoll, size_t listeners)
 {
     struct epoll_event ready[BATCH];

@@ -1,4 +1,5 @@
-/* Decimation to a tenth of the faces. The result stays in the folder, for its error. */
+/* Decimation to a tenth of the faces. The result stays in the folder, where its error is
+ * measured. */
 #include "algo/decimate.h"
 #include "bench/ours/ours.h"
 

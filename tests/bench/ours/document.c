@@ -1,4 +1,4 @@
-/* JSON mesh documents in memory: a mesh made from one, and one made from a mesh. */
+/* JSON mesh documents in memory: making a mesh from one, and one from a mesh. */
 #include "bench/ours/ours.h"
 
 #include "api/document/document_in.h"
@@ -29,7 +29,7 @@ static char *print(const he_mesh *m, size_t *length)
     return text;
 }
 
-/* Leaves the document for the other side to read. */
+/* Leaves the document in the folder for the other program. */
 static void make_document(bench_side *side, bench_result *out)
 {
     size_t length;

@@ -1,4 +1,4 @@
-/* Many small edits in random places of a copy of the mesh, and compacting it afterwards. */
+/* Many small edits at random places of a copy of the mesh, and compacting it afterwards. */
 #include "bench/ours/ours.h"
 #include "edit/local/collapse.h"
 #include "edit/local/cut.h"
@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-/* One edit at a half-edge; false when it was refused. */
+/* An edit at a half-edge; returns false if it was refused. */
 typedef bool (*edit)(he_mesh *m, he_halfedge h);
 
 static bool split(he_mesh *m, he_halfedge h)
@@ -23,7 +23,7 @@ static bool flip(he_mesh *m, he_halfedge h)
     return he_edge_flip(m, he_edge_of(h), NULL) == HE_OK;
 }
 
-/* Picks of edges that went with an earlier collapse are refused by the kernel itself. */
+/* The kernel refuses picked edges that an earlier collapse has deleted. */
 static bool collapse(he_mesh *m, he_halfedge h)
 {
     return he_edge_collapse(m, h, 1, NULL, NULL, NULL) == HE_OK;
@@ -43,8 +43,8 @@ static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_
     return found;
 }
 
-/* How edits are made: each delta is emptied after its edit, as by a store that hands it on; and the
- * kernel is told which edges come, as by delaunay, which has a list of them. */
+/* Options: each delta is emptied after its edit, as by a store that passes it on (RECORDED); the
+ * kernel gets the edges as a list in advance, as by delaunay (OF_A_LIST). */
 enum { RECORDED = 1, OF_A_LIST = 2 };
 
 /* Tries the edit at `count` half-edges of a copy. */
@@ -126,7 +126,7 @@ static void time_collapse_recorded(bench_side *side, bench_result *out)
     he_mesh_free(run(side, collapse, COLLAPSES, RECORDED, out));
 }
 
-/* Ids change differently in every library: places name the vertices. */
+/* Ids change differently in every library, so positions identify the vertices. */
 static uint64_t place_hash(const he_mesh *m)
 {
     uint64_t hash = 0;

@@ -1,5 +1,5 @@
-/* How far a decimated mesh is from the input, whichever side has left it in the folder: points on
- * either surface and the nearest ones of the other, as P. Cignoni, C. Rocchini and R. Scopigno,
+/* Distance between a decimated mesh, made by any of the programs, and the input: points on each
+ * surface and their nearest points on the other, as in P. Cignoni, C. Rocchini and R. Scopigno,
  * "Metro: measuring error on simplified surfaces", 1998. */
 #include "bench/ours/ours.h"
 #include "geometry/vec3.h"
@@ -11,13 +11,13 @@
 
 enum { SAMPLES = 1000000 };
 
-/* What is summed up of the points of one surface. */
+/* Sums over the points of one surface. */
 typedef struct sums {
     double squares, farthest;
-    uint32_t turned; /* points whose face looks away from the nearest one */
+    uint32_t turned; /* points whose face looks away from the face of the nearest point */
 } sums;
 
-/* 0 to 1, the same each time. */
+/* Returns 0 to 1; the sequence is fixed. */
 static double draw(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -35,7 +35,7 @@ static void corners_of(const he_mesh *m, uint32_t f, he_vec3 out[3])
     }
 }
 
-/* Along the normal, twice the area. */
+/* Returns the normal, with twice the area as its length. */
 static he_vec3 area_of(const he_vec3 p[3])
 {
     return he_vec3_cross(he_vec3_sub(p[1], p[0]), he_vec3_sub(p[2], p[0]));
@@ -66,7 +66,8 @@ static void look(const he_bvh *tree, const he_mesh *to, he_vec3 point, he_vec3 a
     out->turned += he_vec3_dot(area, area_of(p)) < 0;
 }
 
-/* Points spread evenly over the faces of `from`, in their order: neighbours are near each other. */
+/* Points spread evenly over the faces of `from`, in their order, so that consecutive points are
+ * near each other. */
 static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
 {
     sums out = {0, 0, 0};
@@ -91,7 +92,8 @@ static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
     return out;
 }
 
-/* Each face with vertices of its own: what a side leaves need not be a mesh that we can represent.
+/* Gives each face its own vertices: the result of another program need not be representable as our
+ * mesh.
  */
 static he_mesh *read_faces(const bench_side *side)
 {
@@ -113,8 +115,8 @@ static he_mesh *read_faces(const bench_side *side)
     return mesh;
 }
 
-/* The larger of both ways. VALUE: the root of the mean square; NEAR: the farthest, which estimates
- * the Hausdorff distance; AMOUNT: points where a face is turned over. */
+/* Takes the larger of both directions. VALUE: the root mean square; NEAR: the farthest distance,
+ * which estimates the Hausdorff distance; AMOUNT: points where a face is turned over. */
 static void decimate_error(bench_side *side, bench_result *out)
 {
     const he_mesh *input = bench_mesh(side);

@@ -1,4 +1,4 @@
-/* Mesh files: the daemon's readers and writers, fed from and into files in pieces of 64 kB. */
+/* Mesh files: the daemon's readers and writers, with files in pieces of 64 kB. */
 #include "bench/ours/ours.h"
 #include "mesh/walk.h"
 
@@ -9,7 +9,7 @@
 
 enum { PIECE = 65536 };
 
-/* Counts, and the sum of the coordinates, to see that two readers read the same. */
+/* Counts, and the sum of the coordinates, which show whether two readers read the same mesh. */
 static void describe(const he_mesh *m, bench_result *out)
 {
     double sum = 0;
@@ -78,7 +78,7 @@ static void import(bench_side *side, const char *format, const char *name, bench
     he_mesh_free(mesh);
 }
 
-/* What was written is read again, by our reader for all sides. */
+/* Our reader reads the files that all programs wrote. */
 static void export(bench_side *side, const char *format, const char *encoding, const char *name,
                    bench_result *out)
 {
@@ -131,7 +131,7 @@ static void export_ply(bench_side *side, bench_result *out)
     export(side, "ply", "binary", "output.ply", out);
 }
 
-/* Describe what a side has just exported. */
+/* Describes what a program has just exported. */
 static void check_obj(bench_side *side, bench_result *out)
 {
     import(side, "obj", "output.obj", out);
@@ -209,7 +209,8 @@ static void write_stl(const bench_side *side)
     fclose(file);
 }
 
-/* The files that all sides read: written with the C library, as none of them writes. */
+/* Makes the files that all programs read, with the C library, so that no program reads what it
+ * wrote itself. */
 static void make_files(bench_side *side, bench_result *out)
 {
     char head[64];
@@ -221,7 +222,7 @@ static void make_files(bench_side *side, bench_result *out)
     out->amount = side->input.faces;
 }
 
-/* What no other side reads is our own. */
+/* A file that only our program reads. */
 static void make_glb(bench_side *side, bench_result *out)
 {
     bench_write(side, bench_mesh(side), "glb", "", "input.glb");

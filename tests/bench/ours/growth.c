@@ -1,4 +1,4 @@
-/* What only the growth of cost is asked about: the checker, and what memory itself takes. */
+/* Rows of which only the growth of time matters: the checker, and memory itself. */
 #include "bench/ours/ours.h"
 
 #include "base/mem.h"
@@ -23,7 +23,7 @@ static void check(bench_side *side, bench_result *out)
     }
 }
 
-/* Words read in random places of a block as large as the mesh, none waiting for the one before. */
+/* Reads words at random places of a block as large as the mesh; no read depends on another. */
 static void gather(bench_side *side, bench_result *out)
 {
     enum { READS = 1 << 23, BYTES_A_FACE = 66 };

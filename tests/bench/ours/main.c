@@ -1,4 +1,4 @@
-/* The kernel's side of the bench: side.h says how it is spoken to. */
+/* The kernel's program of the benchmark; side.h describes its input and output. */
 #include "bench/ours/ours.h"
 
 #include "system/memory.h"
@@ -18,7 +18,7 @@ int main(int argc, char **argv)
                                               bench_scaling_rows,
                                               bench_stored_rows,
                                               NULL};
-    /* Memory as the daemon takes it, counted and in mappings of its own. */
+    /* Allocates memory as the daemon does, counted and in mappings of its own. */
     st_memory_install(0);
     return bench_serve(argc, argv, tables);
 }

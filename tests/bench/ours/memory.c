@@ -1,5 +1,5 @@
-/* What is measured by memory alone: a history as the store keeps it, and documents from and into
- * files. The other rows of that part are those of the other tables. */
+/* Rows that measure memory only: a history as the store keeps it, and documents from and into
+ * files. The other rows of memory are rows of the other tables. */
 #include "bench/ours/ours.h"
 
 #include "api/document/document_in.h"
@@ -12,8 +12,8 @@
 
 enum { SPLITS = 300000, PIECE = 65536 };
 
-/* Splits of edges all over a copy of the mesh, a delta each; of `undone` none is left but the
- * memory. The bytes of the mesh's growth are those of the row `split`. */
+/* Splits edges all over a copy of the mesh, with a delta for each; with `undone` all are undone,
+ * and only memory stays allocated. The row `split` measures the growth of the mesh itself. */
 static void keep_history(bench_side *side, bool undone, bench_result *out)
 {
     he_mesh *m;

@@ -1,5 +1,5 @@
-/* ours.h - the kernel's side of the bench. A row's work is between two calls of bench_seconds; what
- * it needs before and what is compared afterwards is not measured. */
+/* ours.h - the kernel's program of the benchmark. A row measures the work between two calls of
+ * bench_seconds; preparation before and comparison afterwards are not measured. */
 #ifndef TESTS_BENCH_OURS_OURS_H
 #define TESTS_BENCH_OURS_OURS_H
 
@@ -22,16 +22,16 @@ extern const bench_row bench_stored_rows[];
 
 /* Ends the program with the status' title unless it is HE_OK. */
 void bench_require(he_status status);
-/* The input as a soup that borrows its arrays: not to be cleared. */
+/* Returns the input as a soup that borrows its arrays: it must not be cleared. */
 he_soup bench_soup(const bench_side *side);
-/* The mesh of the input, made at the first call. */
+/* Returns the mesh of the input, which the first call makes. */
 he_mesh *bench_mesh(bench_side *side);
-/* A file of the folder, fed to a reader in pieces; cleared by the caller. */
+/* Reads a file of the folder in pieces; the caller clears `out`. */
 void bench_read(const bench_side *side, const char *format, const char *name, he_import *out);
-/* And written; `encoding` may be empty. */
+/* Writes a file; `encoding` may be empty. */
 void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
                  const char *name);
-/* Vertices, edges, faces and every face's corners. */
+/* Hashes vertices, edges, faces and the corners of every face. */
 uint64_t bench_mesh_hash(const he_mesh *m);
 
 #endif

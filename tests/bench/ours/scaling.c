@@ -1,5 +1,5 @@
-/* What a second core gives: each row with the work's own thread alone, and with hands beside it.
- * Wall time, since processor time adds up what threads take. */
+/* Speedup by a second core: each row on the calling thread alone, and with helping threads. Wall
+ * time is measured, since processor time adds up over threads. */
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"
@@ -18,7 +18,7 @@ static double wall_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* The threads of the rows, made once. */
+/* Lends the row's threads, which are made once. */
 static void lend(he_watch *watch, bool helped)
 {
     static st_parallel *hands;
@@ -128,7 +128,7 @@ static void catmull_clark(bench_side *side, bool helped, bench_result *out)
     subdivide(side, HE_CATMULL_CLARK, helped, out);
 }
 
-/* The build inside has hands, the reading none. */
+/* Building uses helping threads, reading does not. */
 static void import(bench_side *side, const char *format, const char *name, bool helped,
                    bench_result *out)
 {

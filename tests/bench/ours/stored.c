@@ -1,5 +1,5 @@
-/* The mesh and its edits as bytes (core/stored): what a record of each edit takes, how long many of
- * them take forwards, and whole contents. */
+/* The mesh and its edits as bytes (core/stored): the size of an edit's record, the time to apply
+ * many of them, and whole contents. */
 #include "bench/ours/ours.h"
 
 #include "edit/local/collapse.h"
@@ -16,7 +16,7 @@
 
 enum { EDITS = 1000, SPLITS = 10000 };
 
-/* One edit at a half-edge of a mesh that records; false when it was refused. */
+/* An edit at a half-edge of a mesh that records; returns false if it was refused. */
 typedef bool (*edit)(he_mesh *m, he_halfedge h);
 
 static bool move(he_mesh *m, he_halfedge h)
@@ -72,7 +72,7 @@ static void keep(coded *list, const he_delta *delta, const he_mesh *m)
     list->size += size;
 }
 
-/* Edits all over a copy of the mesh; those that are refused are left out. */
+/* Makes edits all over a copy of the mesh; refused ones are left out. */
 static coded *code_edits(bench_side *side, edit try, uint32_t count)
 {
     he_mesh *m;
@@ -133,14 +133,14 @@ static void stored_collapse(bench_side *side, bench_result *out)
     record(side, collapse, out);
 }
 
-/* Splits, decoded and applied to a mesh that has issued none of their rows. */
+/* Decodes splits and applies them to a mesh that has not issued any of their rows. */
 static void stored_forward(bench_side *side, bench_result *out)
 {
     he_mesh *m;
     coded *list = code_edits(side, split, SPLITS);
     he_delta **deltas = calloc(list->count, sizeof *deltas);
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
-    /* The first that grows the mesh moves all of it. */
+    /* The first edit that enlarges the mesh moves all of it. */
     bench_require(he_stored_edit_forward(list->bytes, list->edit[0].size, list->edit[0].issued, m,
                                          &deltas[0], NULL));
     double start = bench_seconds();
@@ -158,7 +158,7 @@ static void stored_forward(bench_side *side, bench_result *out)
     he_mesh_free(m);
 }
 
-/* A block for the whole mesh, with its pages there. */
+/* A block as large as the mesh whose pages are allocated. */
 static unsigned char *block_of(const he_mesh *m, size_t *size)
 {
     unsigned char *block = calloc(he_stored_content_bound(m), 1);

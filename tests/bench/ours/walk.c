@@ -1,4 +1,4 @@
-/* Reading a whole mesh: neighbours, normals, loops, components. */
+/* Visiting a whole mesh: neighbours, normals, loops, components. */
 #include "bench/ours/ours.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
@@ -37,7 +37,7 @@ static double size_of(const he_vec3 *normals, size_t count)
     return sum;
 }
 
-/* Room that has been written to, as the others' has: fresh pages are not what is measured. */
+/* The memory was written to, as that of the other programs: allocating pages is not measured. */
 static he_vec3 *normals_new(size_t count)
 {
     he_vec3 *normals = malloc(count * sizeof *normals);

@@ -1,4 +1,4 @@
-/* cgal.h - CGAL's side of the bench: Surface_mesh with doubles. */
+/* cgal.h - CGAL's program of the benchmark: Surface_mesh with doubles. */
 #ifndef TESTS_BENCH_PEERS_CGAL_H
 #define TESTS_BENCH_PEERS_CGAL_H
 
@@ -22,9 +22,9 @@ typedef Mesh::Halfedge_index Halfedge;
 typedef Mesh::Edge_index Edge;
 typedef Mesh::Face_index Face;
 
-/* Room is reserved: the caller knows the counts. */
+/* Reserves space, since the counts are known. */
 void cgal_fill(const bench_input &in, Mesh &mesh);
-/* The mesh of the input, made at the first call. */
+/* Returns the mesh of the input, which the first call makes. */
 Mesh &cgal_mesh(bench_side *side);
 uint64_t cgal_hash(const Mesh &mesh);
 /* Counts, and the sum of the coordinates. */

@@ -1,4 +1,5 @@
-/* openmesh.h - OpenMesh's side of the bench. Positions and normals are doubles, as ours are. */
+/* openmesh.h - OpenMesh's program of the benchmark. Positions and normals are doubles, as ours
+ * are. */
 #ifndef TESTS_BENCH_PEERS_OPENMESH_H
 #define TESTS_BENCH_PEERS_OPENMESH_H
 
@@ -16,7 +17,7 @@ extern "C" {
 typedef OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble> TriMesh;
 typedef OpenMesh::PolyMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble> PolyMesh;
 
-/* Room is reserved: the caller knows the counts. */
+/* Reserves space, since the counts are known. */
 template <class Mesh> void fill(const bench_input &in, Mesh &mesh)
 {
     size_t corners = static_cast<size_t>(in.faces) * in.degree;
@@ -66,7 +67,8 @@ template <class Mesh> uint64_t mesh_hash(const Mesh &mesh)
     return counts(mesh, hash);
 }
 
-/* The mesh of the input, made at the first call. Only one kind is asked of a program. */
+/* Returns the mesh of the input, which the first call makes. A program uses only one kind of
+ * mesh. */
 template <class Mesh> Mesh &mesh_of(bench_side *side)
 {
     if (side->mesh == nullptr) {

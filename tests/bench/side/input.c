@@ -58,7 +58,7 @@ static void place(bench_input *in, uint32_t v, double x, double y, double z)
     in->positions[3 * v + 2] = (double)(float)z;
 }
 
-/* A torus whose first vertex and face are given, shifted by `x`. */
+/* Adds a torus, shifted by `x`, whose first vertex and face are given. */
 static void fill_torus(bench_input *in, uint32_t side, uint32_t vertex, uint32_t face, double x)
 {
     const double turn = 6.283185307179586 / side;
@@ -169,7 +169,7 @@ bench_pick *bench_picks(const bench_input *input, uint32_t *count)
     for (uint32_t i = 0; i < halfedges && picked < *count; i++) {
         uint32_t f = order[i] / input->degree, k = order[i] % input->degree;
         const uint32_t *corners = input->corners + f * input->degree;
-        /* Of the two half-edges of an edge only the one that runs to the larger vertex. */
+        /* Of the two half-edges of an edge, only the one to the larger vertex is taken. */
         if (corners[k] < corners[(k + 1) % input->degree]) {
             picks[picked++] = (bench_pick){f, k};
         }

@@ -7,8 +7,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
-/* What a row is measured by. Its work is between two calls of bench_seconds, so that this is where
- * other meters are read, too. */
+/* The quantity that a row measures. Since its work is between two calls of bench_seconds, these
+ * also read the other meters. */
 typedef enum measure { TIME, HEAP, PEAK } measure;
 
 static struct {
@@ -24,7 +24,7 @@ static size_t heap_bytes(void)
     return info.uordblks + info.hblkhd;
 }
 
-/* A line of /proc/self/status in bytes. */
+/* Returns a line of /proc/self/status in bytes. */
 static size_t status_bytes(const char *name)
 {
     char line[256];
@@ -41,7 +41,7 @@ static size_t status_bytes(const char *name)
     return bytes;
 }
 
-/* From here on the peak is that of what follows. */
+/* Resets the peak of resident memory. */
 static void reset_peak(void)
 {
     FILE *file = fopen("/proc/self/clear_refs", "w");
@@ -74,7 +74,7 @@ static void read_meters(void)
     }
 }
 
-/* What the row had of the system. */
+/* Returns the time that the system spent for this program. */
 static double system_seconds(void)
 {
     const struct timeval *from = &meter.first.ru_stime, *to = &meter.last.ru_stime;
@@ -136,7 +136,7 @@ static const bench_row *find(const bench_row *const *tables, const char *name)
     return NULL;
 }
 
-/* The name of the row in a line, which may say first what to measure it by. */
+/* Returns the name of the row in a line, and sets the quantity if the line begins with one. */
 static const char *set_meter(const char *line)
 {
     memset(&meter, 0, sizeof meter);

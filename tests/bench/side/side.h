@@ -1,4 +1,4 @@
-/* side.h - one side of the bench: a program that answers the driver, compare.mjs.
+/* side.h - one program of the benchmark, which is driven by compare.mjs.
  *
  *     PROGRAM INPUT natural|shuffled SIDE FOLDER
  *
@@ -7,20 +7,20 @@
  *
  *     VALUE AMOUNT EXACT NEAR SYSTEM FAULTS
  *
- * VALUE is what was measured, AMOUNT the elements it is for,
- * EXACT a hash that all sides must share, NEAR a number that they must share up to the row's
- * tolerance; "-" stands for one that the row does not have. A row that this side does not know is
- * answered by `unknown`. Files are found and left in FOLDER.
+ * VALUE is the measurement, AMOUNT the number of elements, EXACT a hash that must be equal in all
+ * programs, NEAR a number that must be equal up to the row's tolerance; "-" is printed if the row
+ * has none. A row that the program does not have is answered by `unknown`. Files are read from and
+ * written to FOLDER.
  *
- * What is measured is seconds of processor time between the row's two calls of bench_seconds, of
- * which SYSTEM were spent in the system, and FAULTS pages had to be found. A word before the row's
- * name asks for bytes:
+ * The measurement is in seconds of processor time between the row's two calls of bench_seconds.
+ * SYSTEM is the part spent in the system, FAULTS the number of page faults. A word before the row's
+ * name measures bytes instead:
  *
- *     heap ROW    that the heap has given out at the second call less those at the first
- *     peak ROW    the most that were resident between them less those at the first
+ *     heap ROW    allocated on the heap at the second call minus those at the first
+ *     peak ROW    the maximum of resident bytes between them minus those at the first
  *
- * Both want a process that has not freed much: its memory would be used again. With
- * BENCH_SMALL_PAGES in the environment the system gives no huge pages. */
+ * Both need a process that has not freed much memory, because that would be used again. With
+ * BENCH_SMALL_PAGES in the environment no huge pages are used. */
 #ifndef TESTS_BENCH_SIDE_SIDE_H
 #define TESTS_BENCH_SIDE_SIDE_H
 
@@ -34,7 +34,7 @@ typedef struct bench_result {
     bool has_exact, has_near;
 } bench_result;
 
-/* What a row is run with. `mesh` is the program's own, kept between rows. */
+/* The argument of a row. `mesh` is kept by the program between rows. */
 typedef struct bench_side {
     bench_input input;
     const char *folder;
@@ -46,22 +46,22 @@ typedef struct bench_row {
     void (*run)(bench_side *side, bench_result *out);
 } bench_row;
 
-/* The main program. `tables` and each table end with a row, and a table, of NULL. */
+/* Runs the program. `tables` and each table end in NULL. */
 int bench_serve(int argc, char **argv, const bench_row *const *tables);
 
-/* Seconds of this program's processor time: what other programs take does not count. Called where
- * the work of a row begins and where it ends. */
+/* Returns the processor time of this program in seconds, which other programs do not affect. Called
+ * at the beginning and the end of a row's work. */
 double bench_seconds(void);
 
-/* The path of a file in the folder, of at most `size` bytes. */
+/* Writes the path of a file in the folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
-/* That file, opened; the program ends where it cannot be. */
+/* Opens such a file; the program ends if that fails. */
 FILE *bench_open(const bench_side *side, const char *name, const char *mode);
 
-/* Set what the sides compare. */
+/* Sets the values that are compared. */
 void bench_exact(bench_result *out, uint64_t exact);
 void bench_near(bench_result *out, double near);
-/* Counts of vertices, edges and faces, folded into a hash. */
+/* Folds counts of vertices, edges and faces into a hash. */
 uint64_t bench_counts(uint64_t faces_hash, uint64_t vertices, uint64_t edges, uint64_t faces);
 
 #endif
