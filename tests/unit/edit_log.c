@@ -82,7 +82,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
-/* One random change, recorded. */
+/* Makes and records one random change. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];
@@ -122,7 +122,7 @@ static void change(he_mesh *m, md_random *random, unsigned serial)
                  md_below(random, he_mesh_issued(m, HE_EDGE)));
         break;
     }
-    /* An element that is gone refuses, and changes nothing. */
+    /* An operation on a deleted element is refused and changes nothing. */
     (void)script_run(m, text, NULL, NULL);
 }
 

@@ -190,7 +190,7 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
-/* Another mesh, made by the test and not by what it tests. */
+/* Another mesh, made without the code under test. */
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];
@@ -307,7 +307,7 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     return status;
 }
 
-/* "locked vertices=1,2": the name, then the kind or its plural with elements. */
+/* Reads "locked vertices=1,2": the name, then the kind or its plural with elements. */
 static void mark(he_mesh *m, const char *text)
 {
     char name[HE_COLUMN_NAME];
@@ -336,7 +336,7 @@ static void mark(he_mesh *m, const char *text)
     }
 }
 
-/* Up to that many in the table, called m0, m1 and so on. */
+/* Fills the table up to that many materials, called m0, m1 and so on. */
 static void fill_materials(he_mesh *m, size_t count)
 {
     for (size_t i = he_mesh_materials(m)->count; i < count; i++) {
@@ -417,7 +417,7 @@ void assert_loops(const he_mesh *m, const char *lengths)
         if (!he_mesh_is_live(m, HE_HALFEDGE, i) || !he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* Counted at the lowest half-edge of its loop. */
+        /* Each loop is counted at its lowest half-edge. */
         he_halfedge k = he_next(m, h);
         while (k.i > i) {
             k = he_next(m, k);

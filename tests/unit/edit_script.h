@@ -17,34 +17,34 @@
 #include "mesh/delta.h"
 #include "op/op.h"
 
-/* Vertices at general positions, or at `positions` when that is not NULL. */
+/* Makes a mesh with vertices in general position, or at `positions` if that is not NULL. */
 he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
 
-/* Add columns of every rule in every domain, so that edits carry something. */
+/* Adds columns of every rule in every domain, so that edits have values to move. */
 void script_add_columns(he_mesh *m);
 
-/* Run one operation. `results` may be NULL. */
+/* Runs one operation. `results` may be NULL. */
 he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
-/* Run all operations of a script; each must succeed. NULL does nothing. "mark locked face=0" is no
- * operation: it sets that mark on elements, and adds its column where there is none. */
+/* Runs all operations of a script; each must succeed. NULL does nothing. "mark locked face=0" is no
+ * operation: it sets that mark on elements, and adds its column if there is none. */
 void script_prepare(he_mesh *m, const char *script);
-/* The row an operation names. */
+/* Returns the row that an operation names. */
 const he_op *script_op(const char *operation);
 
-/* Fail the test with a sentence when an invariant is broken. */
+/* Fails the test with a sentence if an invariant is broken. */
 void assert_valid(const he_mesh *m);
 void assert_counts(const he_mesh *m, uint32_t vertices, uint32_t edges, uint32_t faces);
-/* Does face f run through these vertices, from any of them on? */
+/* Requires that face f has these vertices, starting at any of them. */
 void assert_face(const he_mesh *m, uint32_t f, const char *vertices);
 void assert_equal(const he_mesh *m, const he_mesh *other);
-/* Lengths of the boundary loops as digits in rising order: "345". */
+/* Requires these lengths of the boundary loops, as digits in ascending order: "345". */
 void assert_loops(const he_mesh *m, const char *lengths);
 he_mesh *copy_of(const he_mesh *m);
 
 he_halfedge halfedge_between(const he_mesh *m, uint32_t a, uint32_t b);
 he_edge edge_between(const he_mesh *m, uint32_t a, uint32_t b);
 
-/* Let the n-th allocation from now on fail, and only that; 0 lets all succeed again. */
+/* Makes only the n-th allocation from now on fail; 0: none fails. */
 void fail_allocation(unsigned n);
 /* Has one failed since? */
 bool allocation_failed(void);

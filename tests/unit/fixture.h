@@ -1,4 +1,4 @@
-/* fixture.h - small meshes and failing allocators for the unit tests. Included once per program. */
+/* fixture.h - small meshes and failing allocators for unit tests. Include it once per program. */
 #ifndef TESTS_UNIT_FIXTURE_H
 #define TESTS_UNIT_FIXTURE_H
 
@@ -16,7 +16,8 @@
 
 #include <cmocka.h>
 
-/* Faces as strings of one-character vertex numbers, separated by blanks or commas: "012,023". */
+/* Makes a soup of faces as strings of one-character vertex numbers, separated by blanks or commas:
+ * "012,023". */
 static inline void fixture_soup(he_soup *soup, const char *faces)
 {
     he_soup_init(soup, NULL);
@@ -71,7 +72,7 @@ static inline void fixture_counts(const he_mesh *mesh, unsigned v, unsigned e, u
     assert_int_equal(he_mesh_faces(mesh), f);
 }
 
-/* An allocator that fails the N-th request for memory from fixture_fail_at on, and counts them. */
+/* An allocator that fails the N-th request after fixture_fail_at, and counts requests. */
 typedef struct fixture_allocator {
     long calls, fail_at;
 } fixture_allocator;
@@ -88,7 +89,7 @@ static inline void *fixture_resize(void *context, void *memory, size_t size)
     return ++a->calls == a->fail_at ? NULL : realloc(memory, size);
 }
 
-/* 0 never fails. */
+/* With n = 0 none fails. */
 static inline void fixture_fail_at(long n)
 {
     static const he_mem_hook hook = {fixture_resize, &fixture_memory};

@@ -1,4 +1,5 @@
-/* format_fixture.h - files as literals, read in pieces of every kind. Included once per program. */
+/* format_fixture.h - files as literals, read in pieces of all sizes. Include it once per
+ * program. */
 #ifndef TESTS_UNIT_FORMAT_FIXTURE_H
 #define TESTS_UNIT_FORMAT_FIXTURE_H
 
@@ -6,7 +7,7 @@
 
 #include "format/io/format.h"
 
-/* The whole text in pieces of `piece` bytes, 0 for one piece. */
+/* Reads the whole text in pieces of `piece` bytes; 0: in one piece. */
 static inline he_status read_pieces(const char *format, const void *text, size_t length,
                                     size_t piece, const he_limits *limits, he_import *out,
                                     he_error *err)
@@ -19,7 +20,7 @@ static inline he_status read_pieces(const char *format, const void *text, size_t
     piece = piece == 0 ? length : piece;
     for (size_t at = 0; at < length && status == HE_OK; at += piece) {
         size_t n = length - at < piece ? length - at : piece;
-        /* a copy of just these bytes, so that reading beyond them is seen by the sanitizer */
+        /* copies exactly these bytes, so that the sanitizer detects reads beyond them */
         char *bytes = malloc(n);
         assert_non_null(bytes);
         memcpy(bytes, (const char *)text + at, n);
@@ -89,7 +90,7 @@ static inline void expect_same_imports(const he_import *a, const he_import *b)
     }
 }
 
-/* Whole, byte by byte and in small pieces: the same status, error or import. */
+/* Reads whole, byte by byte and in small pieces: status, error and import must be equal. */
 static inline he_status read_bytes(const char *format, const void *text, size_t length,
                                    he_import *out, he_error *err)
 {
@@ -123,14 +124,14 @@ static inline he_import read_text(const char *format, const char *text)
     return import;
 }
 
-/* Refused, at this line, and with these words in the sentence. */
+/* Requires a refusal at this line with these words in its sentence. */
 static inline void expect_bytes_refused(const char *format, const void *text, size_t length,
                                         he_status wanted, uint64_t line, const char *words)
 {
     he_import import = {0};
     he_error err = {0};
     he_status status = read_bytes(format, text, length, &import, &err);
-    /* status.h: the text is without the place. */
+    /* See status.h: the text does not include the place. */
     if (status != wanted || err.place != HE_PLACE_LINE || err.at != line ||
         strstr(err.text, words) == NULL || strncmp(err.text, "line ", 5) == 0) {
         fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s", (const char *)text,
@@ -145,7 +146,7 @@ static inline void expect_refused(const char *format, const char *text, he_statu
     expect_bytes_refused(format, text, strlen(text), wanted, line, words);
 }
 
-/* Refused, at this byte, and with these words in the sentence. */
+/* Requires a refusal at this byte with these words in its sentence. */
 static inline void expect_refused_at_byte(const char *format, const void *bytes, size_t length,
                                           he_status wanted, uint64_t at, const char *words)
 {
@@ -197,7 +198,7 @@ static inline void expect_doubles(const he_import *import, he_kind domain, const
     assert_memory_equal(column->data, values, rows * components * sizeof *values);
 }
 
-/* Colours that are what bytes say, in the precision of their type. */
+/* Requires colours equal to these bytes, in the precision of their type. */
 static inline void expect_bytes(const he_import *import, he_kind domain, uint32_t components,
                                 const unsigned char *values, size_t rows)
 {
@@ -283,7 +284,7 @@ static inline he_mesh *mesh_of_text(const char *format, const char *text)
     return mesh;
 }
 
-/* The document, NUL-ended, pulled through a buffer of `size` bytes; freed with free. */
+/* Writes the document through a buffer of `size` bytes, terminated by NUL; freed with free. */
 static inline char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh,
                                   size_t size, he_notes *notes, size_t *out_length)
 {
@@ -327,7 +328,7 @@ static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t
     return write_encoded(format, "ascii", mesh, size, notes, &length);
 }
 
-/* A document that holds any bytes, the same through buffers of several sizes. */
+/* Writes a document of any bytes, which must be equal through buffers of several sizes. */
 static inline char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
                                 he_notes *notes, size_t *length)
 {
@@ -343,7 +344,7 @@ static inline char *write_bytes(const char *format, const char *encoding, const 
     return bytes;
 }
 
-/* Text through buffers of several sizes. */
+/* Writes text through buffers of several sizes. */
 static inline char *write_text(const char *format, const he_mesh *mesh, he_notes *notes)
 {
     static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};

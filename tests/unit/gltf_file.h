@@ -11,7 +11,7 @@
 typedef struct glb_file {
     unsigned char bytes[16384];
     size_t length;
-    size_t json; /* where its bytes begin */
+    size_t json; /* where the chunk's bytes begin */
     size_t bin;
 } glb_file;
 
@@ -23,7 +23,7 @@ static inline void glb_word(glb_file *f, uint32_t word)
     }
 }
 
-/* `bin` NULL: without that chunk. */
+/* With `bin` NULL the file has no such chunk. */
 static inline void glb_make(glb_file *f, const char *json, const void *bin, size_t size)
 {
     size_t length = strlen(json), padded = (length + 3) / 4 * 4;
@@ -105,7 +105,7 @@ static inline he_import square_import(const char *json)
     return import;
 }
 
-/* Refused, with a byte and these words, the path among them. */
+/* Requires a refusal with a byte offset and these words, which include the path. */
 static inline void expect_json_refused(const char *json, he_status wanted, const char *words)
 {
     he_import import = {0};

@@ -1,4 +1,4 @@
-/* ply_file.h - a PLY file put together value by value, in any encoding. Included once per program.
+/* ply_file.h - builds a PLY file value by value, in any encoding. Include it once per program.
  */
 #ifndef TESTS_UNIT_PLY_FILE_H
 #define TESTS_UNIT_PLY_FILE_H

@@ -1,4 +1,4 @@
-/* query_specimens.h - the meshes that every query is tried on. Included once per program. */
+/* query_specimens.h - the meshes on which every query is tested. Include it once per program. */
 #ifndef TESTS_UNIT_QUERY_SPECIMENS_H
 #define TESTS_UNIT_QUERY_SPECIMENS_H
 
@@ -29,7 +29,7 @@ static const char *const query_specimens[] = {
 };
 enum { QUERY_SPECIMENS = sizeof query_specimens / sizeof *query_specimens };
 
-/* Take away a component made of the rows from these on: what a deletion leaves behind. */
+/* Deletes a component made of the rows from these on: what a deletion leaves behind. */
 static inline void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face)
 {
     he_need need = {.deleted_vertices = m->c.vertices.issued - vertex,
@@ -70,7 +70,7 @@ static inline he_mesh *query_shape(const char *name, double a, double b, double 
     return mesh;
 }
 
-/* SplitMix64: the same numbers everywhere. */
+/* SplitMix64: the same sequence on every machine. */
 static inline uint64_t query_random(uint64_t *seed)
 {
     uint64_t z = *seed += 0x9E3779B97F4A7C15u;
@@ -79,7 +79,8 @@ static inline uint64_t query_random(uint64_t *seed)
     return z ^ z >> 31;
 }
 
-/* Spoil one link of a mesh: a valid id of the wrong element, absent, dead, or far out. */
+/* Corrupts one link of a mesh: with a valid id of the wrong element, none, a dead one, or one out
+ * of range. */
 static inline void query_spoil(he_mesh *m, uint64_t *seed)
 {
     uint32_t *columns[] = {

@@ -1,5 +1,5 @@
-/* repair_fixture.h - soups repaired, and what holds of every one that was. Included once per
- * program. */
+/* repair_fixture.h - repairs soups, and checks what must hold for every repaired soup. Include it
+ * once per program. */
 #ifndef TESTS_UNIT_REPAIR_FIXTURE_H
 #define TESTS_UNIT_REPAIR_FIXTURE_H
 
@@ -22,7 +22,7 @@ static inline he_repair_plan plan_of(unsigned which)
     return (he_repair_plan){.which = which, .hole_edges = 8};
 }
 
-/* A soup from another one's faces, whose attributes say their own row. */
+/* Makes a soup with another one's faces, whose attributes contain their own row. */
 static inline void copy_soup(const he_soup *from, he_soup *to)
 {
     static const he_kind domains[] = {HE_VERTEX, HE_FACE, HE_HALFEDGE};
@@ -59,8 +59,8 @@ static inline const he_repair_account *account(const he_repaired *done, he_repai
     return &done->accounts[repair];
 }
 
-/* Attributes went with what they belong to, and every corner is at the vertex it was at, or at the
- * one that this was welded to. */
+/* Requires that attributes stayed with their elements, and that every corner is at its old vertex,
+ * or at the vertex that this was welded to. */
 static inline void expect_carried(const he_soup *before, const he_soup *after,
                                   const he_repaired *done, bool welded)
 {
@@ -97,8 +97,8 @@ static inline void expect_carried(const he_soup *before, const he_soup *after,
     }
 }
 
-/* Repaired while the N-th allocation fails, for every N until there are no more; there are more
- * than `least`. */
+/* Repairs while the N-th allocation fails, for every N until none fails; there must be more than
+ * `least`. */
 static inline void expect_failures_survived(const he_soup *soup, unsigned which, long least)
 {
     he_status status = HE_NO_MEMORY;
@@ -120,7 +120,7 @@ static inline void expect_failures_survived(const he_soup *soup, unsigned which,
     assert_true(n > least);
 }
 
-/* Repaired, built and checked; freed by the caller. */
+/* Repairs, builds and checks; the caller frees. */
 static inline he_mesh *mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done)
 {
     he_soup copy;

@@ -1,4 +1,4 @@
-/* scenarios.h - an operation on a mesh and what comes of it, for test_op_table.c. */
+/* scenarios.h - operations on meshes with their expected outcomes, for test_op_table.c. */
 #ifndef TESTS_UNIT_SCENARIOS_H
 #define TESTS_UNIT_SCENARIOS_H
 
@@ -9,10 +9,10 @@ typedef struct scenario {
     const char *mesh;
     const char *prepare; /* a script that runs first, or NULL */
     he_status expected;
-    int change[3]; /* of V, E, F, where it succeeds */
+    int change[3]; /* change of V, E, F on success */
 } scenario;
 
-/* Beside those of test_op_table.c; each list ends in one without an operation. */
+/* Scenarios in addition to those of test_op_table.c; each list ends in one without an operation. */
 extern const scenario border_scenarios[];
 extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];

@@ -5,7 +5,7 @@
 #define PILLOW     "012,021"
 #define STRANGE    "012,034,056"
 #define OCTAHEDRON "012,023,034,041,521,532,543,514"
-/* Two tetrahedra with a face missing, with none, and the one that those make sewn together. */
+/* Two tetrahedra with one face missing; two complete ones; and the solid made by joining those. */
 #define CF4       "023,321,031,647,675,745"
 #define TETRAS    "021,013,032,123,465,457,476,567"
 #define BIPYRAMID "013,123,203,104,214,024"

@@ -21,7 +21,7 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=1,3", "012,034", NULL, HE_ORIENTATION, {0}},
     {"vertex_weld vertices=1,4", "012,103,045", NULL, HE_NONMANIFOLD_EDGE, {0}},
     {"vertex_weld vertices=3,4", "012,023,041", NULL, HE_OK, {-1, -1, 0}},
-    /* Faces go, with what has no other. */
+    /* Faces are deleted, with elements that no other face uses. */
     {"vertex_weld vertices=0,1", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1,2", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1", "0123", NULL, HE_OK, {-1, -1, 0}},
@@ -30,7 +30,7 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=0,1,2,3", QCUBE, NULL, HE_OK, {-3, -4, -1}},
     {"vertex_weld vertices=0,1", TETRA, NULL, HE_OK, {-1, -3, -2}},
     {"vertex_weld vertices=0,1", PILLOW, NULL, HE_OK, {-2, -3, -2}},
-    /* Of faces that come to be the same one stays. */
+    /* If faces become equal, one of them stays. */
     {"weld tolerance=0",
      "012,345",
      "vertex_move vertices=0,3 to=0,0,0;vertex_move vertices=1,4 to=1,0,0;"
@@ -90,7 +90,7 @@ const scenario weld_scenarios[] = {
     {"vertex_separate vertex=1", STRANGE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertex=0", QCUBE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertices=0,7", "012,034+++", NULL, HE_OK, {1, 0, 0}},
-    /* Two bow-ties that are neighbours. */
+    /* Two neighbouring bow-ties. */
     {"vertex_separate vertices=0,1", "012,034,156", NULL, HE_OK, {2, 0, 0}},
     {"vertex_separate vertex=7", STRANGE, NULL, HE_NO_SUCH_ELEMENT, {0}},
     {"vertex_separate vertices=0,7",

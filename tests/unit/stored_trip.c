@@ -12,7 +12,8 @@
 #include "edit_script.h"
 #include "stored/stored.h"
 
-/* What was written stays within its bound: the block has as many bytes, and the sanitizers see it.
+/* Checks that the bytes stay within their bound; the block has exactly that size, so that the
+ * sanitizers detect writes beyond it.
  */
 static stored_bytes cut(unsigned char *bytes, size_t size, size_t bound)
 {

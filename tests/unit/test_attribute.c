@@ -1,5 +1,5 @@
-/* Columns that are put, replaced and dropped, and values that are written, are edits like others:
- * all or nothing, and undone bit by bit. */
+/* Adding, replacing and removing columns, and writing values, are edits like others: all or
+ * nothing, and undone bit by bit. */
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 

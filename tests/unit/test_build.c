@@ -1,4 +1,4 @@
-/* he_build: what it makes of a soup, and how it names what it cannot hold. */
+/* he_build: the mesh made from a soup, and the refusal of soups that no mesh can represent. */
 #include "fixture.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ static void expect_refusal(const char *faces, he_status reason, he_kind kind, ui
     assert_int_equal(err.status, reason);
     assert_int_equal(err.id, id);
     assert_true(strlen(err.text) > 10);
-    /* The soup is still whole: it can be repaired and built again. */
+    /* The soup is still complete: it can be repaired and built again. */
     assert_true(soup.vertex_count > 0 && soup.positions != NULL);
     he_soup_clear(&soup);
 }
@@ -86,7 +86,8 @@ static void test_build_refusals(void **state)
     expect_refusal("021,032,013,123,045", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
 }
 
-/* Faces by themselves, then edges, then fans; those at the ends of a wrong edge are not told. */
+/* Defects of single faces come first, then those of edges, then those of fans; vertices of a faulty
+ * edge are not reported again. */
 static void a_refusal_names_the_defects_of_all_stages(void **state)
 {
     (void)state;
@@ -187,8 +188,8 @@ static void test_soup_limits(void **state)
     he_soup_clear(&soup);
 }
 
-/* A fan whose hub has the smallest id puts every edge of the hub in one bucket: with anything worse
- * than linear time there, 400,000 triangles would take minutes. */
+/* A fan whose hub has the smallest id puts all edges of the hub into one bucket: if the time there
+ * grew more than linearly, 400,000 triangles would take minutes. */
 static void test_large_fan(void **state)
 {
     (void)state;
@@ -244,8 +245,8 @@ static uint32_t random_below(uint64_t *seed, uint32_t n)
     return (uint32_t)((*seed >> 33) % n);
 }
 
-/* Can the structure hold these triangles? Answered from its definition alone: every directed edge
- * once, at most two faces an edge, and at each vertex one closed fan or only open ones. */
+/* Can the structure represent these triangles? Decided by its definition alone: every directed edge
+ * once, at most two faces per edge, and at each vertex one closed fan or only open ones. */
 static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
 {
     for (size_t i = 0; i < 3 * count; i++) {
@@ -270,7 +271,8 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
                 entered[b] = true;
             }
         }
-        for (uint32_t i = 0; i < vertices; i++) { /* open fans start where nothing enters */
+        /* open fans start at a vertex that no face leads to */
+        for (uint32_t i = 0; i < vertices; i++) {
             if (follow[i] != HE_NONE && !entered[i]) {
                 fans++;
                 for (uint32_t k = i; k != HE_NONE; k = follow[k]) {
@@ -317,7 +319,8 @@ static void test_random_soups_against_definition(void **state)
                 }
             } while (faces[i][0] == faces[i][1] || faces[i][1] == faces[i][2] ||
                      faces[i][2] == faces[i][0]);
-            /* Mostly continue along an edge of the face before, to get fans and not only soup. */
+            /* Usually continues along an edge of the face before, to get fans and not only separate
+             * faces. */
             if (i > 0 && random_below(&seed, 4) != 0) {
                 faces[i][0] = faces[i - 1][1];
                 faces[i][1] = faces[i - 1][0];

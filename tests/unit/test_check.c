@@ -1,11 +1,11 @@
-/* he_check: each invariant is broken in turn, and must be the one that is named. */
+/* he_check: each invariant is broken in turn, and the report must name it. */
 #include "fixture.h"
 
 #include "mesh/write.h"
 
 #include <math.h>
 
-/* Break `rule` in a mesh that holds; the checker may name others too, but must name this one. */
+/* Breaks `rule` in a valid mesh; the checker may name other rules, too, but must name this one. */
 static void expect_rule(he_mesh *m, int rule)
 {
     he_problem problems[32];
@@ -68,7 +68,7 @@ static void test_each_rule(void **state)
     expect_rule(m, 12);
 }
 
-/* Two open fans whose boundary links keep to themselves: each turns alone (I9). */
+/* Two open fans whose boundary links form separate loops: each turns alone (I9). */
 static void test_unchained_fans(void **state)
 {
     (void)state;
@@ -110,7 +110,7 @@ static void test_bad_faces(void **state)
     expect_rule(m, 7);
 }
 
-/* Whatever the links are, the checker ends and does not read outside. */
+/* Whatever the links are, the checker terminates and reads nothing out of range. */
 static void test_random_corruption(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Bodies in gzip and zstd: packed by api/header/pack.h, unfolded by api/header/unpack.h, and what
- * is refused. */
+/* gzip and zstd bodies: compressed by api/header/pack.h, decompressed by api/header/unpack.h, and
+ * refused. */
 #include "tests/unit/fixture.h"
 
 #include "api/header/pack.h"
@@ -33,7 +33,7 @@ static bool take(void *context, const char *data, size_t length)
     return true;
 }
 
-/* Numbers as a mesh file has them: they pack to about a third. */
+/* Numbers as in a mesh file: they compress to about a third. */
 static bytes text_of(size_t length)
 {
     bytes b = {0};
@@ -66,7 +66,7 @@ static int64_t read_source(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* Pull a pack empty, `size` bytes at a time. */
+/* Reads a pack to its end, `size` bytes at a time. */
 static bytes pull(api_pack *pack, size_t size)
 {
     bytes out = {0};
@@ -100,10 +100,10 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
     return out;
 }
 
-/* What a feed may unfold beyond its turn: a block of zstd, or what zlib has in hand. */
+/* What one feed may decompress beyond its turn: a block of zstd, or what zlib has buffered. */
 enum { LEFT = 1 << 17 };
 
-/* Unfold in pieces of `step` bytes; false with `problem` where it is refused. */
+/* Decompresses in pieces of `step` bytes; returns false with `problem` if it is refused. */
 static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
                    api_problem *problem)
 {
@@ -115,7 +115,7 @@ static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *ou
     bool good = true;
     for (size_t at = 0, used; at < coded->length && good; at += used) {
         size_t n = coded->length - at < step ? coded->length - at : step;
-        /* of its own, so that a sanitizer sees what is read beyond it */
+        /* a block of its own, so that a sanitizer detects reads beyond it */
         char *piece = malloc(n);
         assert_non_null(piece);
         memcpy(piece, coded->data + at, n);
@@ -181,7 +181,7 @@ static void bodies_of_all_sizes_come_back(void **state)
     }
 }
 
-/* Tags are strong: the bytes must not depend on who reads how. */
+/* Tags are strong, so the bytes must not depend on how they are read. */
 static void the_same_body_packs_to_the_same_bytes(void **state)
 {
     (void)state;
@@ -217,7 +217,7 @@ static int64_t break_off(void *context, char *buffer, size_t size)
 }
 
 typedef struct nothing {
-    size_t left, read; /* bytes; in this turn */
+    size_t left, read; /* bytes left, and bytes read in this turn */
 } nothing;
 
 static int64_t read_zeros(void *context, char *buffer, size_t size)
@@ -230,7 +230,7 @@ static int64_t read_zeros(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* However far a body packs, its reader is not kept for all of it. */
+/* However well a body compresses, one read handles only a part of it. */
 static void no_read_codes_more_than_its_turn(void **state)
 {
     (void)state;
@@ -372,7 +372,7 @@ static void what_follows_the_coding_is_refused_at_its_byte(void **state)
     free(plain.data);
 }
 
-/* Of a header some bits say nothing; all others show. */
+/* Some bits of a header have no meaning; a flip of any other bit is detected. */
 static void no_flipped_bit_gives_another_body(void **state)
 {
     (void)state;
@@ -455,7 +455,7 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
     for (size_t c = 0; c < 2; c++) {
         bytes most = {calloc(1, API_UNPACK_FREE), API_UNPACK_FREE, API_UNPACK_FREE}, out;
         bytes small = pack_bytes(both[c], &most), bomb = zeros_in(both[c], 200 << 20);
-        expect_unfolded(both[c], &small, 1000, &most); /* what is short may be dense */
+        expect_unfolded(both[c], &small, 1000, &most); /* a short body may have any ratio */
         for (size_t step = 100; step <= 10000; step *= 10) {
             api_problem problem;
             assert_false(unfold(both[c], &bomb, step, &out, &problem));
@@ -469,7 +469,7 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
     }
 }
 
-/* Bytes that do not pack, and zeros behind them. */
+/* Bytes that do not compress, followed by zeros. */
 static bytes noise_and_zeros(size_t noise, size_t zeros)
 {
     bytes out = {malloc(noise + zeros), noise + zeros, noise + zeros};
@@ -483,7 +483,7 @@ static bytes noise_and_zeros(size_t noise, size_t zeros)
     return out;
 }
 
-/* What is passed over, or was of another member or frame, does not let this one unfold further. */
+/* Skipped data, and data of another member or frame, do not raise the limit of this one. */
 static void only_compressed_data_lets_a_body_unfold(void **state)
 {
     (void)state;
@@ -514,7 +514,7 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
         free(named.data);
         free(after.data);
     }
-    /* Small members and frames are not each let off. */
+    /* The free allowance is not granted to each small member or frame. */
     for (size_t c = 0; c < 2; c++) {
         bytes part = zeros_in(both[c], 200000), coded = {0};
         for (size_t i = 0; i < 20; i++) {
@@ -526,7 +526,7 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
     }
 }
 
-/* However much may be unfolded, no feed does it all: see unfold. */
+/* However much is decompressed, no single feed does it all: see unfold. */
 static void a_dense_body_takes_its_turns(void **state)
 {
     (void)state;
@@ -541,7 +541,7 @@ static void a_dense_body_takes_its_turns(void **state)
     free(plain.data);
 }
 
-/* libzstd by itself takes it, in pieces. */
+/* libzstd alone accepts it, in pieces. */
 static void a_frame_has_the_length_it_says(void **state)
 {
     (void)state;
@@ -565,7 +565,7 @@ static void a_frame_has_the_length_it_says(void **state)
     free(plain.data);
 }
 
-/* A frame that says it may look back so far, as a power of two. */
+/* A frame that declares a window of this size, as a power of two. */
 static bytes with_window(int log)
 {
     bytes plain = text_of(100000), out = {0};
@@ -692,7 +692,7 @@ static void every_allocation_may_fail(void **state)
                 api_pack_give_up(pack);
             }
             if (pack != NULL) {
-                /* All memory is taken by now. */
+                /* All memory was allocated before. */
                 bytes out = pull(pack, 1000);
                 assert_int_equal(out.length, done ? coded.length : plain.length);
                 free(out.data);

@@ -1,4 +1,4 @@
-/* Decimation: what is kept exactly, how far surfaces go apart, where it ends. */
+/* Decimation: what is preserved exactly, how far the surfaces differ, and where it ends. */
 #include "tests/unit/dense.h"
 
 #include "algo/decimation.h"
@@ -32,7 +32,7 @@ static double volume_of(const he_mesh *m)
     return sum;
 }
 
-/* --- exact ones --- */
+/* --- exact results --- */
 
 static void a_flat_grid_becomes_two_triangles(void **state)
 {
@@ -88,7 +88,7 @@ static void nothing_happens_where_there_are_few_enough(void **state)
     he_mesh_free(m);
 }
 
-/* --- how far apart --- */
+/* --- distance --- */
 
 static void more_faces_less_error(void **state)
 {
@@ -104,7 +104,7 @@ static void more_faces_less_error(void **state)
         dense_apart there = dense_measure(m, sphere), back = dense_measure(sphere, m);
         double farthest = fmax(there.farthest, back.farthest);
         assert_true(farthest > last && done.error > last_error);
-        /* Of a smooth closed surface no point goes much farther than the worst vertex. */
+        /* On a smooth closed surface no point moves much farther than the worst vertex. */
         assert_true(farthest < 4 * done.error);
         assert_true(there.root_mean_square < 2 * done.error);
         assert_int_equal(there.turned + back.turned, 0);
@@ -139,8 +139,8 @@ static double draw(uint64_t *state)
     return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Each step turns a face by so much at most, but there are many: a surface whose faces all look up,
- * some of them barely, has a few that look down then. */
+/* Each step turns a face only a little, but there are many steps. On a surface whose faces all look
+ * up, some barely, a few look down afterwards. */
 static void few_faces_of_a_rough_surface_are_turned(void **state)
 {
     (void)state;
@@ -180,7 +180,7 @@ static void the_error_stays_below_its_limit(void **state)
         assert_int_equal(done.stop, HE_STOP_ERROR);
         assert_true(done.error <= most && done.error > most / 4);
         assert_true(he_mesh_faces(m) < last);
-        /* The planes of the walls at the boundary count too, so that it is not quite the same. */
+        /* The planes at the boundary count, too, so the results differ slightly. */
         assert_true(dense_measure(m, first).root_mean_square <= 1.5 * most);
         assert_true(dense_measure(first, m).root_mean_square <= 1.5 * most);
         last = he_mesh_faces(m);
@@ -189,8 +189,8 @@ static void the_error_stays_below_its_limit(void **state)
     he_mesh_free(first);
 }
 
-/* Of an edge that is left either the error is larger or the collapse is refused: errors are means,
- * and those of edges that were too dear may have fallen since. */
+/* For each remaining edge either the error is larger or the collapse is refused: errors are means,
+ * and those of edges that were too expensive may have fallen since. */
 static void no_edge_is_left_within_the_limit(void **state)
 {
     (void)state;
@@ -223,7 +223,7 @@ static void what_cannot_be_collapsed_is_left(void **state)
     he_mesh *m = dense_torus(12);
     he_decimated done = dense_decimate(m, 0, INFINITY);
     assert_int_equal(done.stop, HE_STOP_EXHAUSTED);
-    /* No torus has fewer than 7 vertices; whether that is reached depends on shapes. */
+    /* A torus has at least 7 vertices; whether that is reached depends on the shape. */
     assert_true(he_mesh_faces(m) >= 14 && he_mesh_faces(m) < 100);
     assert_int_equal(he_mesh_vertices(m) + he_mesh_faces(m), he_mesh_edges(m));
     he_decimated again = dense_decimate(m, 0, INFINITY);
@@ -256,7 +256,7 @@ static void options_outside_their_range_are_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Scaled by a power of two the same comes out, to the last bit. */
+/* Scaling by a power of two gives the same result, to the last bit. */
 static void size_and_place_do_not_matter(void **state)
 {
     (void)state;
@@ -289,7 +289,7 @@ static void points_in_one_place_are_no_harm(void **state)
     }
 }
 
-/* A vertex of very many edges must not be turned about for each of them. */
+/* The edges of a vertex of very high degree must not be visited again for each of them. */
 static void a_hub_of_many_edges_is_no_work(void **state)
 {
     (void)state;
@@ -336,7 +336,7 @@ static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
     return dense_built(&soup);
 }
 
-/* Each collapse at the rim of a star changes faces about its hub, whose 256 edges may not all be
+/* Each collapse at the rim of a star changes faces around its hub, whose 256 edges must not all be
  * tried again for that; but in the end they are. */
 static void edges_of_a_star_are_tried_again_but_not_each_time(void **state)
 {

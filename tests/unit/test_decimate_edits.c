@@ -1,4 +1,4 @@
-/* Decimation as an edit: undone, recorded, starved, given up. */
+/* Decimation as an edit: undo, recording, failing allocations, cancelling. */
 #include "tests/unit/dense.h"
 
 #include "algo/progressive.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Asked for so much that it would replace the mesh, and allowed nothing. */
+/* The request would remove nearly everything, but no collapse is allowed. */
 static void nothing_is_recorded_where_no_edge_may_go(void **state)
 {
     (void)state;
@@ -26,7 +26,7 @@ static void nothing_is_recorded_where_no_edge_may_go(void **state)
     he_mesh_free(m);
 }
 
-/* A few faces and many are done in two ways. */
+/* Few faces and many faces are handled in two ways. */
 static const struct {
     uint32_t side, faces;
     bool replaced;
@@ -99,7 +99,7 @@ static void add_columns(he_mesh *m, unsigned count)
     }
 }
 
-/* Records there is room for, and those that are used, beyond what it takes without columns. */
+/* Records reserved and records used, beyond those without columns. */
 static void record_with(unsigned columns, size_t *room, size_t *used)
 {
     he_mesh *m = dense_torus(20);

@@ -1,4 +1,4 @@
-/* Decimation: what has to stay, and what follows the vertices. */
+/* Decimation: what must stay, and which values move with vertices. */
 #include "tests/unit/dense.h"
 
 #include "mesh/marks.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* The outline of a grid that is bent out of its plane stays where it was. */
+/* The outline of a grid that is bent out of its plane stays in place. */
 static void boundaries_are_kept(void **state)
 {
     (void)state;
@@ -42,7 +42,7 @@ static void boundaries_are_kept(void **state)
     he_mesh_free(m);
 }
 
-/* How far boundary vertices of a decimated grid are from its outline, at most. */
+/* Returns the largest distance of boundary vertices of a decimated grid from its outline. */
 static double outline_error(double weight)
 {
     enum { SIDE = 30 };
@@ -151,7 +151,7 @@ static void locked_elements_keep_their_attributes(void **state)
     }
 }
 
-/* A line across a flat grid would be lost; as a feature it stays, and straight. */
+/* A line across a flat grid would disappear; as a feature it stays, and stays straight. */
 static void feature_lines_keep_their_shape(void **state)
 {
     (void)state;

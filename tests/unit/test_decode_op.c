@@ -1,4 +1,4 @@
-/* Operations from JSON, and the names of an edit list. */
+/* Decoding operations from JSON, and the names of an edit list. */
 #include "api/write/decode_op.h"
 #include "api/write/names.h"
 
@@ -15,7 +15,8 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
-    {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""}, /* a refusal of the operation */
+    /* refused by the operation, not by the decoder */
+    {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
     {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
     {"{\"op\":\"hole_fill\",\"halfedge\":1,\"method\":\"fan\"}", HE_OK, ""},
@@ -122,7 +123,6 @@ static void bodies_are_refused_with_their_pointer(void **state)
     }
 }
 
-/* The index of a parameter, by name. */
 static void names_that_do_not_exist_are_answered_with_those_that_do(void **state)
 {
     (void)state;
@@ -148,6 +148,7 @@ static void names_that_do_not_exist_are_answered_with_those_that_do(void **state
     }
 }
 
+/* Returns the index of a parameter with this name. */
 static size_t param(const he_op *op, const char *name)
 {
     size_t i = 0;
@@ -190,7 +191,7 @@ static void arguments_hold_what_was_given(void **state)
     clear(&p);
 }
 
-/* Decode a list as the check does: each operation may name those before it. */
+/* Decodes a list as the check does: each operation may name those before it. */
 static bool check_list(const api_in *list, api_names *names, api_arena *arena)
 {
     api_in op;
@@ -231,7 +232,7 @@ static const struct {
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex.0\"}]", API_BAD_REFERENCE,
      "/1/vertex"},
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"a.vertex\"}]", API_WRONG_TYPE, "/1/vertex"},
-    /* of another kind, or a list where one is wanted */
+    /* of the wrong kind, or a list instead of one id */
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.vertex\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.01\"}]", API_BAD_REFERENCE, "/1/edge"},
@@ -282,12 +283,12 @@ static size_t result(const he_op *op, const char *name)
     return i;
 }
 
-/* A list whose first operation gave vertex 17, edges 30 31 32 and no faces. */
+/* The first operation of the list resulted in vertex 17, edges 30 31 32 and no faces. */
 static void references_take_the_values_of_results(void **state)
 {
     (void)state;
     static const struct {
-        const char *op, *name; /* the second operation, and the parameter looked at */
+        const char *op, *name; /* the second operation, and the parameter that is checked */
         int code;
         size_t count;
         uint32_t first, last;

@@ -1,5 +1,5 @@
-/* Recording, undo, redo, rollback, changes, columns and compact, on writes made by hand
- * through write.h. The operations' own deltas are tested with the operations. */
+/* Recording, undo, redo, rollback, changes, columns and compact, with writes made directly through
+ * write.h. The deltas of operations are tested with the operations. */
 #include "fixture.h"
 
 #include "mesh/compact.h"
@@ -13,7 +13,7 @@ static he_mesh *copy_of(const he_mesh *m)
     return copy;
 }
 
-/* A triangle of its own, by hand. */
+/* Adds a separate triangle directly. */
 static he_status add_triangle(he_mesh *m, he_error *err)
 {
     he_status status = he_reserve(m, (he_need){.vertices = 3, .edges = 3, .faces = 1}, err);
@@ -42,7 +42,7 @@ static he_status add_triangle(he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Remove the lone triangle with this face. */
+/* Removes the separate triangle with this face. */
 static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
 {
     he_need need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
@@ -160,7 +160,7 @@ static void test_changes_are_net(void **state)
     he_set_attribute(m, 0, 1, &(uint32_t){7});
     assert_int_equal(add_triangle(m, NULL), HE_OK);
     he_note_parent(m, HE_FACE, 3, 0);
-    he_note_parent(m, HE_FACE, 1, 0); /* not created: dropped */
+    he_note_parent(m, HE_FACE, 1, 0); /* was not created: dropped */
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
     expect_ids(&changes.created[HE_VERTEX], 3, (const uint32_t[]){7, 8, 9});
@@ -236,7 +236,7 @@ static void test_columns_are_recorded(void **state)
     he_mesh_free(end);
 }
 
-/* What the sets of no element show is still not nothing. */
+/* Changes that appear in the set of no element are still changes. */
 static void test_changes_of_no_element(void **state)
 {
     (void)state;
@@ -278,7 +278,7 @@ static void put_column(he_mesh *m, const char *name, he_kind domain)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* What was written in a column that went is no value of the one that took its slot. */
+/* A value written in a column that was removed is no value of the column that took its slot. */
 static void test_changes_when_a_slot_has_another_column(void **state)
 {
     (void)state;
@@ -319,7 +319,7 @@ static void test_changes_when_a_slot_has_another_column(void **state)
     }
 }
 
-/* he_reserve makes room for every word of a value, whatever its domain. */
+/* he_reserve reserves space for every word of a value in any domain. */
 static void test_the_widest_value_has_room(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Mesh documents: read piece by piece, written back. */
+/* Mesh documents: reading in pieces, writing. */
 #include "api/document/document_in.h"
 #include "api/document/document_out.h"
 
@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-/* How a body ends when it is fed in pieces of `step` bytes. */
+/* The outcome of a body that is fed in pieces of `step` bytes. */
 typedef struct outcome {
     int code;
     char pointer[API_PROBLEM_POINTER];
@@ -24,7 +24,7 @@ static outcome feed(const char *body, size_t length, size_t step, api_document_i
     bool good = true;
     for (size_t at = 0; good && at < length; at += step) {
         size_t size = length - at < step ? length - at : step;
-        /* A copy of the exact size, so that the sanitizer sees a read beyond the piece. */
+        /* A copy of the exact size, so that the sanitizer detects a read beyond the piece. */
         char *piece = malloc(size);
         assert_non_null(piece);
         memcpy(piece, body + at, size);
@@ -46,7 +46,7 @@ static outcome feed(const char *body, size_t length, size_t step, api_document_i
 static const struct {
     const char *body;
     int code;
-    const char *pointer; /* "-": not looked at */
+    const char *pointer; /* "-": not checked */
 } bodies[] = {
     {"{}", HE_OK, "-"},
     {"{\"vertices\":[],\"faces\":[]}", HE_OK, "-"},
@@ -225,10 +225,10 @@ static void what_is_gathered_is_bounded(void **state)
     memcpy(body, "{\"name\":\"", 9);
     memcpy(body + length - 2, "\"}", 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, HE_LIMIT);
-    /* A name that does not end. */
+    /* A name without an end. */
     memset(body + 2, 'k', length - 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, API_UNKNOWN_MEMBER);
-    /* A number that does not end. */
+    /* A number without an end. */
     memset(body, '0', length);
     memcpy(body, "{\"vertices\":[[1.", 16);
     assert_int_equal(feed(body, length, 7, NULL).code, HE_BAD_VALUE);
@@ -280,7 +280,8 @@ static const char attributed[] =
     "\"bool\","
     "\"values\":[true]}],\"name\":\"n\"}";
 
-/* Read, repaired, built and filled, up to what fails; NULL with HE_NO_MEMORY in the problem. */
+/* Reads, repairs, builds and fills; returns NULL with HE_NO_MEMORY in the problem if an allocation
+ * fails. */
 static he_mesh *make_attributed(api_problem *problem)
 {
     const he_repair_plan plan = {.which = he_repair_bit(HE_REPAIR_WELD) |
@@ -315,7 +316,7 @@ static he_mesh *make_attributed(api_problem *problem)
     return mesh;
 }
 
-/* Some memory is only wished for, such as to give a longer block back. */
+/* Some allocations are optional, such as shrinking a block. */
 static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void **state)
 {
     (void)state;
@@ -340,7 +341,7 @@ static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void 
     assert_true(refused > 30);
 }
 
-/* The whole text, pulled in pieces of `step` bytes. */
+/* Writes the whole text in pieces of `step` bytes. */
 static char *write_all(const he_mesh *mesh, const char *name, size_t step, size_t *length)
 {
     api_document_out *out = api_document_out_new(mesh, name);
@@ -371,7 +372,7 @@ static he_mesh *read_back(const char *text, size_t length)
     return mesh;
 }
 
-/* Written in steps of several sizes, the document is read as an equal mesh. */
+/* Writes the document in steps of several sizes; it must read back as an equal mesh. */
 static void expect_comes_back(const he_mesh *mesh, const char *name)
 {
     size_t length;

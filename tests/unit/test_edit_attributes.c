@@ -1,4 +1,4 @@
-/* Attribute values through edits, and what the C functions refuse that JSON never brings them. */
+/* Attribute values through edits, and refusals of the C functions that JSON never causes. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "edit/whole/transform.h"
 #include "mesh/write.h"
 
-/* A column of one double named "a": row i holds 10 * i, the default is -1. */
+/* Adds a column of one double named "a": row i holds 10 * i, the default is -1. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -50,7 +50,7 @@ static void assert_value(const he_mesh *m, he_kind domain, uint32_t row, double 
     }
 }
 
-/* The value of the corner at a vertex of a face. */
+/* Checks the value of the corner at a vertex of a face. */
 static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, double expected)
 {
     he_halfedge h = he_face_halfedge(m, (he_face){face});
@@ -60,7 +60,7 @@ static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, doub
     assert_value(m, HE_HALFEDGE, h.i, expected);
 }
 
-/* Run a script on a mesh with one column. */
+/* Runs a script on a mesh with one column. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -179,7 +179,7 @@ static void test_corners(void **state)
     assert_corner(m, 1, 0, 60);
     he_mesh_free(m);
 
-    /* The old corner moves to another half-edge with its value, whatever the rule. */
+    /* The old corner moves to another half-edge with its value, for every rule. */
     m = after("012,103", HE_HALFEDGE, HE_DEFAULT, "edge_bisect edge=#0 t=0.25");
     assert_corner(m, 1, 1, 10);
     assert_corner(m, 1, 4, -1);
@@ -219,7 +219,7 @@ static void test_corners(void **state)
     assert_corner(m, 1, 2, 40);
     he_mesh_free(m);
 
-    /* The faces about the vertex that goes keep their corners' values. */
+    /* The faces around the deleted vertex keep the values of their corners. */
     m = after("012,023,034,045,056,061", HE_HALFEDGE, HE_COPY, NULL);
     double at_0 = value_at(m, HE_HALFEDGE, halfedge_between(m, 0, 2).i);
     script_prepare(m, "edge_collapse halfedge=0-1");
@@ -268,7 +268,7 @@ static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double
 static void test_normals(void **state)
 {
     (void)state;
-    /* Twice as high: a normal of slope 3:4 becomes one of 3:2. */
+    /* Doubles the height: a normal of slope 3:4 becomes one of slope 3:2. */
     static const char HIGHER[] = "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1";
     static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
     static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
@@ -297,7 +297,7 @@ static void test_normals(void **state)
         assert_normal(m, domain, 2, 0, 0, -1);
         he_mesh_free(m);
     }
-    /* Of some vertices: their rows, their corners, faces that move whole. */
+    /* For some vertices: their rows, their corners, and faces that move as a whole. */
     he_mesh *m = script_mesh("012,023,324", NULL);
     add_normals(m, HE_VERTEX, HE_DOUBLE);
     add_normals(m, HE_HALFEDGE, HE_FLOAT);
@@ -355,7 +355,7 @@ static void nothing_is_mixed_into_what_is_locked(void **state)
     }
 }
 
-/* Whichever end is the origin of half-edge 2e, whatever the rule. */
+/* Whichever end is the origin of half-edge 2e, for every rule. */
 static void a_lock_does_not_spread_to_a_vertex_between(void **state)
 {
     (void)state;
@@ -388,7 +388,7 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
     }
 }
 
-/* Both parts of what is cut have the mark; what is new has not. */
+/* Both parts of a divided element have the mark; new elements do not. */
 static void test_marks_are_copied(void **state)
 {
     (void)state;
@@ -405,7 +405,7 @@ static void test_marks_are_copied(void **state)
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         assert_int_equal(marked(m, HE_FACE, "locked", f), f != 1 && f != 3);
     }
-    /* A column of another type under the name is no mark. */
+    /* A column of another type with the name of a mark is no mark. */
     he_mesh_free(m);
     m = script_mesh("012,023", NULL);
     he_column *column = NULL;
@@ -452,7 +452,7 @@ static void test_bad_values(void **state)
     he_mesh_free(m);
 }
 
-/* Positions at the end of the range stay in it. */
+/* Positions at the limits of doubles stay finite. */
 static void test_extreme_positions(void **state)
 {
     (void)state;
@@ -481,7 +481,7 @@ static void test_loops(void **state)
     (void)state;
     static const char join[] = "loop_join a=2-0 b=4-6";
     static const char split[] = "loop_split a=0-1 b=1-2 c=2-0";
-    /* 6 goes into 2, and the edge 4-6 into 0-2. */
+    /* 6 is merged into 2, and the edge 4-6 into 0-2. */
     static const he_rule rules[] = {HE_INTERPOLATE, HE_COPY, HE_DEFAULT};
     for (size_t i = 0; i < 3; i++) {
         he_mesh *m = after(CF4, HE_VERTEX, rules[i], join);

@@ -1,5 +1,5 @@
-/* Edits that open, close and draw out the boundary, and edge_bevel: what they leave where, and that
- * they undo each other. */
+/* Edits that open, close and extend the boundary, and edge_bevel: their results, and that they undo
+ * each other. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ static void assert_at(const he_mesh *m, uint32_t v, double x, double y, double z
     assert_true(fabs(p.x - x) < 1e-12 && fabs(p.y - y) < 1e-12 && fabs(p.z - z) < 1e-12);
 }
 
-/* An interior vertex may store any half-edge that leaves it, one at a bow-tie any of the boundary:
- * take those of `like`. */
+/* An interior vertex may store any half-edge that leaves it, and a bow-tie any boundary half-edge:
+ * takes the choices of `like`. */
 static void store_like(he_mesh *m, const he_mesh *like)
 {
     for (uint32_t v = 0; v < he_mesh_issued(like, HE_VERTEX); v++) {
@@ -130,7 +130,7 @@ static void test_weld_places_the_ends(void **state)
                  {"edge_weld a=0-1 b=3-5 keep=a", 0, 0, 2},
                  {"edge_weld a=0-1 b=3-5 keep=b", 4, 4, 4}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        /* Each face is on its own side: 0-1 runs up with face 102, 3-5 with 345. */
+        /* Each face keeps its own side: 0-1 belongs to face 102, 3-5 to 345. */
         he_mesh *m = script_mesh("012,345", places);
         script_prepare(m, cases[i].weld);
         assert_counts(m, 4, 5, 2);
@@ -145,7 +145,7 @@ static void test_welds_at_a_bowtie_in_every_order(void **state)
     (void)state;
     static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
                                         "edge_weld a=0-6 b=0-7", "edge_weld a=0-8 b=0-1"};
-    /* Four fans in every order of welding; the last closes the only one left. */
+    /* Four fans are welded in every order; the last weld closes the only remaining fan. */
     for (unsigned order = 0; order < 256; order++) {
         unsigned used = 0;
         he_mesh *m = script_mesh("012,034,056,078", NULL);
@@ -189,7 +189,7 @@ static void test_deleting_the_walls_undoes_extrude(void **state)
             assert_int_equal(script_run(m, cases[i].extrude, &results, NULL), HE_OK);
             assert_valid(m);
             assert_true(he_mesh_faces(m) > he_mesh_faces(before));
-            /* The far edges are on the boundary and have just the walls. */
+            /* The far edges are on the boundary and have only the walls. */
             char text[128];
             int n =
                 snprintf(text, sizeof text, by_edge ? "edge_delete edges=" : "face_delete faces=");
@@ -220,7 +220,8 @@ static void test_extrude_shares_corners(void **state)
     he_results results = {{0}, {0}, {{0}}, {0}};
     assert_int_equal(script_run(m, "edge_extrude edges=1-2,0-1 by=0,0,3", &results, NULL), HE_OK);
     assert_counts(m, 7, 9, 3);
-    /* Vertices by rising vertex beneath, faces and edges as the edges were given. */
+    /* New vertices are in the order of the vertices below them, faces and edges in the order of the
+     * given edges. */
     for (uint32_t v = 0; v < 3; v++) {
         assert_at(m, 4 + v, cube[v].x, cube[v].y, 3);
     }
@@ -229,7 +230,7 @@ static void test_extrude_shares_corners(void **state)
     assert_int_equal(results.list[1].ids[0], edge_between(m, 5, 6).i);
     assert_int_equal(results.list[1].ids[1], edge_between(m, 4, 5).i);
     assert_false(he_is_boundary_vertex(m, (he_vertex){1}));
-    /* Again from there: the chain goes on. */
+    /* Continues the chain from there. */
     script_prepare(m, "edge_extrude edges=4-5,5-6 by=0,0,1");
     assert_counts(m, 10, 14, 5);
     he_results_clear(&results);
@@ -268,7 +269,7 @@ static void test_bevel_is_clamped(void **state)
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
     script_prepare(m, "vertex_move vertex=4 to=0,0,-9;edge_bevel edge=0-1 width=7");
-    /* Each edge by its own length. */
+    /* Each cut is proportional to the length of its edge. */
     assert_at(m, 8, 0, 0.99, 0);
     assert_at(m, 9, 0, 0, -7);
     assert_int_equal(he_edge_bevel(m, edge_between(m, 6, 7), (double)NAN, NULL, NULL),
@@ -295,7 +296,7 @@ static void test_both_bevels_cut_an_edge_without_length_halfway(void **state)
         script_prepare(m, "vertex_move vertex=3 to=0,0,0");
         script_prepare(m, bevels[i]);
         assert_valid(m);
-        /* The cut between 0 and 3, which is 3's neighbour that is none of its old ones. */
+        /* Finds the cut between 0 and 3: the only new neighbour of 3. */
         uint32_t cut = HE_NONE;
         he_halfedge first = he_vertex_halfedge(m, (he_vertex){3}), h = first;
         do {
@@ -349,11 +350,11 @@ static void test_bevel_at_the_ends_of_doubles(void **state)
     }
 }
 
-/* --- marks, values and descent ---------------------------------------------------------------- */
+/* --- marks, values and ancestry --------------------------------------------------------------- */
 
 enum { FIRST_VALUE = 10 };
 
-/* A column of doubles that holds 10 times the id. */
+/* Adds a column of doubles that holds 10 times the id. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -423,7 +424,7 @@ static void test_values_follow(void **state)
     he_mesh_free(m);
 }
 
-/* "gone into" or "child parent" pairs as text. */
+/* Checks pairs given as text: "merged into" or "child parent". */
 static void assert_pairs(const he_ids *list, const char *expected)
 {
     char text[256] = "";

@@ -1,4 +1,4 @@
-/* The cases of the design's table of operations, and what bow-ties make of edits. */
+/* The cases in the design's table of operations, and edits at bow-ties. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -93,7 +93,7 @@ static void test_strange(void **state)
     he_mesh *before = copy_of(m);
     assert_int_equal(script_run(m, "face_add vertices=3,0,4", NULL, NULL), HE_CLOSED_FAN);
     assert_equal(m, before);
-    /* Gap by gap the fans become one, in whatever order they are chained. */
+    /* Gap by gap the fans are joined, in whatever order they are linked. */
     script_prepare(m, "face_add vertices=1,0,4");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
     assert_int_equal(script_run(m, "face_add vertices=3,0,2", NULL, NULL), HE_CLOSED_FAN);
@@ -130,7 +130,7 @@ static void test_cube_holes(void **state)
 static void test_checkerboard(void **state)
 {
     (void)state;
-    /* The white squares of three by three: five faces that touch at the corners only. */
+    /* The white squares of a three by three checkerboard: five faces that touch only at corners. */
     he_mesh *m = script_mesh("0154,1265,2376,4598,56a9,67ba,89dc,9aed,abfe", NULL);
     script_prepare(m, "face_delete faces=1,3,5,7");
     assert_counts(m, 16, 20, 5);
@@ -176,7 +176,7 @@ static void test_cf3_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
-    /* The edge comes into the corner of 3 in either face. */
+    /* The edge enters the corner of 3 in both faces. */
     script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
     assert_counts(m, 7, 8, 2);
     script_prepare(m, "edge_collapse halfedge=6-3 t=1");
@@ -226,7 +226,7 @@ static void test_cube_corner(void **state)
     }
 }
 
-/* A shape of the table, with so many arguments given. */
+/* Makes a shape of the table with the given arguments. */
 static he_mesh *make(const char *name, const double *given, size_t count)
 {
     double args[HE_SHAPE_PARAMS];
@@ -318,7 +318,7 @@ static void test_solids(void **state)
     }
 }
 
-/* Not one bit: dead rows, ids that were issued and every attribute are compared. */
+/* Every bit is compared: dead rows, issued ids and every attribute. */
 static void test_a_refusal_leaves_everything(void **state)
 {
     (void)state;
@@ -379,8 +379,8 @@ static void test_sb(void **state)
     he_mesh_free(m);
 }
 
-/* Loop's refinement out of splits and flips: split all edges, flip the new ones between an old
- * vertex and a new one. */
+/* Loop's subdivision by splits and flips: splits all edges, then flips the new edges between an old
+ * and a new vertex. */
 static void test_split_and_flip(void **state)
 {
     (void)state;
@@ -395,7 +395,7 @@ static void test_split_and_flip(void **state)
     for (uint32_t i = e; i < he_mesh_issued(m, HE_EDGE); i++) {
         he_halfedge h = he_edge_halfedge((he_edge){i}, 0);
         bool old_from = he_origin(m, h).i < v, old_to = he_target(m, h).i < v;
-        /* The first of the three edges a split makes is the other half of the one split. */
+        /* The first of the three edges that a split makes is the other half of the split edge. */
         bool half = (i - e) % 3 == 0;
         if (old_from != old_to && !half) {
             char text[64];

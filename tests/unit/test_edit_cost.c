@@ -1,4 +1,4 @@
-/* What an operation reaches is counted before a worker takes it on. */
+/* The cost of an operation is counted before a worker runs it. */
 #include "fixture.h"
 
 #include "algo/shape.h"
@@ -6,7 +6,7 @@
 
 enum { LONG = 5000 };
 
-/* A cone: one face of many corners, one vertex of as many edges. */
+/* A cone: one face with many corners, one vertex with as many edges. */
 static he_mesh *cone(void)
 {
     double args[HE_SHAPE_PARAMS];
@@ -85,13 +85,13 @@ static void what_lies_about_neighbours_counts_where_it_is_looked_at(void **state
         assert_true(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 100) ==
                     cases[i].reaches);
         assert_false(exceeds(m, cases[i].name, cases[i].param, cases[i].id, 20 * LONG));
-        /* Ids that name nothing cost nothing. */
+        /* Invalid ids cost nothing. */
         assert_false(exceeds(m, cases[i].name, cases[i].param, HE_MAX_ROWS, 0));
     }
     he_mesh_free(m);
 }
 
-/* Steps of an operation whose first parameter is an element or a list of these. */
+/* Returns the steps of an operation whose first parameter is an element or a list of elements. */
 static uint64_t steps_of(const he_mesh *m, const char *name, const uint32_t *ids, size_t count,
                          api_hubs *hubs)
 {
@@ -114,18 +114,18 @@ static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
     uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
     uint32_t spoke = he_edge_of(he_turn_ccw(m, rim)).i;
     api_hubs hubs = {.slots = {{0}}};
-    /* What touches a few rows only costs nothing beside. */
+    /* An operation that changes only a few rows costs nothing more. */
     assert_int_equal(steps_of(m, "edge_split", &spoke, 1, &hubs), 0);
     assert_int_equal(steps_of(m, "vertex_move", ends, 2, &hubs), 0);
-    /* Both corners see the hub twice, and the base with all its corners. */
+    /* Both corners visit the hub twice, and the base with all its corners. */
     uint64_t weld = steps_of(m, "vertex_weld", ends, 2, &hubs);
     assert_true(weld > 4 * LONG && weld < 20 * LONG);
-    assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld); /* remembered */
+    assert_true(steps_of(m, "vertex_weld", ends, 2, &hubs) == weld); /* from the cache */
     assert_int_equal(steps_of(m, "vertex_weld", &none, 1, &hubs), 0);
     assert_true(steps_of(m, "face_split", &base, 1, &hubs) == LONG);
     assert_true(steps_of(m, "face_split", &side, 1, &hubs) == 3);
     assert_true(steps_of(m, "face_collapse", &side, 1, &hubs) > LONG);
-    /* No operation costs more than a few meshes. */
+    /* No operation costs more than a few passes over the mesh. */
     uint32_t *all = he_mem_array(NULL, LONG, sizeof *all);
     assert_non_null(all);
     for (uint32_t i = 0; i < LONG; i++) {

@@ -33,7 +33,7 @@ static double total_area(const he_mesh *m)
     return measures.area;
 }
 
-/* --- what the edges are like, by other means than the edit's --- */
+/* --- properties of edges, computed in another way than in the edit --- */
 
 static bool is_inner(const he_mesh *m, uint32_t e)
 {
@@ -57,7 +57,7 @@ static bool is_clearly_crooked(const he_mesh *m, uint32_t e)
     return is_inner(m, e) && opposite(m, h) + opposite(m, he_twin(h)) > 3.14159265358979 + 1e-6;
 }
 
-/* In z = 0: how far d is inside the circle through a, b and c, relative to its size. */
+/* For z = 0: how far d is inside the circle through a, b and c, relative to its size. */
 static double depth_in_circle(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
     long double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y;
@@ -108,7 +108,7 @@ static void test_kite(void **state)
     he_mesh_free(m);
 }
 
-/* Four points on a circle are as good one way as the other. */
+/* With four points on a circle both diagonals are equally good. */
 static void test_circle_is_left_alone(void **state)
 {
     (void)state;
@@ -215,7 +215,7 @@ static bool is_inside(const he_mesh *m, uint32_t f, he_vec3 p)
     return true;
 }
 
-/* A square with points dropped into it, each joined to the corners of the triangle it fell in. */
+/* A square into which points are inserted, each connected to the corners of its triangle. */
 static he_mesh *random_points(md_random *r, uint32_t n)
 {
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -249,7 +249,7 @@ static void test_random_points(void **state)
         assert_valid(m);
         assert_delaunay_in_plane(m);
         assert_true(fabs(total_area(m) - 1) < 1e-9);
-        /* The reported flips lead from there to here. */
+        /* Applying the reported flips to the old mesh gives the new one. */
         he_mesh *replay = copy_of(before);
         for (size_t i = 0; i < flips.count; i++) {
             assert_true(is_inner(replay, flips.ids[i]));
@@ -273,7 +273,7 @@ static void test_random_points(void **state)
     }
 }
 
-/* Kept edges join what they joined; all others are as they should be. */
+/* Kept edges are unchanged; all others are Delaunay. */
 static void test_random_features(void **state)
 {
     (void)state;
@@ -305,7 +305,7 @@ static void test_random_features(void **state)
     }
 }
 
-/* After a point is dropped into a Delaunay triangulation, beginning with the sides of its triangle
+/* After a point is inserted into a Delaunay triangulation, starting with the sides of its triangle
  * is enough (Lawson's insertion). */
 static void test_flips_spread_from_the_list(void **state)
 {
@@ -336,7 +336,7 @@ static void test_flips_spread_from_the_list(void **state)
     he_mesh_free(m);
 }
 
-/* An edge that is not in the list, nor beside a flip, is not looked at. */
+/* An edge that is neither in the list nor beside a flip is not checked. */
 static void test_only_the_list(void **state)
 {
     (void)state;
@@ -351,7 +351,7 @@ static void test_only_the_list(void **state)
 
 /* --- triangles in space --- */
 
-static or_mesh *shapes; /* made once, for its tables are large */
+static or_mesh *shapes; /* made once, because its tables are large */
 
 static bool random_triangles(md_random *r, he_mesh **out)
 {
@@ -389,7 +389,7 @@ static void test_triangles_in_space(void **state)
         double area = total_area(m);
         assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
         assert_valid(m);
-        /* What delaunay.h ends by. */
+        /* The bound by which delaunay.h proves that it ends. */
         assert_true(total_area(m) <= area * (1 + 1e-9));
         all += flips.count;
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
@@ -411,8 +411,8 @@ static void test_triangles_in_space(void **state)
 
 /* --- work --- */
 
-/* Two rows of points, all triangles of the lower from one point and all of the upper from another:
- * the number of flips grows with the square. */
+/* Two rows of points; all triangles of the lower row share one point, and all of the upper row
+ * another: the number of flips grows with the square. */
 static he_mesh *two_rows(uint32_t n)
 {
     he_soup soup;
@@ -453,8 +453,8 @@ static void test_work_is_limited(void **state)
     he_mesh_free(m);
 }
 
-/* However many flips there are, the record is no longer than what the mesh has words for, and leads
- * back and forth. */
+/* However many flips there are, the delta is no longer than the number of words in the mesh, and
+ * undoes and redoes. */
 static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
 {
     (void)state;
@@ -480,7 +480,7 @@ static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
     he_mesh_free(m);
 }
 
-/* Ten thousand spokes about one vertex: no flip turns about all of them. */
+/* Ten thousand edges at one vertex: no flip visits all of them. */
 static void test_hub(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Welds of every kind keep what vertices say: where it differs it goes to corners, and back with an
- * undo. */
+/* Welds keep the values of vertices: where values differ they move to corners, and undo moves them
+ * back. */
 #include "unit/edit_script.h"
 
 #include "mesh/check.h"
@@ -14,11 +14,11 @@
 
 #include <cmocka.h>
 
-/* Vertices 1 2 and 5 4 lie in the same places. */
+/* Vertices 1 2 and 5 4 have equal positions. */
 static const he_vec3 beside[6] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}};
 #define BESIDE "012,345"
 
-/* A column of two doubles, 10 * row + 1 and 7, or of one bool that is set. */
+/* Adds a column of two doubles, 10 * row + 1 and 7, or of one bool that is true. */
 static he_column *add_column(he_mesh *m, he_kind domain, const char *name, he_type type,
                              he_rule rule)
 {
@@ -50,7 +50,7 @@ static double first_of(const he_column *column, uint32_t row)
     return value;
 }
 
-/* The corners of a face say these, in this order from any of them on. */
+/* Requires these values at the corners of a face, starting at any of them. */
 static void expect_corners(const he_mesh *m, const char *name, uint32_t face, double a, double b,
                            double c)
 {
@@ -163,7 +163,7 @@ static void an_attribute_that_corners_have_is_not_changed(void **state)
     }
 }
 
-/* Nothing else has their values. */
+/* Only these vertices have such values. */
 static void vertices_without_corners_keep_the_attribute(void **state)
 {
     (void)state;

@@ -1,12 +1,12 @@
-/* Lists of ids: the first one named twice is found in short ones, in dense ones and in sparse ones,
- * and looking for it costs no memory that goes by the mesh. */
+/* Lists of ids: the first repeated one is found in short, dense and sparse lists, with memory that
+ * does not depend on the size of the mesh. */
 #include "fixture.h"
 
 #include "edit/piece/list.h"
 
 enum { COUNT = 1000 };
 
-/* What the largest block asked for was. */
+/* The largest block that was requested. */
 static size_t largest;
 
 static void *measure(void *context, void *memory, size_t size)

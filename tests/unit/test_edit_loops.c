@@ -1,4 +1,4 @@
-/* Loops bridged, sewn together and taken apart: the design's cases, who survives, inverses, twist.
+/* Joining and splitting loops, and bridges: the design's cases, surviving ids, inverses, twist.
  */
 #include "edit_script.h"
 
@@ -29,7 +29,7 @@ static int euler(const he_mesh *m)
     return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
 }
 
-/* Each vertex may store another of the half-edges it may store. */
+/* Each vertex may store any of its allowed half-edges. */
 static void assert_same_links(he_mesh *m, const he_mesh *other)
 {
     for (uint32_t v = 0; v < he_mesh_issued(other, HE_VERTEX); v++) {
@@ -62,7 +62,7 @@ static void test_cylinders(void **state)
     m = script_mesh(CYLINDERS, NULL);
     assert_counts(m, 24, 36, 12);
     assert_loops(m, "6666");
-    /* The top of one with the bottom of the other, then the ends that are left: a torus. */
+    /* Joins the top of one to the bottom of the other, then the remaining ends: a torus. */
     script_prepare(m, "loop_bridge a=6-7 b=13-12");
     assert_valid(m);
     assert_counts(m, 24, 42, 18);
@@ -88,7 +88,7 @@ static void test_who_survives(void **state)
     script_prepare(m, "loop_join a=2-0 b=4-6");
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-    /* The origin of a takes in the target of b, and so on around. */
+    /* The target of b is merged into the origin of a, and so on around. */
     static const uint32_t merged[] = {6, 2, 4, 0, 5, 1};
     assert_int_equal(changes.merged[HE_VERTEX].count, 6);
     for (unsigned i = 0; i < 6; i++) {
@@ -170,7 +170,7 @@ static void test_split_then_join(void **state)
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
         assert_int_equal(he_loop_join(m, there, other, NULL, NULL), HE_OK);
         assert_valid(m);
-        /* Faces may store another of their half-edges, and corners hold the same values. */
+        /* Faces may store other half-edges; corners must have equal values. */
         for (uint32_t f = 0; f < he_mesh_issued(before, HE_FACE); f++) {
             he_set_face_halfedge(m, (he_face){f}, he_face_halfedge(before, (he_face){f}));
         }
@@ -221,7 +221,7 @@ static void test_bridge_then_delete(void **state)
 
 static const double TURN = 6.283185307179586;
 
-/* A disk of n corners below one of k, which is turned by `turn` and faces it; points are times
+/* A disk of n corners below one of k, rotated by `turn`, facing each other; positions are scaled by
  * `scale`. */
 static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
 {
@@ -246,7 +246,7 @@ static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
     return m;
 }
 
-/* By how much of a turn do the ends of an edge lie apart? */
+/* Returns the angle between the ends of an edge, as a part of a turn. */
 static double twist_of(const he_mesh *m, uint32_t e)
 {
     he_halfedge h = {2 * e};
@@ -307,7 +307,7 @@ static void test_unequal_loops_are_not_twisted(void **state)
     }
 }
 
-/* All corners of one loop are nearest to one corner of the other. */
+/* All corners of one loop are nearest to a single corner of the other. */
 static void test_a_crowd_is_bridged(void **state)
 {
     (void)state;
@@ -330,7 +330,7 @@ static void test_a_crowd_is_bridged(void **state)
     }
 }
 
-/* The loop runs through vertex 0 twice; both gaps are filled, so that its fans become one. */
+/* The loop visits vertex 0 twice; both gaps are filled, so that its fans become one. */
 static void test_bowties(void **state)
 {
     (void)state;
@@ -343,7 +343,7 @@ static void test_bowties(void **state)
     assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
     he_mesh_free(m);
 
-    /* Sewn to a hole at one of the gaps of a bow-tie, the fan stays beside the other. */
+    /* Joined to a hole at one gap of a bow-tie, the fan stays separate from the other fan. */
     m = script_mesh("012,034,567", NULL);
     script_prepare(m, "loop_join a=0-1 b=6-5");
     assert_valid(m);

@@ -1,4 +1,4 @@
-/* What a plane leaves of a mesh: both sides make up the whole, caps close them. */
+/* Cutting a mesh by a plane: both parts together are the whole, and caps close them. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ static double area(const he_mesh *m)
     return measures.area;
 }
 
-/* A closed one, of triangles. */
+/* A closed shape of triangles. */
 static he_mesh *shape(const char *name)
 {
     he_soup soup;
@@ -79,7 +79,7 @@ static he_mesh *part_of(const he_mesh *m, he_vec3 at, he_vec3 normal, he_cut_sid
     return part;
 }
 
-/* Cut a closed mesh in two; returns the caps of either part. */
+/* Cuts a closed mesh in two; returns the number of caps of each part. */
 static size_t check_halves(const he_mesh *m, he_vec3 at, he_vec3 normal)
 {
     double whole = volume(m), around = area(m), volumes = 0, areas = 0;
@@ -138,7 +138,7 @@ static void test_halves_make_up_the_whole(void **state)
     }
 }
 
-/* A face in the plane belongs to the side of which it is the outside. */
+/* A face in the plane belongs to the part whose outside it is. */
 static void test_faces_in_the_plane(void **state)
 {
     (void)state;
@@ -177,7 +177,7 @@ static void test_faces_in_the_plane(void **state)
 static void test_caps_of_open_meshes(void **state)
 {
     (void)state;
-    /* A hole that the plane does not touch is left as it is. */
+    /* A hole that the plane does not meet is unchanged. */
     he_mesh *m = shape("icosphere");
     script_prepare(m, "face_delete face=0");
     he_vec3 hole = {0, 0, 0};
@@ -198,7 +198,7 @@ static void test_caps_of_open_meshes(void **state)
     assert_int_equal(euler(part), 2);
     he_mesh_free(part);
 
-    /* Through the hole the cut is open: nothing happens with a cap, all as usual without. */
+    /* A cut through the hole is open: with caps the operation is refused, without caps it works. */
     he_vec3 across = he_vec3_cross(hole, UP), at = he_vec3_scale(hole, 1.0 / 3);
     he_error err = {.status = HE_OK};
     part = copy_of(m);
@@ -237,7 +237,7 @@ static void test_tolerance(void **state)
     const he_vec3 at = {0, 0, 0.05};
     he_cut_parts parts;
     he_mesh *m = script_mesh(STAIRS, STAIRS_LIE), *before = copy_of(m);
-    /* The bottom counts as in the plane, and faces down: what is above keeps it. */
+    /* The bottom is in the plane and faces down, so the part above keeps it. */
     assert_int_equal(he_plane_cut(m, at, UP, &near, HE_CUT_ABOVE, true, &parts, NULL), HE_OK);
     assert_int_equal(parts.edges_split, 0);
     assert_int_equal(parts.faces_deleted, 0);

@@ -1,5 +1,5 @@
-/* plane_split against counting and measuring by other means. SEED=n in the environment repeats a
- * random run, ROUNDS=n makes it longer. */
+/* plane_split, compared with counts and measures computed in another way. SEED=n in the environment
+ * repeats a random run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -51,7 +51,7 @@ static double total_area(const he_mesh *m)
     return measures.area;
 }
 
-/* The side of a plane, with no tolerance but rounding's. */
+/* Returns the side of a plane, with no tolerance except rounding. */
 static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
 {
     he_vec3 p = he_position(m, v);
@@ -59,7 +59,8 @@ static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
     return fabs(d) < 1e-7 ? 0 : d > 0 ? 1 : -1;
 }
 
-/* What a face has: corners on both sides, how many in the plane, how often its sides cross. */
+/* A face relative to the plane: corners on both sides, corners in the plane, sides that cross
+ * it. */
 typedef struct look {
     bool above, below;
     uint32_t in_plane, crossings;
@@ -106,8 +107,8 @@ static void assert_same_topology(const he_mesh *m, const he_mesh *before)
     he_topology_clear(&b);
 }
 
-/* V, E and F from what the faces and edges looked like before. Where corners lie in the plane, only
- * of faces that are convex. */
+/* Predicts V, E and F from the old faces and edges; faces with corners in the plane must be
+ * convex. */
 static void assert_predicted(const he_mesh *before, const he_plane_parts *parts, he_vec3 point,
                              he_vec3 normal, bool convex)
 {
@@ -135,7 +136,7 @@ static void assert_predicted(const he_mesh *before, const he_plane_parts *parts,
     assert_true(exact ? parts->faces.count == least : parts->faces.count >= least);
 }
 
-/* Split, and look at everything that can be said of any mesh. False when it was refused. */
+/* Splits, and checks everything that must hold for any mesh. Returns false if it was refused. */
 static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool convex)
 {
     he_mesh *before = copy_of(m);
@@ -253,7 +254,7 @@ static void test_who_survives(void **state)
     he_mesh_free(m);
 }
 
-/* The neighbour of a face that is cut gets a corner; what the list does not touch stays. */
+/* A neighbour of a cut face gets a corner; faces that are not listed are not cut. */
 static void test_only_some_faces(void **state)
 {
     (void)state;
@@ -265,7 +266,7 @@ static void test_only_some_faces(void **state)
     assert_int_equal(he_face_degree(m, (he_face){0}), 4);
     assert_int_equal(he_face_degree(m, (he_face){1}), 5);
     assert_int_equal(he_face_degree(m, (he_face){2}), 4);
-    /* The corner it got is used. */
+    /* The new corner is used. */
     script_prepare(m, "plane_split point=0,0.5,0 normal=0,1,0 faces=2,1,0,3");
     assert_counts(m, 12, 17, 6);
     he_mesh_free(m);
@@ -344,7 +345,7 @@ static void test_refusals(void **state)
         assert_int_equal(parts.faces_split, 77);
         assert_equal(m, before);
     }
-    /* One of the two sheets alone can be cut. */
+    /* One of the two sheets can be cut alone. */
     script_prepare(m, "plane_split point=0.5,0,0 normal=1,0,0 faces=1");
     assert_counts(m, 6, 7, 3);
     he_mesh_free(before);
@@ -369,7 +370,7 @@ static double area2(const he_mesh *m, const point *at, uint32_t f)
     return sum;
 }
 
-/* Faces in a tilted plane far away: `back` undoes it. */
+/* Puts points into a tilted plane far away; `back` does the opposite. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 10), scale * (0.8 * p.y + 3),
@@ -382,8 +383,8 @@ static point back(he_vec3 p, double scale)
     return (point){0.6 * q.x + 0.8 * q.z, q.y / 0.8};
 }
 
-/* Cut a polygon by the line y = height: the parts are to be as many as `parts`, none turned over,
- * and their areas add up. */
+/* Cuts a polygon by the line y = height: there must be `parts` parts, none turned over, and their
+ * areas must add up. */
 static void check_cut(const point *points, uint32_t n, double height, uint32_t parts, double scale)
 {
     he_soup soup;
@@ -477,8 +478,8 @@ static void test_comb(void **state)
     free(points);
 }
 
-/* Profiles of whole heights, cut at whole heights: corners and sides in the plane, touched from
- * above and from below, at the ends too. */
+/* Polygons with integer heights, cut at integer heights: corners and sides lie in the plane and
+ * touch it from above and below, also at the ends. */
 static void test_random_profiles(void **state)
 {
     (void)state;
@@ -498,13 +499,12 @@ static void test_random_profiles(void **state)
         for (uint32_t i = n + 1; i-- > 0;) {
             points[count++] = (point){i, h[i]};
         }
-        /* Every side of the profile that rises above it begins a part, unless it goes on with the
-         * one before. */
+        /* Each side that rises above the line begins a part, unless it continues the one before. */
         for (uint32_t i = 0; i < n; i++) {
             above += h[i] > cut || h[i + 1] > cut;
             above -= i > 0 && h[i] > cut;
         }
-        /* From any corner on. */
+        /* Starting at any corner. */
         point turned[16];
         uint32_t start = md_below(&r, count);
         for (uint32_t i = 0; i < count; i++) {
@@ -531,14 +531,14 @@ static void test_convex_shapes(void **state)
         for (unsigned k = 0; k < 20; k++) {
             print_message("%s, plane %u\n", names[i], k);
             he_mesh *m = shape(names[i], 0, 0);
-            /* The torus is of quadrilaterals that need not be planar. */
+            /* The quadrilaterals of the torus need not be planar. */
             bool flat = strcmp(names[i], "torus") != 0;
             double area = total_area(m);
             he_vec3 normal = k == 0 ? UP : random_vector(&r);
             he_vec3 at = k < 2 ? ORIGIN : he_vec3_scale(random_vector(&r), 0.3);
             assert_true(split_and_check(m, at, normal, true));
             assert_true(!flat || fabs(total_area(m) - area) < 1e-9 * area);
-            /* Again and again, as a sheet is folded. */
+            /* Repeatedly, as when folding a sheet. */
             for (unsigned fold = 0; fold < 4; fold++) {
                 assert_true(split_and_check(m, at, random_vector(&r), flat));
             }
@@ -548,7 +548,7 @@ static void test_convex_shapes(void **state)
     }
 }
 
-static or_mesh *shapes; /* made once, for its tables are large */
+static or_mesh *shapes; /* made once, because its tables are large */
 
 static he_mesh *random_mesh(md_random *r)
 {
@@ -575,7 +575,7 @@ static bool triangulate(he_mesh *m)
     return done;
 }
 
-/* Through three of its vertices, or anywhere. */
+/* A plane through three vertices, or a random one. */
 static void random_plane(const he_mesh *m, md_random *r, he_vec3 *at, he_vec3 *normal)
 {
     uint32_t n = he_mesh_issued(m, HE_VERTEX);

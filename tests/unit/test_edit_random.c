@@ -1,5 +1,5 @@
-/* Random operations on small meshes, bow-ties among them: after each the mesh passes he_check, a
- * refusal is one its row declares and changes nothing, and the delta undoes and redoes. SEED=n
+/* Random operations on small meshes, also with bow-ties: after each the mesh passes he_check, a
+ * refusal is one that its row declares and changes nothing, and the delta undoes and redoes. SEED=n
  * in the environment repeats a run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
@@ -78,7 +78,7 @@ typedef struct storage {
     he_vec3 points[LONGEST];
 } storage;
 
-static he_mesh *other; /* what is appended */
+static he_mesh *other; /* the mesh that append adds */
 
 static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, storage *stores)
 {
@@ -110,7 +110,7 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
         if (param->flags &
-            HE_WHOLE) { /* more steps would make a large mesh, of which none is left */
+            HE_WHOLE) { /* more steps would make the mesh large, or leave nothing of it */
             arg->number = param->max < 1e6 ? param->min : random_below(100);
         }
         return;
@@ -152,7 +152,7 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* Of two alternatives, which stand side by side, one is chosen at the first. */
+            /* Of two alternatives, which are consecutive, one is chosen at the first. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;
             }
@@ -164,7 +164,7 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     }
 }
 
-/* Nothing changed exactly when both meshes are the same. */
+/* The changes must be empty exactly when both meshes are equal. */
 static void require_honest_changes(const he_mesh *before, const he_mesh *m, const he_delta *delta)
 {
     he_changes changes;
@@ -175,7 +175,7 @@ static void require_honest_changes(const he_mesh *before, const he_mesh *m, cons
     he_changes_clear(&changes);
 }
 
-/* Was it done? */
+/* Returns whether the operation succeeded. */
 static bool step(he_mesh *m, const he_op *op)
 {
     he_arg args[HE_OP_PARAMS];
@@ -234,7 +234,7 @@ static void test_random_edits(void **state)
     script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
         random_state = seed + round;
-        /* What is printed last repeats a failure. */
+        /* The last line printed repeats a failure. */
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)random_state);
         he_mesh *m = script_mesh(starts[round % (sizeof starts / sizeof *starts)], NULL);
         script_add_columns(m);
@@ -253,7 +253,7 @@ static void test_random_edits(void **state)
         all += done[i];
     }
     he_mesh_free(other);
-    /* Most steps must have done something, or the arguments are chosen badly. */
+    /* Most steps must succeed, or the arguments are chosen badly. */
     assert_true(all > 10 * rounds);
 }
 

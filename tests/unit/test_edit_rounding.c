@@ -1,5 +1,5 @@
-/* Whether a vertex moves where rounding decides it: edits go by the position that comes out, and
- * the oracle, which computes its own, leaves it open. */
+/* Whether a vertex moves when rounding decides: edits use the computed position, and the oracle,
+ * which computes its own, accepts both. */
 #include "edit_script.h"
 #include "model/corpus.h"
 #include "model/marks.h"
@@ -15,11 +15,11 @@
 #include <cmocka.h>
 
 #define HEXAGON "012,023,034,045,056,061"
-/* One step of the doubles above where the target is. */
+/* Two neighbouring doubles. */
 #define TARGET 0.87518049095669803
 #define ORIGIN 0.87518049095669814
 
-/* Vertex 0 at `x`, vertex 1 at TARGET, which a mark keeps in its place. */
+/* Vertex 0 is at `x`, vertex 1 at TARGET, where a mark keeps it. */
 static he_mesh *kept(double x, const char *mark)
 {
     const he_vec3 positions[] = {{x, 0, 0},    {TARGET, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -76,7 +76,7 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
     he_mesh_free(m);
 }
 
-/* Not only of an edge, but of a face, whose corners come together in steps. */
+/* Also for a face, whose corners are merged in several steps. */
 static void test_the_oracle_goes_back_before_all_steps_of_a_face(void **state)
 {
     (void)state;

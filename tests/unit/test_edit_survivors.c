@@ -1,4 +1,4 @@
-/* Who keeps its id through an edit, what descends from what, and what became part of what. */
+/* Which element keeps its id in an edit, and the parents and merges that are reported. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -44,7 +44,7 @@ static void edit_end(edit *e)
     he_mesh_free(e->m);
 }
 
-/* Are the ids those of the text, "3 5 7"? */
+/* Checks ids given as text, "3 5 7". */
 static void assert_ids(const he_ids *list, const char *expected)
 {
     char text[256] = "";
@@ -92,7 +92,7 @@ static void test_edge_split(void **state)
     (void)state;
     edit e = edit_begin("012,103");
     edit_run(&e, "edge_split edge=#0");
-    /* Vertex 4; edges: the part 3.., then the diagonals to 2 and to 3. */
+    /* New are vertex 4 and the edges: the part 3.., then the diagonals to 2 and to 3. */
     assert_ids(&e.changes.created[HE_EDGE], "5 6 7");
     assert_ids(&e.changes.created[HE_FACE], "2 3");
     assert_ids(&e.changes.parents[HE_EDGE], "5 0");
@@ -131,7 +131,7 @@ static void test_edge_collapse(void **state)
     assert_ids(&e.changes.merged[HE_FACE], "");
     edit_end(&e);
 
-    /* `edge` is half-edge 2e: its origin goes. */
+    /* `edge` is half-edge 2e: its origin is deleted. */
     e = edit_begin("0123");
     edit_run(&e, "edge_collapse edge=#1 t=0");
     assert_face(e.m, 0, "023");
@@ -256,7 +256,7 @@ static void test_delete_leftovers(void **state)
     assert_true(he_is_isolated(e.m, (he_vertex){0}));
     edit_end(&e);
 
-    /* Vertices that were isolated before are nobody's leftovers. */
+    /* Vertices that were isolated before are not deleted. */
     e = edit_begin("0123+");
     edit_run(&e, "vertex_delete vertex=1");
     assert_ids(&e.changes.deleted[HE_VERTEX], "0 1 2 3");

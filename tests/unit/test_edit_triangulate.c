@@ -1,4 +1,4 @@
-/* Triangulation: concave, long, tilted, degenerate and hemmed-in loops. */
+/* Triangulation: concave, long, tilted, degenerate and enclosed loops. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ typedef struct point {
     double x, y;
 } point;
 
-/* Into a tilted plane, far from the origin, at any scale. */
+/* Puts points into a tilted plane, far from the origin, at any scale. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 100), scale * (0.8 * p.y + 30),
@@ -48,7 +48,7 @@ static double area(point a, point b, point c)
     return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/* Triangles that all turn left and whose areas add up to the polygon's cover it once. */
+/* Triangles that all turn left and whose areas add up to the polygon's area cover it once. */
 static void assert_covered(const he_mesh *m, const point *points, uint32_t n)
 {
     double whole = 0, sum = 0;
@@ -146,7 +146,7 @@ static void test_convex_is_fast(void **state)
     free(points);
 }
 
-/* Without area, or crossing itself: triangulated all the same, and reported. */
+/* Faces without area and faces that cross themselves are triangulated and reported. */
 static void test_degenerate(void **state)
 {
     (void)state;
@@ -189,7 +189,8 @@ static he_mesh *flat_mesh(const char *faces, const point *points, uint32_t n)
     return script_mesh(faces, positions);
 }
 
-/* A diagonal that exists elsewhere is avoided where another will do, else it is refused. */
+/* A diagonal that exists elsewhere is avoided if another one is possible, otherwise the edit is
+ * refused. */
 static void test_existing_edges(void **state)
 {
     (void)state;
@@ -205,7 +206,7 @@ static void test_existing_edges(void **state)
     assert_true(edge_between(m, 0, 2).i < he_mesh_issued(m, HE_EDGE));
     he_mesh_free(m);
 
-    /* A dart has one diagonal inside. */
+    /* A dart has one inner diagonal. */
     static const point dart[] = {{0, 0}, {4, 4}, {0, 1}, {-4, 4}, {9, 9}};
     he_mesh *before;
     m = flat_mesh("0123,024", dart, 5);
@@ -216,8 +217,8 @@ static void test_existing_edges(void **state)
     he_mesh_free(m);
 }
 
-/* A star of 66 corners, or with `inner` 1 a convex loop; `blocked` of its points have the diagonal
- * that would cut them off taken by a triangle elsewhere. */
+/* A star of 66 corners, or with `inner` 1 a convex loop; for `blocked` of its points the diagonal
+ * that would cut them off exists in a triangle elsewhere. */
 static he_mesh *blocked_star(double inner, uint32_t blocked)
 {
     enum { N = 66 };
@@ -257,8 +258,8 @@ static void test_blocked_ears(void **state)
     he_mesh_free(m);
 }
 
-/* Faces that share two corners of very many edges, which the last of them would rather join: that
- * is found out in few steps, for diagonals of the same edit too. */
+/* Faces that share two corners of very high degree, between which the last face would prefer a
+ * diagonal: an existing edge is found in few steps, also if it is a diagonal of the same edit. */
 static void test_hubs(void **state)
 {
     (void)state;
@@ -287,7 +288,7 @@ static void test_hubs(void **state)
     he_mesh_free(m);
 }
 
-/* Two faces over the same corners must not both take the same diagonal. */
+/* Two faces with equal corners must not both get the same diagonal. */
 static void test_list_sees_its_own_diagonals(void **state)
 {
     (void)state;
@@ -372,7 +373,7 @@ static void test_any_diagonals_take_few_steps(void **state)
     he_mesh_free(m);
 }
 
-/* Every face passes the same two vertices, of which each diagonal might join them already. */
+/* Every face visits the same two vertices, which each diagonal might connect already. */
 static void test_searching_for_edges_counts(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Welds, bow-ties taken apart, and vertices split, dissolved and bevelled: cases, inverses, who
- * survives, and what becomes of values. */
+/* Welds, separating bow-ties, and splitting, dissolving and bevelling vertices: cases, inverses,
+ * surviving ids, and values. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@
 
 /* --- inverses ------------------------------------------------------------------------------- */
 
-/* Are two meshes the same but for the half-edge that each vertex stores? */
+/* Are two meshes equal except for the half-edge that each vertex stores? */
 static void assert_same_rings(he_mesh *m, const he_mesh *before)
 {
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
@@ -45,8 +45,8 @@ static void test_cf3_split_corners(void **state)
     he_mesh_free(m);
 }
 
-/* The collapse of the edge undoes each split that leaves an edge it may collapse: not an interior
- * one between two vertices on the boundary. */
+/* A collapse undoes each split that leaves an edge it may collapse: not an interior edge between
+ * two boundary vertices. */
 static void split_and_collapse(const he_mesh *before, uint32_t a, uint32_t b)
 {
     he_mesh *m = copy_of(before);
@@ -122,7 +122,7 @@ static void test_separate_and_weld(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* Four corners where two fans meet. */
+    /* Four vertices where two fans meet. */
     m = script_mesh(BOARD, NULL);
     script_prepare(m, "separate_bowties");
     assert_counts(m, 20, 20, 5);
@@ -173,13 +173,13 @@ static void test_cube_bevel(void **state)
     assert_int_equal(results.id[2], 6);
     assert_int_equal(he_face_degree(m, (he_face){6}), 3);
     assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){6})).i, 0);
-    /* The edge keeps its id, and one of the three lies on it. */
+    /* The edge keeps its id, and one of the three vertices lies on it. */
     he_halfedge h = he_edge_halfedge(kept, 0);
     he_vertex end = he_origin(m, h).i == 1 ? he_target(m, h) : he_origin(m, h);
     he_vec3 p = he_position(m, end);
     assert_true(p.x == 0.25 && p.y == 0 && p.z == 0);
     he_results_clear(&results);
-    /* As far as it goes. */
+    /* Limited to the maximum. */
     script_prepare(m, "vertex_bevel vertex=6 width=1e300");
     assert_counts(m, 12, 18, 8);
     p = he_position(m, (he_vertex){6});
@@ -187,7 +187,7 @@ static void test_cube_bevel(void **state)
     he_mesh_free(m);
 }
 
-/* Each vertex joins the lowest that stays: no chain draws 2 to 0. */
+/* Each vertex is merged into the lowest remaining one within reach: no chain merges 2 into 0. */
 static void test_weld_does_not_chain(void **state)
 {
     (void)state;
@@ -205,7 +205,7 @@ static void test_weld_does_not_chain(void **state)
     he_mesh_free(m);
 }
 
-/* What decides is the distance, however the cells lie: at negative numbers, at their borders, and
+/* Only the distance decides, wherever the cells are: at negative coordinates, at cell borders, and
  * where a cell is smaller than the step between doubles. */
 static void test_weld_at_any_scale(void **state)
 {
@@ -238,7 +238,8 @@ static void test_weld_at_any_scale(void **state)
     }
 }
 
-/* As many vertices as there may be in a cell, or in none: neither takes the square of them. */
+/* The maximum number of vertices in one cell, and vertices in no common cell: neither takes
+ * quadratic time. */
 static void test_weld_of_many(void **state)
 {
     (void)state;
@@ -289,9 +290,9 @@ static void test_extreme_positions(void **state)
     }
 }
 
-/* --- who survives --------------------------------------------------------------------------- */
+/* --- surviving ids --------------------------------------------------------------------------- */
 
-/* Are the ids those of the text, "3 5 7"? */
+/* Checks ids given as text, "3 5 7". */
 static void assert_ids(const he_ids *list, const char *expected)
 {
     char text[256] = "";
@@ -341,12 +342,12 @@ static void test_survivors(void **state)
     assert_ids(&e.changes.deleted[HE_EDGE], "4");
     assert_face(e.m, 0, "012");
     assert_face(e.m, 1, "321");
-    /* The one that stays runs as it did. */
+    /* The remaining edge keeps its direction. */
     assert_int_equal(he_origin(e.m, (he_halfedge){2}).i, 1);
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);
 
-    /* Faces that are the same. */
+    /* Faces that become equal. */
     e = edit_run("012,345",
                  "vertex_move vertices=0,4 to=0,0,0;vertex_move vertices=1,5 to=5,1,0;"
                  "vertex_move vertices=2,3 to=0,5,0",
