@@ -1,5 +1,5 @@
-/* Attributes of a mesh that was edited come back from the files that can hold them, bit by bit:
- * rows of the dead are left out, and no value changes its element. */
+/* Attributes of an edited mesh come back from files of all formats that can hold them, bit by bit:
+ * rows of dead elements are left out, and no value moves to another element. */
 #include "unit/format_fixture.h"
 
 #include "edit/local/erase.h"
@@ -19,7 +19,8 @@ typedef struct attribute {
     he_kind domain;
     he_type type;
     uint32_t components;
-    uint32_t below; /* of whole numbers, 0 for all; of fractions, that are k / (below - 1) then */
+    /* exclusive upper bound of whole numbers, 0 for any; fractions are k / (below - 1) */
+    uint32_t below;
 } attribute;
 
 static void random_number(md_random *random, const attribute *a, unsigned char *at)
@@ -77,7 +78,7 @@ static void add_attribute(he_mesh *m, md_random *random, const attribute *a)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* A grid of which faces and vertices were deleted, with attributes. */
+/* A grid with deleted faces and vertices, with attributes. */
 static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t count)
 {
     enum { SIDE = 8 };
@@ -108,7 +109,8 @@ static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t
     return m;
 }
 
-/* Rows of corners follow faces, all others the ids, which have no gaps here. */
+/* Rows of corners are in the order of faces; all others in the order of ids, which have no gaps
+ * here. */
 static void expect_column(const he_mesh *m, const he_import *import, const attribute *a)
 {
     const he_column *wanted = he_mesh_find_column(m, a->domain, a->name);
@@ -143,7 +145,8 @@ static void round_trip(const char *format, const char *encoding, const attribute
         he_notes notes;
         size_t length;
         char *bytes = write_encoded(format, encoding, m, 777, &notes, &length);
-        bool narrow = strcmp(format, "glb") == 0; /* floats, and what other programs do not see */
+        /* floats, and attributes that other programs do not see */
+        bool narrow = strcmp(format, "glb") == 0;
         assert_true(narrow || notes.count == 0);
         he_import import = {0};
         he_error err = {0};

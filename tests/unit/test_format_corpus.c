@@ -1,5 +1,5 @@
-/* The files of the shared corpus in the formats there are, when it lies beside the project (or
- * where CORPUS= says): what the manifest expects of each. */
+/* The files of the shared corpus, if it lies beside the project (or where CORPUS= says): each must
+ * be as its manifest says. */
 #include "unit/format_fixture.h"
 
 #include "format/io/export.h"
@@ -8,7 +8,7 @@
 
 static const char *corpus;
 
-/* Column k of a line of a table with tabs, into `text`. */
+/* Copies column k of a line of a tab-separated table to `text`. */
 static void cell(const char *line, size_t k, char *text, size_t size)
 {
     for (; k > 0; k--) {
@@ -72,7 +72,7 @@ static void expect_cell(const char *line, size_t k, uint64_t found, const char *
     }
 }
 
-/* What other readers count of a file's defects. */
+/* Compares with the counts of defects by other programs. */
 static void check_defects(const char *line, const he_mesh *mesh)
 {
     static he_defects found;
@@ -89,7 +89,7 @@ static void check_defects(const char *line, const he_mesh *mesh)
     assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
 }
 
-/* The compression of indices begins a triangle with any of its corners. */
+/* Index compression may begin a triangle with any of its corners. */
 static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
 {
     assert_int_equal(found->face_count, wanted->face_count);
@@ -106,7 +106,7 @@ static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
     }
 }
 
-/* What is written is read back: the same polygons, or in STL as many triangles. */
+/* A written file reads back with equal polygons, or in STL with as many triangles. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
                          const he_soup *wanted)
 {

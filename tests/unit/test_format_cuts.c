@@ -1,10 +1,11 @@
-/* Polygons cut for formats of triangles, where very many faces meet at two vertices. */
+/* Triangulating polygons for formats of triangles, where very many faces share two vertices. */
 #include "unit/fixture.h"
 
 #include "format/io/cuts.h"
 
-/* Quads 0 a 1 b whose diagonals are both there: 0-1 of a triangle in the middle of them, a-b of one
- * each; and a vertex that joins every tenth a, so that three are of large degree. */
+/* Quads 0 a 1 b of which both diagonals exist: 0-1 in a triangle in the middle of them, a-b in one
+ * triangle each; and a vertex connected to every tenth a, so that three vertices have high
+ * degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;
@@ -70,7 +71,7 @@ static void all_pairs_are_joined_as_turning_finds_them(void **state)
     he_mesh_free(m);
 }
 
-/* Pairs that are noted are joined, and no others become so. */
+/* Pairs that are noted are connected, and no others. */
 static void what_is_noted_is_joined(void **state)
 {
     (void)state;
@@ -110,7 +111,7 @@ static void what_is_noted_is_joined(void **state)
     he_mesh_free(m);
 }
 
-/* Each face would turn about both hubs, twice. */
+/* Each face would visit all edges of both hubs, twice. */
 static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
 {
     (void)state;

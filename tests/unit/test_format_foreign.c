@@ -1,4 +1,4 @@
-/* Files that are no meshes are called by their names. */
+/* Files that are no meshes are identified in the refusal. */
 #include "unit/format_fixture.h"
 
 #include "format/io/foreign.h"
@@ -40,7 +40,7 @@ static void what_is_no_mesh_is_called_by_its_name(void **state)
             fail_msg("%s: %s", rows[i].name, name == NULL ? "not known" : name);
         }
         assert_null(he_format_sniff(rows[i].bytes, rows[i].length));
-        /* a beginning is not enough */
+        /* the first byte is not enough */
         assert_null(he_foreign_find(rows[i].bytes, 1));
     }
     char tar[512] = "part.obj";

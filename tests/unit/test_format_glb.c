@@ -1,4 +1,4 @@
-/* GLB and glTF files: what is read of their geometry. */
+/* GLB and glTF files: reading their geometry. */
 #include "unit/gltf_file.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static void every_mode_and_every_type_of_index(void **state)
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
-    /* corners as they come: the triangle of the first three */
+    /* without indices the first three corners form the triangle */
     he_import import = square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
@@ -87,7 +87,7 @@ static void nodes_move_what_they_place(void **state)
     (void)state;
     static const struct {
         const char *nodes;
-        double at[3]; /* where vertex 2, at 1 1 0, comes to */
+        double at[3]; /* position after the transform of vertex 2, which is at 1 1 0 */
         bool mirrored;
     } rows[] = {
         {"{'mesh':0}", {1, 1, 0}, false},
@@ -123,7 +123,7 @@ static void nodes_move_what_they_place(void **state)
     }
 }
 
-/* The turn is that of the quaternion, whatever its length. */
+/* The rotation is that of the quaternion, whatever its length. */
 static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
 {
     (void)state;
@@ -204,7 +204,8 @@ static void the_scene_that_is_named_is_read(void **state)
 static void sparse_accessors(void **state)
 {
     (void)state;
-    /* positions 1 and 2 of zeros, and 0 and 2 of those there are, from the bytes of the corners */
+    /* positions 1 and 2 of zeros, and 0 and 2 of existing ones, are replaced from the bytes of the
+     * corners */
     static const struct {
         const char *view, *indices;
         double at[4][3];
@@ -257,7 +258,7 @@ static void quantized_positions(void **state)
 static void buffers_in_uris(void **state)
 {
     (void)state;
-    /* three corners of the square, then nothing */
+    /* three corners of the square, and no more bytes */
     static const char triangle[] =
         "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"
@@ -280,7 +281,7 @@ static void buffers_in_uris(void **state)
         }
         expect_counts(&import, 3, 1, 3);
         assert_memory_equal(import.soup.positions, square, 3 * sizeof *square);
-        /* places are in the JSON */
+        /* places refer to the JSON */
         assert_int_equal(he_places_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
                              (size_t)(strstr(triangle, "{'attributes'") - triangle));
@@ -291,7 +292,7 @@ static void buffers_in_uris(void **state)
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
 }
 
-/* Any character of a string may be written as an escape, of which there are two kinds. */
+/* A character in a string may be written as an escape, of which there are two kinds. */
 static void buffers_in_uris_with_escapes(void **state)
 {
     (void)state;
@@ -373,8 +374,8 @@ static void attributes_of_vertices(void **state)
 static void directions_turn_with_their_node(void **state)
 {
     (void)state;
-    /* the corner 1 1 0 as a normal: stretched twice along x, it leans to y; mirrored, it still
-     * points away from the turned triangle */
+    /* the normal 1 1 0 at a corner: scaled by two along x it leans to y; mirrored, it still points
+     * away from the reversed triangle */
     static const struct {
         const char *node;
         double x, y;
@@ -504,7 +505,7 @@ static void what_has_no_place_is_noted(void **state)
     he_import_clear(&import);
 }
 
-/* The chunk behind one of such a length comes at once, or at the next multiple of 4. */
+/* The next chunk may follow such a chunk at once, or at the next multiple of 4. */
 static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
 {
     (void)state;

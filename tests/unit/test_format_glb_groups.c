@@ -1,12 +1,12 @@
-/* A GLB tells objects, groups and materials apart for other programs, and this one puts the mesh
- * together again: faces in their order, polygons, names, and what they look like. */
+/* A GLB separates objects, groups and materials for other programs, and hedge reads the original
+ * mesh: faces in their order, polygons, names, and materials. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
 #include "mesh/compact.h"
 #include "mesh/write.h"
 
-/* Six faces of a box and a triangle beside it, none in the order of what they belong to. */
+/* Six faces of a box and a separate triangle, not in the order of their groups. */
 static const char box[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 5 0 0\nv 6 0 0\n"
     "v 5 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -72,7 +72,7 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
     he_mesh_free(mesh);
 }
 
-/* What is written and read again is the same, deleted faces aside. */
+/* What is written reads back equal, except for deleted faces. */
 static void expect_back(he_mesh *mesh, const char *encoding)
 {
     size_t length;

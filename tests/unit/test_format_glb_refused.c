@@ -1,4 +1,4 @@
-/* GLB and glTF files that are wrong: each is refused, at a byte and with its path in the JSON. */
+/* Invalid GLB and glTF files: each refusal has a byte offset and the path in the JSON. */
 #include "unit/gltf_file.h"
 
 #include <time.h>
@@ -11,7 +11,7 @@ static void containers(void **state)
     square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
-    /* cut anywhere */
+    /* truncated at every length */
     for (size_t length = 0; length < good.length; length++) {
         he_import import = {0};
         he_error err = {0};
@@ -52,7 +52,7 @@ static void containers(void **state)
     glb_file f = good;
     glb_word(&f, 0);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
-    /* a chunk's header that is none */
+    /* an invalid chunk header */
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "are no chunk");
@@ -64,7 +64,7 @@ static void containers(void **state)
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length + 4,
                            "not the second one");
-    /* a chunk that is missing, and one that is empty */
+    /* a missing chunk, and an empty one */
     glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
     he_import import = {0};
     he_error err = {0};
@@ -139,7 +139,7 @@ static void json_to_the_letter(void **state)
     he_import_clear(&import);
 }
 
-/* One accessor in the place of the first, the rest as it is good. */
+/* Replaces the first accessor; the rest is valid. */
 #define WITH_ACCESSOR(a)                               \
     "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" a \
     ",{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}"
@@ -153,7 +153,8 @@ static void json_to_the_letter(void **state)
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
 
-/* The end of base64 stands only at its end, also where the decoder pauses; with escapes or not. */
+/* The padding of base64 may only be at its end, also where the decoder pauses; with escapes or
+ * without. */
 static void base64_that_ends_too_early(void **state)
 {
     (void)state;
@@ -304,13 +305,13 @@ static void references_and_numbers(void **state)
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
-        /* without scenes, nodes that no root leads to */
+        /* without scenes, nodes that no root reaches */
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is inside itself"},
         {"{" DATA "," MESHES
          ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
          HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
-        /* what is no list is not an empty one: the mesh would be lost */
+        /* something else in place of a list is not an empty list: the mesh would be lost */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
@@ -392,7 +393,7 @@ static void numbers_in_the_buffer(void **state)
         expect_refused_at_byte("glb", f.bytes, f.length, HE_BAD_INDEX, f.bin + 56,
                                "meshes/0/primitives/0: index");
     }
-    /* not a number in what is no position is 0, with a note */
+    /* NaN in a value that is no position is read as 0, with a note */
     he_import import = {0};
     he_error err = {0};
     square_bin(bin);
@@ -454,7 +455,7 @@ static void bombs(void **state)
     (void)state;
     writing w = {0};
     char part[200];
-    /* nodes that double: 2^40 instances if each could have two parents */
+    /* nodes that double: 2^40 instances if a node could have two parents */
     put(&w, "{'asset':{'version':'2.0'},'scenes':[{'nodes':[0]}],'nodes':[");
     for (int i = 0; i < 40; i++) {
         snprintf(part, sizeof part, "{'children':[%d,%d]},", i + 1, i + 1);
@@ -462,7 +463,7 @@ static void bombs(void **state)
     }
     put(&w, "{}]}");
     expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
-    /* text that is deeper than anybody can mean */
+    /* text with a depth that no real file has */
     put(&w, "{'asset':{'version':'2.0'},'extras':");
     for (int i = 0; i < 90000; i++) {
         put(&w, i % 2 ? "{'a':" : "[");
@@ -493,7 +494,7 @@ static void bombs(void **state)
     }
     put(&w, "]}]}");
     expect_bomb(&w, HE_LIMIT, "the scene makes more than");
-    /* attributes of one accessor under ever new names */
+    /* attributes that use one accessor under ever new names */
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);
@@ -504,7 +505,7 @@ static void bombs(void **state)
     }
     put(&w, "}}]}]}");
     expect_bomb(&w, HE_LIMIT, "");
-    /* a primitive whose many members are looked through for every node */
+    /* a primitive with many members, which are searched for every node */
     put(&w, "{'asset':{'version':'2.0'},'meshes':[{'primitives':[{'attributes':{");
     for (int i = 0; i < 100000; i++) {
         snprintf(part, sizeof part, "%s'_%d':0", i > 0 ? "," : "", i);
@@ -516,7 +517,7 @@ static void bombs(void **state)
     }
     put(&w, "]}");
     expect_bomb(&w, HE_LIMIT, "the scene makes more than");
-    /* a chain of nodes is followed without recursion, but not for ever */
+    /* a long chain of nodes is followed without recursion, but its length is limited */
     for (int many = 0; many < 2; many++) {
         int depth = many ? 70000 : 60000;
         put(&w, "{'asset':{'version':'2.0'},'nodes':[");
@@ -527,7 +528,7 @@ static void bombs(void **state)
         put(&w, "{}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "deeper than 65536 levels" : "");
     }
-    /* as many values as a tree may have, and one object with all the members */
+    /* the maximum number of values in a tree, and one object with all of them as members */
     put(&w, "{'asset':{'version':'2.0'},'extras':[0");
     for (int i = 0; i < (1 << 23); i++) {
         put(&w, ",0");
@@ -549,7 +550,7 @@ static void bombs(void **state)
     expect_bomb(&w, HE_OK, "");
 }
 
-/* What is ours in extras, read for every column and for every node. */
+/* hedge's extras, which are read for every column and for every node. */
 static void bombs_in_extras(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* GLB as it is written: read back to the same mesh here, to triangles elsewhere. */
+/* Writing GLB: hedge reads the original mesh back, other programs read triangles. */
 #include "unit/gltf_file.h"
 
 #include "mesh/write.h"
@@ -31,7 +31,7 @@ static he_import read_back(const char *bytes, size_t length)
     return import;
 }
 
-/* The file without what only hedge reads: the member gets another name. */
+/* Renames the member that only hedge reads. */
 static void hide_extras(char *bytes, size_t length)
 {
     for (size_t i = 0; i + 7 < length; i++) {
@@ -76,7 +76,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_note(&notes, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* what others see */
+        /* what other programs see */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);
@@ -160,7 +160,7 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(find_note(&notes, "rounded", "")->count, 2);
     assert_int_equal(find_note(&notes, "triangulated", "")->count, 1);
     assert_non_null(find_note(&notes, "attribute_lost", "edge crease"));
-    assert_null(find_note(&notes, "in_extras", "halfedge uv")); /* others see it too */
+    assert_null(find_note(&notes, "in_extras", "halfedge uv")); /* other programs see it, too */
     assert_null(find_note(&notes, "in_extras", "face material"));
     assert_non_null(find_note(&notes, "in_extras", "face mark"));
     he_import import = read_back(bytes, length);
@@ -177,8 +177,8 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh_free(mesh);
 }
 
-/* TEXCOORD_1 needs TEXCOORD_0, and JOINTS_0 WEIGHTS_0: what has no such place has another, and
- * keeps its name. */
+/* TEXCOORD_1 requires TEXCOORD_0, and JOINTS_0 requires WEIGHTS_0: an attribute without a valid
+ * place gets another one, and keeps its name. */
 static void numbered_attributes_have_no_gaps(void **state)
 {
     (void)state;
@@ -187,7 +187,7 @@ static void numbered_attributes_have_no_gaps(void **state)
             const char *name;
             he_type type;
             uint32_t components;
-            const char *semantic; /* NULL: in extras alone */
+            const char *semantic; /* NULL: in extras only */
         } columns[3];
     } rows[] = {
         {{{"uv1", HE_FLOAT, 2, "_uv1"}}},
@@ -245,15 +245,15 @@ static void numbered_attributes_have_no_gaps(void **state)
     }
 }
 
-/* --- extras that do not fit --- */
+/* --- inconsistent extras --- */
 
 #define PRIVATE(list, hedge, node)                                                           \
     "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST list                      \
     "],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'extras':{'hedge':" \
     "{" hedge "}}}]}],'nodes':[{'mesh':0" node "}]}"
 
-/* The degree 4 and the corners 0 1 2 3 are put where colours and strips were; what does not fit is
- * left out, and the triangles stay. */
+/* The degree 4 and the corners 0 1 2 3 are put in place of colours and strips; inconsistent extras
+ * are ignored, and the triangles are read. */
 static void extras_are_not_believed(void **state)
 {
     (void)state;
@@ -268,7 +268,7 @@ static void extras_are_not_believed(void **state)
         uint32_t second;
         uint32_t corner; /* of the last triangle */
         size_t faces;
-        const char *column; /* that is made, or NULL */
+        const char *column; /* the column that results, or NULL */
         bool fits;
     } rows[] = {
         {"'polygons':{'degrees':5,'corners':6}", "", 4, 0, 3, 1, NULL, true},
@@ -358,14 +358,15 @@ static void extras_are_not_believed(void **state)
     }
 }
 
-/* Names in extras are those of their own primitive's faces; the others keep those they have. */
+/* Names in extras belong to the faces of their own primitive; other faces keep the names they
+ * have. */
 static void names_beside_names_in_extras(void **state)
 {
     (void)state;
     static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
                                  "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
     static const struct {
-        const char *name, *first, *second; /* the column; its labels in two primitives */
+        const char *name, *first, *second; /* name of the column; its labels in two primitives */
         const char *names[8];
     } rows[] = {
         {"object",
@@ -422,7 +423,7 @@ static void names_beside_names_in_extras(void **state)
     }
 }
 
-/* The triangles were changed, the extras stayed. */
+/* The triangles were changed, but not the extras. */
 static void polygons_of_other_triangles(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What writers say of what a file cannot carry, and what they refuse for it. */
+/* Notes of writers about what a file cannot represent, and their refusals. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
@@ -6,7 +6,7 @@
 
 /* --- STL: facets by position --- */
 
-/* Reads an STL file again: is it refused just where its notes say so, for as many defects? */
+/* Reads an STL file again: it must be refused exactly if the notes say so, with as many defects. */
 static void expect_foretold(const char *bytes, size_t length, const he_notes *notes)
 {
     he_import import = {0};
@@ -29,17 +29,17 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     (void)state;
     static const struct {
         const char *text;
-        uint64_t binary, ascii; /* defects that are told */
+        uint64_t binary, ascii; /* number of defects in the notes */
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", 0, 0},
         {"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", 0, 0},
-        /* two faces on the same three positions, wound alike */
+        /* two faces with equal positions and equal orientation */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n", 3, 3},
-        /* two corners of a face, which floats do not tell apart */
+        /* two corners of a face that are equal as floats */
         {"v 1 0 0\nv 1.00000000001 0 0\nv 0 1 0\nf 1 2 3\n", 1, 0},
-        /* faces that meet at a position become a bow-tie, which a mesh holds */
+        /* faces that meet at a position become a bow-tie, which a mesh can represent */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n", 0, 0},
-        /* a fan closes about a position that another fan has */
+        /* a fan closes around a position that another fan uses, too */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nv 0 0 0\nv 1 0 5\n"
          "v 0 1 5\nf 5 6 7\n",
          1, 1},
@@ -60,7 +60,8 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     }
 }
 
-/* Faces of three to five corners among a few vertices on a grid, as many as a mesh holds. */
+/* Faces of three to five corners among a few vertices on a grid, as many as a mesh can
+ * represent. */
 static void fill_randomly(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 4 + md_below(random, 8);
@@ -137,7 +138,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
         {"obj", "ascii", NULL},
         {"off", "ascii", NULL},
     };
-    /* the first has no face, and an STL file not the first */
+    /* the first vertex has no face, so an STL file does not contain it */
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 1e39\nv 0 1e300 0\nv -1e39 0 -1e39\n"
                                         "v 0 3.4028234663852886e38 0\nf 2 3 4\n");
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -156,7 +157,7 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
     he_mesh_free(mesh);
 }
 
-/* --- OBJ: values that faces name --- */
+/* --- OBJ: values that faces refer to --- */
 
 static void normals_of_a_point_cloud_are_told(void **state)
 {

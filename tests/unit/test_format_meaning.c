@@ -1,6 +1,5 @@
-/* What numbers mean is the same in every format: v of a texture coordinate runs upward in a mesh,
- * as in OBJ, PLY and OFF, and down in glTF; a colour is 0 to 1 in a mesh, and a byte where a file
- * has bytes. */
+/* Numbers mean the same in every format: v of a texture coordinate runs upward in a mesh, OBJ, PLY
+ * and OFF, and down in glTF; a colour is 0 to 1 in a mesh, and a byte in files that store bytes. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
@@ -8,7 +7,7 @@
 
 #include <math.h>
 
-/* Another name, of the same length, for each time that a file has a word. */
+/* Replaces a word by another one of the same length wherever it occurs in a file. */
 static void rename_all(char *bytes, size_t length, const char *word, const char *other)
 {
     size_t n = strlen(word);
@@ -29,8 +28,8 @@ static he_import read_whole(const char *format, const char *bytes, size_t length
     return import;
 }
 
-/* A GLB as other programs see it, its texture coordinates as they are in the file: under a name
- * that means nothing. */
+/* Reads a GLB as other programs see it, with texture coordinates as stored, by renaming their
+ * attribute. */
 static he_import read_raw(const he_mesh *mesh)
 {
     size_t length;
@@ -76,7 +75,7 @@ static void v_runs_down_in_gltf_alone(void **state)
     }
 }
 
-/* A float from a glTF file, made v upward and written again, is the same float. */
+/* A float from a glTF file whose v is flipped and flipped back is the same float. */
 static void no_bit_of_v_is_lost_on_the_way_through(void **state)
 {
     (void)state;
@@ -104,7 +103,7 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
         assert_memory_equal(he_column_value(uv, i) + sizeof(float), &given[i], sizeof(float));
     }
     he_import_clear(&raw);
-    /* and so it need not be in extras as well */
+    /* so extras need not contain it */
     he_notes notes;
     size_t length;
     free(write_encoded("glb", "binary", mesh, 4096, &notes, &length));
@@ -113,7 +112,7 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_soup_clear(&soup);
 }
 
-/* Each of the 256 bytes goes through each format in turn. */
+/* Each of the 256 values passes through each format. */
 static void bytes_of_colors_come_back_from_every_format(void **state)
 {
     (void)state;

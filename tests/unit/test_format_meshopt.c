@@ -1,5 +1,5 @@
-/* glTF whose buffer views are packed by EXT_meshopt_compression: the same geometry as plain, and
- * what is refused. */
+/* glTF with buffer views compressed by EXT_meshopt_compression: reads the same geometry as
+ * uncompressed files, and refuses invalid ones. */
 #include "unit/gltf_file.h"
 
 #include "format/gltf/gltf.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* A square of four corners (16 bytes each, so that they have a padding) and two triangles. */
+/* A square of four corners (16 bytes each, with padding) and two triangles. */
 static const float corners[4][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 1, 0, 0}};
 static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
 
@@ -31,7 +31,7 @@ static packed pack(const he_meshopt_stream *stream, const void *elements)
     return p;
 }
 
-/* Corners packed at byte 0, indices behind them at `at`, all in one chunk that ends at `length`. */
+/* Compressed corners at byte 0, compressed indices at `at`, in one chunk that ends at `length`. */
 typedef struct bin {
     unsigned char bytes[2048];
     size_t corners, at, indices, length;
@@ -48,7 +48,8 @@ static bin join(const packed *first, const packed *second)
     return b;
 }
 
-/* The asset over such a chunk: %1$ the extension of corners' view, %2$ that of the indices'. */
+/* Writes the asset for such a chunk: %1$ is the extension of the corners' view, %2$ that of the
+ * indices'. */
 static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
 {
     int used = snprintf(
@@ -78,7 +79,7 @@ static he_status read_packed(const bin *b, const char *of_corners, const char *o
     return read_bytes("glb", f.bytes, f.length, import, err);
 }
 
-/* An extension: `length` bytes from `at` are `count` elements. */
+/* Writes an extension: `length` bytes from `at` decode to `count` elements. */
 static const char *extension(char *text, size_t size, size_t at, size_t length, const char *mode,
                              const char *filter, unsigned long long count, unsigned stride)
 {
@@ -131,7 +132,7 @@ static void packed_views_are_read_as_plain_ones(void **state)
     }
 }
 
-/* 2^E * M: one is 2^-8 * 256. */
+/* The value is 2^E * M: 1 is 2^-8 * 256. */
 static void exponents_are_undone(void **state)
 {
     (void)state;
@@ -157,7 +158,7 @@ static void exponents_are_undone(void **state)
     he_import_clear(&import);
 }
 
-/* Directions on an octahedron, and quaternions, of which the largest component is left out. */
+/* Directions on an octahedron, and quaternions without their largest component. */
 static void directions_and_turns_are_undone(void **state)
 {
     (void)state;
@@ -181,10 +182,10 @@ static void directions_and_turns_are_undone(void **state)
     assert_memory_equal(turn, ((int16_t[]){0, 0, 0, 32767}), sizeof turn);
 }
 
-/* --- refused --- */
+/* --- refusals --- */
 
 typedef struct row {
-    const char *corners, *indices; /* with %zu for bytes of the stream; NULL: as they are */
+    const char *corners, *indices; /* with %zu for the bytes of the stream; NULL: unchanged */
     he_status status;
     const char *words;
 } row;
@@ -288,7 +289,7 @@ static void what_the_extension_forbids_is_refused(void **state)
     }
 }
 
-/* Never with other geometry: streams say where they end. */
+/* Truncated streams never give other geometry: streams mark their end. */
 static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 {
     (void)state;
@@ -323,7 +324,7 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED, "TRIANGLES packed by version 2");
 }
 
-/* Any bytes at all give a mesh, maybe another one, or a refusal. */
+/* Any bytes give a mesh, perhaps another one, or a refusal. */
 static void streams_of_wrong_bytes_end_well(void **state)
 {
     (void)state;
@@ -352,7 +353,7 @@ static void streams_of_wrong_bytes_end_well(void **state)
     assert_true(read > 0 && refused > 0);
 }
 
-/* A view of zeros that 64 bytes are packed in one of: as many as there may be, then one more. */
+/* Views of zeros that compress to 64 bytes each: the maximum number of them, then one more. */
 static void what_unpacks_to_too_much_is_refused(void **state)
 {
     (void)state;
@@ -365,7 +366,7 @@ static void what_unpacks_to_too_much_is_refused(void **state)
     size_t length = he_meshopt_encode(&stream, zeros, room, most);
     free(zeros);
     size_t padded = (length + 3) / 4 * 4;
-    /* 16 MiB each: two fit into what any file may unpack to and 16 times its own bytes */
+    /* 16 MiB each: two fit into the allowance of every file plus 16 times its own bytes */
     for (size_t views = 1; views <= 6; views++) {
         char json[4096];
         int used = snprintf(json, sizeof json,
@@ -464,7 +465,7 @@ static void without_memory_nothing_is_read(void **state)
     assert_true(n > 5);
 }
 
-/* --- written --- */
+/* --- writing --- */
 
 /* Corners that differ at a seam, polygons, groups; then triangles alone. */
 static const char seam[] =
@@ -490,7 +491,7 @@ static he_import read_glb(const he_mesh *mesh, const char *encoding, size_t piec
     return import;
 }
 
-/* Face by face the same corners; the first of them too where `exact`. */
+/* Requires equal corners face by face, with `exact` also the same first corner. */
 static void expect_same_faces(const he_soup *a, const he_soup *b, bool exact)
 {
     assert_int_equal(a->face_count, b->face_count);
@@ -537,7 +538,7 @@ static void a_packed_file_has_what_a_plain_one_has(void **state)
     }
 }
 
-/* Nothing has no parts, and so no buffers to pack. */
+/* An empty mesh has no parts, so there are no buffers to compress. */
 static void an_empty_mesh_is_not_packed(void **state)
 {
     (void)state;

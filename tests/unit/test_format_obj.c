@@ -1,4 +1,4 @@
-/* The OBJ reader: every form of every line it knows, and every refusal with its line. */
+/* The OBJ reader: every form of every line that it knows, and every refusal with its line. */
 #include "unit/format_fixture.h"
 
 static const char cube[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -69,7 +69,7 @@ static void lines_that_end_in_returns(void **state)
         assert_string_equal(he_format_sniff(texts[i], strlen(texts[i]))->name, "obj");
     }
     expect_refused("obj", "v 0 0 0\rv 1 0 x\r", HE_SYNTAX, 2, "'x' is not a number");
-    /* the first line decides */
+    /* the first line decides the line ending */
     expect_refused("obj", "v 0 0 0\r\r\nv 1 0 0\rv 0 1 0\r\n", HE_SYNTAX, 2, "is not a number");
 }
 
@@ -147,7 +147,7 @@ static void corner_forms(void **state)
         he_import_clear(&import);
     }
 
-    /* a third number is kept where it says something; values may come after the face */
+    /* a third number is kept if it is used; values may follow the face that uses them */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/2 3/1\n"
                                         "vt 1 2 0\nvt 3 4 5\nvt 6\n");
     expect_doubles(&import, HE_HALFEDGE, "uv", 3, (double[]){6, 0, 0, 3, 4, 5, 1, 2, 0}, 3);
@@ -222,7 +222,7 @@ static void names_and_smoothing(void **state)
     expect_note(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
-    /* what holds for no face, or is the default for all, makes no attribute */
+    /* a value that no face has, or that is the default for all, makes no attribute */
     import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng\ns off\nf 1 2 3\no late\ng late\n");
     assert_int_equal(import.soup.column_count, 0);
     he_import_clear(&import);
@@ -472,7 +472,8 @@ static void other_encodings_are_refused(void **state)
     expect_bytes_refused("obj", empty, sizeof empty - 1, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
-/* What only the structure cannot hold passes the reader, and the builder's refusal gets the line.
+/* Defects that only the structure cannot represent pass the reader; the builder's refusal gets
+ * their line.
  */
 static void refusals_of_the_builder_get_a_line(void **state)
 {
@@ -536,7 +537,7 @@ static void limits_are_kept(void **state)
             assert_int_equal(err.at, rows[i].line);
         }
     }
-    /* an endless line does not fill the memory */
+    /* a line without an end does not fill the memory */
     he_limits limits = {.bytes = 1000};
     he_reader *reader;
     he_error err = {0};

@@ -110,7 +110,7 @@ static void vertex_data_in_every_mix(void **state)
 static void integer_colors_are_bytes(void **state)
 {
     (void)state;
-    /* the texture coordinates are no colours and do not decide */
+    /* texture coordinates are no colours and do not decide whether colours are bytes */
     he_import import = read_text("off", "STCOFF\n3 0 0\n0 0 0 255 0 7 0.5 0.25\n"
                                         "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
     expect_bytes(&import, HE_VERTEX, 4,
@@ -120,7 +120,7 @@ static void integer_colors_are_bytes(void **state)
     static const struct {
         const char *vertex;
         double color[3];
-        bool bytes; /* that is told */
+        bool bytes; /* a note says that colours are bytes */
     } rows[] = {
         {"1 0 1", {1 / 255.0, 0, 1 / 255.0}, false}, {"1 0 1.0", {1, 0, 1}, false},
         {"255 0 1e1", {1, 0, 10 / 255.0}, true},     {"255 0 .5", {255, 0, .5}, false},
@@ -138,7 +138,8 @@ static void integer_colors_are_bytes(void **state)
     }
 }
 
-/* A vertex without its normal does not eat the next one: what it lacks is 0, and noted. */
+/* A vertex without its normal does not take numbers of the next one: its normal is 0, with a
+ * note. */
 static void vertices_without_what_is_announced(void **state)
 {
     (void)state;
@@ -176,7 +177,7 @@ static void vertices_without_what_is_announced(void **state)
     expect_note(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
 
-    /* What looks so may be numbers on the next line: then the refusal says what to do. */
+    /* A missing value may look like numbers on the next line: then the refusal says what to do. */
     expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
                    "needs it in its own line");
     expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
@@ -269,7 +270,7 @@ static void wrong_text_names_its_line(void **state)
         {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "8 numbers do not fit"},
         {"NOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
         {"STCOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
-        /* normals on lines of their own are no vertices, nor the other way round */
+        /* normals on lines of their own are not taken for vertices, nor the opposite */
         {"NOFF\n2 1 0\n0 0 .5\n0 0 1\n1 0 .5\n0 0 1\n3 0 1 0\n", HE_SYNTAX, 6,
          "comes after the last face"},
         {"STOFF\n3 0 0\n0 0 0\n.5 .5\n1 0 0\n.5 .5\n0 1 0\n.5 .5\n", HE_SYNTAX, 5,
@@ -278,7 +279,7 @@ static void wrong_text_names_its_line(void **state)
         {"OFF\n2 0 0\n0 0\n1 0 0\n", HE_SYNTAX, 4, "5 numbers do not fit"},
         {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
         {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
-        /* a count too low must not lose faces, nor a count too high make any */
+        /* a count that is too low must not lose faces, nor one that is too high add any */
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n", HE_SYNTAX, 7, "after the last face"},
         {"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", HE_SYNTAX, 6, "0 of the 1 faces"},
     };
@@ -318,7 +319,7 @@ static void limits_are_kept(void **state)
     }
 }
 
-/* A count is believed only when the bytes have come. */
+/* A declared count allocates memory only as its bytes arrive. */
 static void a_count_allocates_nothing(void **state)
 {
     (void)state;
@@ -367,7 +368,7 @@ static void put_floats(body *b, const float *values, size_t count)
     }
 }
 
-/* A square of two faces: the first has a colour, the second a number that is none. */
+/* A square of two faces: the first has a colour, the second an invalid number. */
 static body square_body(const char *header)
 {
     static const float vertices[4][12] = {
@@ -437,7 +438,7 @@ static void a_wrong_binary_body_names_its_byte(void **state)
     static const char header[] = "OFF BINARY\n";
     enum { H = sizeof header - 1, FACES = H + 12 + 48 };
     static const struct {
-        size_t where; /* a word that is changed */
+        size_t where; /* offset of a word to change */
         uint32_t word;
         he_status status;
         uint64_t at;

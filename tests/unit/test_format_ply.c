@@ -1,4 +1,4 @@
-/* PLY files: every type in every encoding, what becomes of properties, and what is refused. */
+/* PLY files: every type in every encoding, the meaning of properties, and refusals. */
 #include "unit/ply_file.h"
 
 #include <float.h>
@@ -230,7 +230,8 @@ static void groups_have_several_spellings(void **state)
     }
 }
 
-/* 1 is full in a mesh: 255 of bytes and whole numbers, 65535 of ushort, 1 of fractions. */
+/* Full intensity is 1 in a mesh: 255 of bytes and whole numbers, 65535 of ushort, 1 of
+ * fractions. */
 static void colors_of_every_type_are_fractions(void **state)
 {
     (void)state;
@@ -382,7 +383,8 @@ static void lines_that_end_in_returns(void **state)
     he_import_clear(&import);
 }
 
-/* As Rhinoceros writes it: the body begins behind the return, and may begin with a line feed. */
+/* As Rhinoceros writes it: the body begins after the carriage return, and may begin with a line
+ * feed. */
 static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
 {
     (void)state;
@@ -441,7 +443,7 @@ static void strips_become_triangles(void **state)
         assert_int_equal(he_places_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
         he_import_clear(&import);
     }
-    /* strips of their own rows, and faces beside them with an attribute */
+    /* strips in an element of their own, and faces with an attribute */
     static const uint32_t both[] = {0, 1, 2, 2, 1, 3, 0, 2, 1}, marks[] = {0, 0, 7};
     he_import import = read_text(
         "ply", ASCII "element vertex 4\n" XYZ

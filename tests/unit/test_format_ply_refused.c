@@ -1,4 +1,4 @@
-/* PLY files that are refused: where, with which words, and at what cost. */
+/* PLY files that are refused: the position, the words, and the cost. */
 #include "unit/ply_file.h"
 
 #include <math.h>
@@ -209,7 +209,7 @@ static void fractions_of_bytes_name_their_place(void **state)
     }
 }
 
-/* Counts that no bytes stand behind: refused, and without memory for them. */
+/* Counts without bytes are refused without allocating memory for them. */
 typedef struct largest {
     size_t size;
 } largest;
@@ -311,7 +311,7 @@ static void limits_are_kept(void **state)
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
-    /* an attribute may take more than all else */
+    /* an attribute may take more memory than everything else */
     file f;
     begin(
         &f, LEAST_FIRST,

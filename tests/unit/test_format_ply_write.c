@@ -1,4 +1,4 @@
-/* PLY files that hedge writes: what they hold, and that they read back as they were. */
+/* PLY files that hedge writes: their content, and that they read back equal. */
 #include "unit/format_fixture.h"
 
 #define ASCII  "ply\nformat ascii 1.0\n"

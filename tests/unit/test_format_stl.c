@@ -1,10 +1,10 @@
-/* STL files, text and binary: what is read, what is refused, and what is written. */
+/* STL files, text and binary: reading, refusals, and writing. */
 #include "unit/format_fixture.h"
 
 #include <float.h>
 #include <math.h>
 
-/* --- binary files that are put together --- */
+/* --- binary files, built from facets --- */
 
 enum { HEADER = 84, FACET = 50 };
 
@@ -42,7 +42,7 @@ static void put_facet(file *f, const float *corners, unsigned attribute)
     f->bytes[f->length++] = (unsigned char)(attribute >> 8);
 }
 
-/* Facets of a tetrahedron; the origin is written with every sign of zero. */
+/* Facets of a tetrahedron; zeros of the origin have both signs. */
 static const float facets[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
                                    {-0.0f, 0, 0, 1, 0, 0, 0, 0, 1},
                                    {0, -0.0f, -0.0f, 0, 0, 1, -0.0f, 1, 0},
@@ -156,7 +156,7 @@ static void wrong_bytes_name_their_place(void **state)
         expect_refused_at_byte("stl", f.bytes, f.length, HE_NOT_FINITE, HEADER + FACET,
                                "not finite");
     }
-    /* a facet without area in its corners is the structure's to refuse */
+    /* the structure refuses a facet with repeated corners, not the reader */
     static const float thin[9] = {0, 1, 0, -0.0f, 1, 0, 1, 0, 0};
     begin(&f, "x", 3);
     put_facet(&f, facets[0], 0);
@@ -318,7 +318,7 @@ static void limits_are_kept(void **state)
 
 /* --- many vertices --- */
 
-/* All on one grid, each in six triangles, so every vertex but the first is found again. */
+/* A grid in which each vertex belongs to six triangles, so that all vertices are found again. */
 static void large_grids_are_welded(void **state)
 {
     (void)state;
@@ -408,7 +408,7 @@ static void triangles_round_trip(void **state)
     he_import_clear(&import);
 }
 
-/* Twice the area of the triangles of an import, seen from above. */
+/* Returns twice the area of an import's triangles, seen from above. */
 static double area_of(const he_import *import)
 {
     double sum = 0;
@@ -448,7 +448,7 @@ static void polygons_are_cut_into_triangles(void **state)
     he_mesh_free(mesh);
 }
 
-/* Both diagonals of the square exist: one of them is doubled all the same. */
+/* Both diagonals of the square exist: one of them is doubled nevertheless. */
 static void diagonals_that_exist(void **state)
 {
     (void)state;
@@ -465,7 +465,7 @@ static void diagonals_that_exist(void **state)
 static void what_is_lost_is_named(void **state)
 {
     (void)state;
-    /* two vertices at one place, two that a float does not tell apart, one that none holds */
+    /* two vertices at one place, two that are equal as floats, one without a face */
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 1e30 1 0\nv -0 0 0\n"
                                         "v 1.00000000001 0 5\nv 1 0 5\nv 7 7 7\n"
                                         "usemtl red\nf 1 2 3\nf 3 2 4\nf 5 6 7\n");
@@ -519,7 +519,7 @@ static void no_memory_to_cut_polygons(void **state)
     he_mesh_free(mesh);
 }
 
-/* A star that turns about its centre thousands of times. */
+/* A star that winds around its centre thousands of times. */
 static void faces_that_cross_themselves_are_cut_all_the_same(void **state)
 {
     (void)state;

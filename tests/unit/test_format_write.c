@@ -1,4 +1,4 @@
-/* The OBJ and OFF writers: what they write reads back the same, whatever the buffer. */
+/* The OBJ and OFF writers: their files read back equal, whatever the buffer size. */
 #include "unit/format_fixture.h"
 
 #include "mesh/write.h"
@@ -165,7 +165,7 @@ static void vertex_values_go_to_obj(void **state)
 static void dead_rows_are_skipped(void **state)
 {
     (void)state;
-    /* an isolated vertex before the others dies: the rest are numbered without a gap */
+    /* an isolated vertex before the others is deleted: the rest are numbered without a gap */
     he_mesh *mesh = mesh_of_text("obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\n"
                                         "g one\nf 2 3 5\n");
     he_delete_vertex(mesh, (he_vertex){0});
@@ -181,7 +181,7 @@ static void dead_rows_are_skipped(void **state)
     he_mesh_free(mesh);
 }
 
-/* Add a face or vertex attribute with this row for the element 0. */
+/* Adds a face or vertex attribute with this row for element 0. */
 static void add_column(he_mesh *mesh, const char *name, he_kind domain, he_type type,
                        uint32_t components, const void *row, const char *const *labels)
 {
@@ -245,7 +245,7 @@ static void what_is_lost_is_named(void **state)
     assert_non_null(strstr(text, "vn 0.1 0 -1\n"));
     assert_int_equal(notes.count, 4);
     assert_int_equal(find_note(&notes, "not_finite", "uv")->count, 1);
-    assert_non_null(find_note(&notes, "attribute_lost", "vertex color")); /* not of fractions */
+    assert_non_null(find_note(&notes, "attribute_lost", "vertex color")); /* not with fractions */
     assert_non_null(find_note(&notes, "attribute_lost", "face group"));
     assert_non_null(find_note(&notes, "attribute_lost", "edge weight"));
     char sentence[100];

@@ -1,5 +1,6 @@
-/* A mesh from before a log of edits goes forward over the deltas of the log, with none of their
- * rows issued. It is the mesh of the log at every entry then, and undo and redo go on from there.
+/* A mesh from before a log of edits is brought forward by the deltas of the log, without having
+ * issued any of their rows. At every entry it must equal the mesh of the log, and undo and redo
+ * must continue from there.
  */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
@@ -11,7 +12,7 @@
 
 enum { ENTRIES = 60 };
 
-/* Everything undone: each delta holds what its edit brought in, as one that was loaded does. */
+/* Undoes everything: each delta then holds what its edit added, as a loaded delta does. */
 static edit_log *undone_log(md_random *random)
 {
     edit_log *log = edit_log_random(random, ENTRIES);
@@ -21,7 +22,7 @@ static edit_log *undone_log(md_random *random)
     return log;
 }
 
-/* Apply entry i to the mesh as a start would: edits forwards, then undo and redo. */
+/* Applies entry i to the mesh as the start of a store does: edits forward, then undo and redo. */
 static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
 {
     const edit_log_entry *e = &log->entries[i];
@@ -86,7 +87,7 @@ static void test_without_memory_the_mesh_stays_as_it_was(void **state)
     }
 }
 
-/* Record `operation` on a copy of the mesh, which is left as it is after. */
+/* Records `operation` on a copy of the mesh; the mesh is left as it is afterwards. */
 static he_delta *delta_of(he_mesh *m, const char *operation)
 {
     he_delta *delta = he_delta_new();
@@ -116,7 +117,7 @@ static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     he_mesh *m = script_mesh("012,023", NULL), *other = script_mesh("012,023", NULL);
     script_add_columns(m);
     he_delta *values = delta_of(m, "edge_split edge=0-2 t=0.5");
-    size_t first = 0; /* links agree as far as the first value */
+    size_t first = 0; /* links are equal up to the first value */
     while (values->records[first].column < HE_COL_ATTRIBUTE) {
         first++;
     }
@@ -130,7 +131,7 @@ static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    expect_refusal(moved, other, m, 0); /* it is there already */
+    expect_refusal(moved, other, m, 0); /* it exists already */
     he_delta_free(moved);
     he_mesh_free(m);
     he_mesh_free(other);

@@ -213,7 +213,7 @@ static void content_codings_are_chosen_by_weight(void **state)
         {"gzip, identity;q=0", true, API_GZIP, false},
         {"identity;q=0", false, API_IDENTITY, false},
         {"identity;q=0, br", false, API_IDENTITY, false},
-        /* Proxies send it that read gzip at most. */
+        /* Some proxies that send it can read gzip at most. */
         {"*", true, API_GZIP, true},
         {"*;q=0.5, zstd", true, API_ZSTD, true},
         {"*, zstd;q=0.5", true, API_GZIP, true},
@@ -279,7 +279,7 @@ static void one_content_coding_is_taken(void **state)
 
 static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
-/* Is a tag listed, by a client that accepts gzip, and in this coding? */
+/* Is a tag listed with this coding, if the client accepts gzip? */
 static bool listed(const char *header, const char *etag, api_coding coding)
 {
     const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};
@@ -299,12 +299,12 @@ static void entity_tags_name_state_and_representation(void **state)
     assert_false(listed("0000000000000abc-2-41-obj", etag, API_IDENTITY));
     assert_false(listed("", etag, API_IDENTITY));
     assert_false(listed("\"", etag, API_IDENTITY));
-    /* In a coding, too, that the client accepts. */
+    /* Also with a coding that the client accepts. */
     assert_true(listed("\"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
     assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
-    /* For a write any representation of the present state will do. */
+    /* For a write, any representation of the present state is valid. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));
@@ -330,7 +330,7 @@ static void cursors_come_back_or_are_refused(void **state)
         char shorter[API_CURSOR] = "";
         memcpy(shorter, text, cut);
         problem = (api_problem){0};
-        /* "...1000" cut to "...100" is a cursor too. */
+        /* "...1000" truncated to "...100" is a valid cursor, too. */
         if (!api_cursor_read(shorter, "vertices", &facts, &position, &problem)) {
             assert_true(problem.code == API_BAD_CURSOR);
         }
@@ -349,7 +349,7 @@ static void cursors_come_back_or_are_refused(void **state)
         assert_false(api_cursor_read(bad[i], "vertices", &facts, &position, &problem));
         assert_int_equal(problem.code, API_BAD_CURSOR);
     }
-    /* Edits leave it what it was, of the revision it pins; another mesh of the id does not. */
+    /* Edits do not change its revision; it is invalid for another mesh with the id. */
     st_mesh_info later = facts;
     uint64_t pinned = 0;
     later.revision++;

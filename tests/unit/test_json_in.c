@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* One body, how it ends, and where the problem points ("-": nowhere looked at). */
+/* A body, its outcome, and where the problem points ("-": not checked). */
 typedef struct body_case {
     const char *body;
     int code;
@@ -152,7 +152,7 @@ static void hostile_bodies_are_refused_exactly(void **state)
         api_document document = {0};
         api_in root;
         api_problem problem = {0};
-        /* A copy of the exact size: a read beyond the end is seen by the address sanitizer. */
+        /* A copy of the exact size, so that the address sanitizer detects a read beyond the end. */
         size_t length = strlen(c->body);
         char *body = malloc(length + 1);
         assert_non_null(body);
@@ -191,7 +191,7 @@ static void depth_and_number_of_values_are_bounded(void **state)
     api_document_clear(&document);
     assert_false(parse("[1,2,3]", 7, 3, &document, &root, &problem));
     assert_int_equal(api_problem_http(&problem), 413);
-    /* A deep opening without an end costs no stack. */
+    /* Deep nesting without an end uses no stack. */
     static char deep[100000];
     memset(deep, '[', sizeof deep);
     problem = (api_problem){0};
@@ -218,7 +218,7 @@ static void objects_have_a_bounded_number_of_members(void **state)
     }
 }
 
-/* How reading "v" of a document as some type ends. */
+/* The outcome of reading "v" of a document as some type. */
 typedef enum reader {
     READ_BOOL,
     READ_NUMBER,

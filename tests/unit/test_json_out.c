@@ -192,7 +192,7 @@ static void problems_are_what_rfc_9457_says(void **state)
                        "\"detail\":\"edge 5 is narrow\",\"code\":\"link_condition\","
                        "\"pointer\":\"/ops/3\",\"element\":{\"kind\":\"edge\",\"id\":5},"
                        "\"request_id\":\"r1\"}");
-    /* The first problem stays. */
+    /* The first problem is kept. */
     api_problem_set(&problem, API_INTERNAL, "late");
     assert_int_equal(problem.code, HE_LINK_CONDITION);
 }

@@ -1,5 +1,5 @@
-/* Materials of a mesh: the table follows every edit that makes the mesh anew, faces keep theirs,
- * and two meshes with different tables become one. */
+/* Materials of a mesh: the table follows every edit that makes a new mesh, faces keep their
+ * materials, and two meshes with different tables can be joined. */
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -43,7 +43,7 @@ static void a_material_is_made_changed_and_given(void **state)
     script_prepare(m, "material_set name=red base_color=0,1,0 emission=3,0,0 two_sided=1");
     const he_look *look = look_of(m, "red");
     assert_true(look->base_color[0] == 0 && look->base_color[1] == 1);
-    assert_true(look->base_color[3] == 0.5); /* three numbers leave the opacity alone */
+    assert_true(look->base_color[3] == 0.5); /* three numbers do not change the opacity */
     assert_true(look->emission[0] == 3 && look->two_sided);
     script_prepare(m, "material_set name=red rename=green;material_set name=blue faces=1,2");
     assert_string_equal(name_of(m, 0), "green");
@@ -85,7 +85,8 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");
     assert_int_equal(label_count(m), 2);
-    /* one that no face has yet takes the place, and new faces are as the one they come from */
+    /* a material that no face has takes the place, and new faces have the material of their
+     * parent */
     script_prepare(m, "material_set name=d;material_delete name=b to=d;face_poke face=3");
     assert_string_equal(name_of(m, 1), "d");
     assert_string_equal(name_of(m, he_mesh_issued(m, HE_FACE) - 1), "d");
@@ -97,7 +98,7 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     he_mesh_free(m);
 }
 
-/* The default of the attribute may be any label: it goes along when that is deleted. */
+/* The default of the attribute may be any label; it is replaced when that is deleted. */
 static void a_default_material_is_deleted_like_any(void **state)
 {
     (void)state;
@@ -115,7 +116,7 @@ static void a_default_material_is_deleted_like_any(void **state)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_string_equal(name_of(m, 5), "elm");
     script_prepare(m, "material_delete name=elm");
-    assert_string_equal(name_of(m, 5), ""); /* in the place of elm: there was no "" */
+    assert_string_equal(name_of(m, 5), ""); /* in place of elm: there was no "" */
     script_prepare(m, "material_delete name=oak;vertex_add position=9,9,9");
     assert_int_equal(label_count(m), 1);
     assert_string_equal(name_of(m, 5), "");
@@ -141,7 +142,7 @@ static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, b
     he_changes_clear(&changes);
 }
 
-/* Whether the name is new to the attribute, and the attribute to the mesh, or not. */
+/* Whether or not the name is new to the attribute, and the attribute to the mesh. */
 static void faces_whose_material_changes_are_modified(void **state)
 {
     (void)state;
@@ -173,7 +174,7 @@ static void faces_whose_material_changes_are_modified(void **state)
     he_mesh_free(m);
 }
 
-/* Its words are of slots that the content which takes its place has not. */
+/* Its records refer to slots that the replacing content does not have. */
 static void a_material_set_before_a_compact_is_a_replacement(void **state)
 {
     (void)state;
@@ -199,7 +200,7 @@ static void a_material_set_before_a_compact_is_a_replacement(void **state)
     he_mesh_free(m);
 }
 
-/* An edit that says what is already so is none. */
+/* An edit that changes nothing makes no revision. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
     (void)state;
@@ -211,7 +212,7 @@ static void what_changes_nothing_is_no_edit(void **state)
                       "material_set name= face=3");
     assert_int_equal(delta->count, 0);
     script_prepare(m, "material_set name=red roughness=0.5");
-    assert_int_equal(delta->count, 1); /* of a row, whatever the table holds */
+    assert_int_equal(delta->count, 1); /* one record per row, whatever the size of the table */
     he_mesh_record(m, NULL);
     he_delta_free(delta);
     he_mesh_free(m);
@@ -249,7 +250,7 @@ static void edits_of_the_whole_keep_the_table_and_faces_theirs(void **state)
     }
 }
 
-/* A free slot is none afterwards. */
+/* Free slots are closed. */
 static void compact_closes_gaps(void **state)
 {
     (void)state;
@@ -284,12 +285,12 @@ static void append_merges_equal_rows_and_numbers_others(void **state)
     assert_true(look_of(m, "red_2")->base_color[2] == 1);
     assert_true(look_of(m, "red")->base_color[1] == 0);
     he_appended_clear(&appended);
-    /* again: what was numbered is found */
+    /* again: existing numbered names are found */
     assert_int_equal(he_append(m, other, NULL, NULL), HE_OK);
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
     assert_valid(m);
     he_mesh_free(m);
-    /* where no face has one yet, labels come with their new names */
+    /* if no face has a material yet, labels get their new names at once */
     m = script_mesh("012", NULL);
     script_prepare(m, "material_set name=red roughness=0.5");
     assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
@@ -319,7 +320,7 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
     he_mesh_free(m);
 }
 
-/* Rows are shared: a copy costs its slots, and both are counted in full. */
+/* Rows are shared: a copy costs only its slots, but both are counted in full. */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;
@@ -332,7 +333,7 @@ static void memory_of_rows_is_counted(void **state)
     before = he_delta_bytes(delta);
     script_prepare(m, "material_set name=m1 metallic=1");
     assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
-    /* the labels that an edit leaves behind are the delta's */
+    /* the delta owns labels that an edit removes */
     char name[HE_MATERIAL_NAME + 30];
     snprintf(name, sizeof name, "material_set name=%0200d face=0", 1);
     script_prepare(m, name);

@@ -1,4 +1,4 @@
-/* Bodies of several files: what their parts are, however they are cut, and what is refused. */
+/* Bodies of several files: their parts, however they are split, and refusals. */
 #include "api/header/multipart.h"
 
 #include "unit/fixture.h"
@@ -13,7 +13,7 @@
 
 enum { MOST = 8192 };
 
-/* What came, as text: "[name|type]bytes;" for each part. */
+/* The parts as text: "[name|type]bytes;" for each. */
 typedef struct told {
     char text[MOST];
     size_t length;
@@ -32,7 +32,7 @@ static void add_text(told *t, const char *text)
     add(t, text, strlen(text));
 }
 
-/* In pieces of `piece` bytes, each in a block of its own; the code of a refusal. */
+/* Reads in pieces of `piece` bytes, each in a block of its own; returns the code of a refusal. */
 static int read_in(const char *type, const char *body, size_t length, size_t piece, told *out,
                    api_problem *problem)
 {
@@ -81,7 +81,7 @@ static int read_in(const char *type, const char *body, size_t length, size_t pie
     return problem->code;
 }
 
-/* Whole, byte by byte and in all sizes between: the same. */
+/* Whole, byte by byte and in all sizes between, the result must be the same. */
 static void expect_of(const char *type, const char *body, size_t length, const char *wanted)
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
@@ -125,11 +125,11 @@ static void parts_come_with_their_names_types_and_bytes(void **state)
     expect("--AbC" LINE "Content-Disposition: form-data; name=\"f\"; filename=\"x.bin\"" LINE
            "Content-Type: application/octet-stream" LINE LINE "123" LAST,
            "[x.bin|application/octet-stream]123;");
-    /* without quotes, in other letter case, with blanks, and headers nobody asks for */
+    /* without quotes, in other letter case, with blanks, and with unknown headers */
     expect("--AbC" LINE "x-other: 1" LINE "CONTENT-TYPE:text/plain ; charset=utf-8  " LINE
            "content-disposition:Form-Data;NAME=f ;\tFileName=x.bin;" LINE LINE "1" LAST,
            "[x.bin|text/plain ; charset=utf-8]1;");
-    /* text before and behind, blanks behind a delimiter */
+    /* text before and after, blanks after a delimiter */
     expect("a preamble" LINE "--Ab" LINE "--AbC \t" LINE HEAD("a") LINE "1" LAST "epilogue" LINE
                                                                         "--AbC" LINE,
            "[a]1;");
@@ -142,7 +142,8 @@ static void empty_parts_are_parts(void **state)
 {
     (void)state;
     expect(PART("a") LAST, "[a];");
-    expect(PART("a") "--AbC--", "[a];"); /* the line break of the empty line is the delimiter's */
+    /* the line break of the empty line belongs to the delimiter */
+    expect(PART("a") "--AbC--", "[a];");
     expect(PART("a") LINE PART("b") LINE PART("c") "x" LAST, "[a];[b];[c]x;");
     expect(PART("a") LINE LINE "--AbC--", "[a]\r\n;");
 }
@@ -183,7 +184,7 @@ static void names_are_taken_as_they_are_given(void **state)
            "[\xC3\xBC\xE2\x82\xAC\xF0\x9F\x98\x80.gltf];");
     expect(NAMED("name=f; filename=\"../../etc/passwd\""), "[../../etc/passwd];");
     expect(NAMED("filename=\"x\"; name=f"), "[x];");
-    expect(NAMED("name=f; filename=\"\""), "[f];"); /* a form where no file was chosen */
+    expect(NAMED("name=f; filename=\"\""), "[f];"); /* a form without a chosen file */
     expect(NAMED("filename=\"\"; name=f"), "[f];");
     expect(NAMED("name=f; other=\"filename=x\""), "[f];");
 }
@@ -245,7 +246,7 @@ static void a_body_that_ends_too_early_is_refused(void **state)
     expect_refused(PART("a") "x" LINE "--AbC\r\r", "a delimiter goes on");
 }
 
-/* `count` times `text` between others, in one piece. */
+/* Returns `count` times `text` between others, in one block. */
 static char *repeat(const char *before, const char *text, size_t count, const char *behind)
 {
     size_t first = strlen(before), each = strlen(text), last = strlen(behind) + 1;
@@ -270,7 +271,7 @@ static void there_are_maxima(void **state)
     body = repeat("", PART("a") LINE, API_MAX_PARTS + 1, "--AbC--");
     expect_refused(body, "more than 64 parts");
     free(body);
-    /* all of it is counted: the name of the header, its line and the empty one */
+    /* all bytes count: the name of the header, its line and the empty line */
     size_t room = API_MAX_PART_HEADERS - strlen(HEAD("a") "x: " LINE LINE);
     for (size_t more = 0; more < 2; more++) {
         body = repeat("--AbC" LINE HEAD("a") "x: ", "x", room + more, LINE LINE "1" LAST);
@@ -323,7 +324,7 @@ static void the_boundary_is_a_parameter_of_the_type(void **state)
         assert_null(api_multipart_new(bad[i], &problem));
         assert_int_equal(problem.code, API_BAD_HEADER);
     }
-    /* the longest there may be, with all that its characters may be */
+    /* the longest boundary, with all allowed characters */
     static const char odd[] =
         "multipart/form-data; boundary=\""
         "0123456789'()+_,-./:=? abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTU\"";

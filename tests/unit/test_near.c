@@ -1,4 +1,5 @@
-/* Points kept in cells: the lowest within reach is found wherever they lie, as by looking at all.
+/* Points in cells: the lowest within reach is found wherever they lie, compared with checking all
+ * points.
  */
 #include "unit/fixture.h"
 
@@ -21,7 +22,7 @@ static double distance(he_vec3 a, he_vec3 b)
     return hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
 }
 
-/* About `origin`, in a box of some tolerances. */
+/* Compares around `origin`, in a box of some tolerances. */
 static void compare(double origin, double tolerance)
 {
     static he_vec3 points[POINTS];
@@ -38,7 +39,7 @@ static void compare(double origin, double tolerance)
     assert_int_equal(he_near_make(&near, points, POINTS, tolerance, 1, NULL, NULL), HE_OK);
     for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t home, wanted = HE_NONE;
-        bool sure = true; /* nothing lies on the border itself */
+        bool sure = true; /* nothing lies exactly on the limit */
         for (uint32_t k = i; k-- > 0;) {
             double d = distance(points[i], points[k]);
             sure &= !kept[k] || d == 0 || fabs(d / tolerance - 1) > 1e-9;
@@ -69,7 +70,7 @@ static void the_lowest_within_reach_is_found(void **state)
     }
 }
 
-/* -0 is 0. */
+/* -0 equals 0. */
 static void without_a_tolerance_only_equal_points_are_near(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Numbers as text, against the C library (which is exact in the "C" locale) and big integers.
- * SEED= repeats a run, ROUNDS= makes it longer. */
+/* Numbers as text, compared with the C library (which is exact in the "C" locale) and with big
+ * integers. SEED= repeats a run, ROUNDS= makes it longer. */
 #include "format/text/number.h"
 
 #include "format/text/exact.h"
@@ -43,7 +43,7 @@ static bool is_finite_bits(uint64_t bits)
     return (bits >> 52 & 0x7FF) != 0x7FF;
 }
 
-/* A mix of what random bits give and what files hold. */
+/* A mixture of random bits and of numbers as in files. */
 static double random_double(void)
 {
     for (;;) {
@@ -56,7 +56,7 @@ static double random_double(void)
         case 1:
             value = (double)(bits >> 11) * 0x1p-53;
             break;
-        case 2: /* about the middle of the range */
+        case 2: /* near the middle of the range */
             value =
                 from_bits((bits & 0x800FFFFFFFFFFFFF) | (1023 - 60 + next_random() % 120) << 52);
             break;
@@ -153,7 +153,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     }
 }
 
-/* The text of a double reads back, by the C library and by us, and no shorter one does. */
+/* The text of a double reads back with the C library and with our reader, and no shorter text
+ * does. */
 static void check_print(double value, bool try_all)
 {
     char text[HE_NUMBER_TEXT + 1], other[64];
@@ -188,7 +189,7 @@ static void check_print(double value, bool try_all)
             if ((size_t)precision < digits) {
                 fail_msg("%s is longer than %s", text, other);
             }
-            /* %.*e is the closest of its length */
+            /* .*e gives the closest text of its length */
             if ((size_t)precision == digits) {
                 char ours[64];
                 snprintf(ours, sizeof ours, "%.*e", precision - 1, strtod(text, NULL));
@@ -250,7 +251,7 @@ static void random_text_parses_like_the_c_library(void **state)
         if (i % 2 == 0) {
             snprintf(text, sizeof text, "%.*e", precision, value);
         } else {
-            /* digits that belong to no double in particular */
+            /* digits that do not come from a double */
             snprintf(text, sizeof text, "%llu%s%0*llu%se%d",
                      (unsigned long long)next_random() >> next_random() % 64, i % 3 ? "." : "",
                      precision, (unsigned long long)next_random(), i % 5 ? "" : "00000",
@@ -268,7 +269,8 @@ static void random_text_parses_like_the_c_library(void **state)
     }
 }
 
-/* The exact middle between two doubles, all its digits written out, and a digit to either side. */
+/* The exact middle between two doubles, with all its digits, and the numbers one digit to either
+ * side. */
 static void middles_go_to_even(void **state)
 {
     (void)state;
@@ -306,7 +308,7 @@ static void middles_go_to_even(void **state)
     }
 }
 
-/* he_double_parse hardly ever needs it, so it is also called directly, with bad guesses. */
+/* he_double_parse rarely needs it, so it is also called directly, with bad guesses. */
 static void exact_rounding_from_any_near_guess(void **state)
 {
     (void)state;
@@ -476,7 +478,7 @@ static void parse_edges(void **state)
     assert_int_equal(parse("-12.5e1]", HE_JSON_NUMBER, &value, &used), HE_OK);
     assert_int_equal(used, 7);
     assert_true(value == -125);
-    /* nothing at or after `end` counts */
+    /* bytes at and after `end` are not read */
     assert_int_equal(
         he_double_parse("123456789", &"123456789"[0] + 0, HE_FILE_NUMBER, &value, &used),
         HE_SYNTAX);

@@ -1,6 +1,6 @@
-/* What the operation table promises, row by row: every row succeeds, every declared refusal is
- * produced and no other, V, E and F move as declared, the checker passes, a refusal or a failed
- * allocation leaves the mesh bit-identical, and the delta undoes and redoes. */
+/* The promises of the operation table, row by row: every row succeeds, every declared refusal
+ * occurs and no other, V, E and F change as declared, the checker passes, a refusal or a failed
+ * allocation leaves the mesh identical in every bit, and the delta undoes and redoes. */
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
@@ -20,10 +20,10 @@
 #define STRANGE "012,034,056"
 #define RING6   "301,320,431,523,653,634"
 #define HEXAGON "012,023,034,045,056,061"
-/* The torus on which seven vertices are all neighbours of each other. */
+/* The torus in which all seven vertices are neighbours. */
 #define CSASZAR "013,032,124,143,235,254,346,365,450,406,561,510,602,621"
 
-/* More vertices than a list is compared pairwise for. */
+/* More vertices than a list may have for pairwise comparison. */
 #define MANY \
     "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
 #define MANY_MORE "+++++++++++++++++++++++++++++++++"
@@ -375,7 +375,7 @@ static const scenario *const groups[] = {scenarios,        border_scenarios,  we
 
 enum { MAX_OPS = 128 };
 
-/* What the scenarios of this run produced, by row. */
+/* The outcomes of the scenarios of this run, by row. */
 static bool produced[MAX_OPS][HE_STATUS_COUNT];
 
 static void mark(const he_op *op, he_status status)
@@ -411,7 +411,7 @@ static void check_change(const scenario *s, const he_mesh *before, const he_mesh
     }
 }
 
-/* Once recording: success undoes and redoes, a refusal records nothing. */
+/* With recording: a success undoes and redoes, a refusal records nothing. */
 static void run_recorded(const scenario *s, bool columns)
 {
     he_mesh *m = start_of(s, columns), *before = copy_of(m);
@@ -513,7 +513,7 @@ static void test_limit(void **state)
     }
 }
 
-/* Runs last: what the rows declare is what the scenarios produced. */
+/* Runs last: the rows must declare exactly the refusals that the scenarios produced. */
 static void test_every_refusal_was_produced(void **state)
 {
     (void)state;
@@ -579,7 +579,7 @@ static void test_results(void **state)
     assert_int_equal(results.list[1].ids[0], 5);
     assert_int_equal(results.list[2].count, 2);
     assert_int_equal(results.list[2].ids[1], 3);
-    /* A refusal leaves none behind. */
+    /* A refusal leaves no results. */
     assert_int_equal(script_run(m, "edge_split edge=#99", &results, NULL), HE_NO_SUCH_ELEMENT);
     assert_false(results.present[0]);
     assert_int_equal(results.list[1].count, 0);

@@ -1,5 +1,5 @@
-/* Values that a client picks so that they would lie together in a table whose hash it knows: the
- * work grows with their number all the same, as the hashes have seeds. */
+/* Values that a client chooses so that they would collide in a table with a known hash: the work is
+ * still linear in their number, because the hashes are seeded. */
 #include "unit/fixture.h"
 
 #include "build/build.h"
@@ -15,7 +15,7 @@ enum { PICKED = 50000 };
 
 /* --- names of labels --- */
 
-/* Slots that lie together in every table of up to a million, were the hash FNV-1a. */
+/* Names that would collide in every table of up to a million slots if the hash were FNV-1a. */
 static bool lies_low(const char *name)
 {
     uint64_t h = 14695981039346656037u;
@@ -61,7 +61,7 @@ static void names_cannot_be_picked_to_collide(void **state)
 
 /* --- values of corners, numbered for an export --- */
 
-/* The same of a hash that begins with the number of bytes. */
+/* Does the number collide if the hash begins with the number of bytes? */
 static bool number_lies_low(uint64_t word)
 {
     uint64_t h = (sizeof word ^ word) * 0x9E3779B97F4A7C15;
@@ -122,7 +122,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     free(values);
 }
 
-/* --- records of a delta, folded --- */
+/* --- records of a delta, combined --- */
 
 static double fold_rows(const void *context, size_t count)
 {
@@ -156,11 +156,11 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
     free(rows);
 }
 
-/* --- edges that become one in a weld --- */
+/* --- edges that are merged by a weld --- */
 
 enum { PAIRS = PICKED / 4 };
 
-/* Two triangles for each of `lows`, which come to share the edge from it to the vertex after. */
+/* Two triangles for each of `lows`, which then share the edge from it to the next vertex. */
 static double weld_pairs(const void *context, size_t count)
 {
     const uint32_t *lows = context;

@@ -1,4 +1,4 @@
-/* Relations, against a search through all half-edges. */
+/* Relations, compared with a search through all half-edges. */
 #include "query_specimens.h"
 
 #include "query/adjacency.h"
@@ -32,8 +32,8 @@ static size_t times_in(const he_ids *ids, uint32_t id)
     return n;
 }
 
-/* Is `related` among what the relation should give for `id`? Asked of every pair, by definition and
- * without a walk. */
+/* Does the relation of `id` contain `related`? Decided for every pair, by definition and without
+ * walking. */
 static bool belongs(const he_mesh *m, he_kind of, const char *name, uint32_t id, uint32_t related)
 {
     const uint32_t *origin = m->c.origin, *face = m->c.face;
@@ -111,7 +111,7 @@ static void try_all(const he_mesh *m)
     }
 }
 
-/* Order: what follows what, by the definition of a turn and of a loop. */
+/* Checks the order by the definitions of a turn and of a loop. */
 static void try_order(const he_mesh *m)
 {
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
@@ -156,7 +156,7 @@ static void try_order(const he_mesh *m)
     }
 }
 
-/* The dense form is the single ones, one after another. */
+/* The dense form must equal the single answers, one after another. */
 static void try_dense(const he_mesh *m)
 {
     for (size_t i = 0; i < he_relation_count(); i++) {
@@ -260,7 +260,7 @@ static void test_relations_by_hand(void **state)
     assert_ids(ids_of(m, HE_EDGE, "halfedges", 4, 0), "8 9");
     assert_ids(ids_of(m, HE_EDGE, "faces", 4, 0), "1");
     he_mesh_free(m);
-    /* Two faces that share two edges meet once. */
+    /* Two faces that share two edges are listed once. */
     m = fixture_mesh("0123,2104");
     assert_ids(ids_of(m, HE_FACE, "faces", 0, 0), "1");
     assert_ids(ids_of(m, HE_FACE, "faces", 1, 0), "0");
@@ -272,7 +272,7 @@ static void test_relations_by_hand(void **state)
     he_mesh_free(m);
 }
 
-/* More neighbours than are looked through one by one, each of them twice. */
+/* More neighbours than are compared one by one, each of them twice. */
 static void test_faces_of_a_large_face_appear_once(void **state)
 {
     (void)state;
@@ -328,7 +328,7 @@ static void test_relations_refuse(void **state)
         assert_int_equal(he_relation_dense(m, r, list, 1, 0, 1, &dense, &err), HE_LIMIT);
         assert_null(dense.ids.ids);
         assert_null(dense.offsets.ids);
-        /* Nothing asked, nothing answered. */
+        /* An empty list gives an empty answer. */
         assert_int_equal(he_relation_dense(m, r, list, 0, 0, 0, &dense, &err), HE_OK);
         assert_int_equal(dense.offsets.count, 1);
         assert_int_equal(dense.ids.count, 0);
@@ -345,13 +345,13 @@ static void test_relations_refuse(void **state)
     he_mesh_free(m);
 }
 
-/* A ring whose turn never comes back, and links that lead out of the mesh. */
+/* A ring that never closes, and links that lead out of the mesh. */
 static void test_relations_end_on_broken_links(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     uint32_t h = m->c.vertex_halfedge[0], turned = m->c.prev[h] ^ 1u;
-    m->c.prev[turned] = turned ^ 1u; /* turns in place */
+    m->c.prev[turned] = turned ^ 1u; /* its turn leads to itself */
     he_ids ids = {0};
     he_error err = {0};
     assert_int_equal(he_relation_append(m, relation_named(HE_VERTEX, "vertices"), 0, 0, &ids, &err),

@@ -1,4 +1,5 @@
-/* Rays, nearest points and self-intersections over a tree of boxes, against trying all triangles.
+/* Rays, nearest points and self-intersections with a tree of boxes, compared with testing all
+ * triangles.
  */
 #include "query_specimens.h"
 
@@ -47,7 +48,7 @@ static he_vec3 random_point(uint64_t *seed, double reach)
                      uniform(seed, -reach, reach)};
 }
 
-/* Vertices anywhere: faces cut through one another, and polygons are not flat. */
+/* Vertices anywhere: faces intersect, and polygons are not planar. */
 static he_mesh *tangle(uint64_t *seed)
 {
     static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
@@ -61,7 +62,7 @@ static he_mesh *tangle(uint64_t *seed)
     return m;
 }
 
-/* What a hit says of itself. */
+/* Checks that the members of a hit are consistent. */
 static void check_hit(const he_mesh *m, const he_hit *hit)
 {
     he_vec3 sum = {0, 0, 0};
@@ -84,7 +85,7 @@ static void check_hit(const he_mesh *m, const he_hit *hit)
 
 /* --- rays --- */
 
-/* Moeller and Trumbore 1997: another way than the tree's, without its care about edges. */
+/* Moeller and Trumbore 1997: another method than the tree's, less careful at edges. */
 static double ray_triangle(he_vec3 o, he_vec3 d, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     he_vec3 u = he_vec3_sub(b, a), v = he_vec3_sub(c, a), p = he_vec3_cross(d, v);
@@ -177,7 +178,7 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
     /* From the surface itself. */
     he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 0);
-    /* Exactly in the plane of a face, which is not met from its side; those beside it are. */
+    /* Exactly in the plane of a face, which it does not hit; the faces beside it are hit. */
     hit = cast(tree, m, (he_vec3){-5, 0.25, 1}, (he_vec3){1, 0, 0}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 4);
     he_bvh_free(tree);
@@ -225,7 +226,7 @@ static void rays_from_far_out_along_an_axis_are_exact(void **state)
 
 /* --- nearest points --- */
 
-/* By steps over the triangle: never nearer than what is right, and hardly farther. */
+/* Samples the triangle: never nearer than the right result, and hardly farther. */
 static double sampled(he_vec3 p, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     enum { STEPS = 40 };
@@ -270,7 +271,7 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     }
 }
 
-/* Whether p is nearer to a corner of the triangles below a node than node or disc let it be. */
+/* Is p nearer to a corner of the triangles below a node than the bounds of node or disc allow? */
 static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -309,7 +310,7 @@ static void boxes_and_discs_hold_what_is_below_them(void **state)
                 static const double reaches[] = {0.5, 2, 1e3, 1e9};
                 check_bounds(tree, m, at, random_point(&seed, reaches[i]));
             }
-            /* Along the normal and across, where nothing is to spare. */
+            /* Along the normal and across it, where the bounds are tight. */
             const he_bvh_disc *d = &tree->discs[at];
             he_vec3 c = {d->center[0], d->center[1], d->center[2]},
                     n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
@@ -362,7 +363,7 @@ static void faces_without_area_are_the_segments_they_look_like(void **state)
     he_mesh_free(m);
 }
 
-/* Nothing but faces is hit or near, so nothing else decides the scale. */
+/* Only faces can be hit, so only they determine the scale. */
 static void a_far_vertex_does_not_hide_faces(void **state)
 {
     (void)state;
@@ -384,7 +385,7 @@ static void a_far_vertex_does_not_hide_faces(void **state)
     }
 }
 
-/* bvh.h says up to which difference in size. */
+/* bvh.h says up to which ratio of sizes. */
 static void a_far_face_does_not_hide_near_ones(void **state)
 {
     (void)state;
@@ -410,7 +411,7 @@ static void a_far_face_does_not_hide_near_ones(void **state)
 static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
 {
     (void)state;
-    /* All in one place: nothing to split by. */
+    /* All centres at one place: there is nothing to split by. */
     he_mesh *m = query_shape("grid", 40, 40, 1, 1);
     memset(m->c.position, 0, he_mesh_issued(m, HE_VERTEX) * sizeof *m->c.position);
     he_bvh *tree = tree_of(m);
@@ -470,7 +471,7 @@ static void hostile_coordinates_give_finite_hits(void **state)
 static void orientation_is_exact_where_doubles_round(void **state)
 {
     (void)state;
-    /* Points of a plane that doubles hold exactly, moved by one unit in the last place. */
+    /* Points of a plane that doubles represent exactly, moved by one unit in the last place. */
     uint64_t seed = 41;
     for (int i = 0; i < 2000; i++) {
         double base = ldexp(1, (int)(query_random(&seed) % 30));

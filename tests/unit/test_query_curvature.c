@@ -1,4 +1,4 @@
-/* Corner normals, cotangents and curvature, against closed forms. */
+/* Corner normals, cotangents and curvature, compared with closed forms. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -53,11 +53,11 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     he_mesh_free(m);
 }
 
-/* A cube whose top slants: of the three faces at a vertex only two are close enough. */
+/* A cube with a slanted top: of the three faces at a vertex only two are close enough. */
 static void a_crease_parts_only_the_faces_across_it(void **state)
 {
     (void)state;
-    /* Three faces about vertex 0; the edge 0-3 is folded sharply, the other two hardly. */
+    /* Three faces around vertex 0; the edge 0-3 is folded sharply, the other two hardly. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 0.5, 0}, {0.2, 1, 0.02}, {-0.3, 0, 1}};
     memcpy(m->c.position, places, sizeof places);
@@ -108,7 +108,7 @@ static void corner_normals_alone_are_those_of_the_whole(void **state)
 static void a_degenerate_face_parts_no_others(void **state)
 {
     (void)state;
-    /* In a plane: a sliver 0-2-3 of no area between two triangles. */
+    /* In a plane: a sliver 0-2-3 without area between two triangles. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {2, 2, 0}, {-1, 1, 0}};
     memcpy(m->c.position, places, sizeof places);
@@ -241,7 +241,7 @@ static void planes_do_not_bend(void **state)
     he_mesh_free(m);
 }
 
-/* Whatever the faces and places, bow-ties and reflex corners included. */
+/* For any faces and positions, with bow-ties and reflex corners. */
 static void angle_defects_sum_to_the_euler_number(void **state)
 {
     (void)state;
@@ -286,7 +286,7 @@ static void an_element_alone_has_the_value_it_has_among_all(void **state)
         double *weights = cotangents(m), weight[2];
         uint32_t vertices = he_mesh_vertices(m), edges = he_mesh_edges(m);
         for (uint32_t v = 0; v < vertices; v++) {
-            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated one is answered twice */
+            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated element is answered twice */
             assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, NULL, one, NULL), HE_OK);
             assert_memory_equal(&one[0], &c[v], sizeof one[0]);
             assert_memory_equal(&one[1], &c[vertices - 1], sizeof one[0]);

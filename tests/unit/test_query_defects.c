@@ -1,4 +1,4 @@
-/* Defects of valid meshes, each from a mesh made by hand, and against searching all pairs. */
+/* Defects of valid meshes: of meshes made by hand, and compared with checking all pairs. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -23,7 +23,7 @@ static he_mesh *mesh_at(const char *faces, const he_vec3 *positions)
     return m;
 }
 
-/* What was found of each code, in the order of codes. */
+/* Requires these numbers of defects, in the order of codes. */
 static void expect_totals(const uint64_t totals[HE_DEFECTS])
 {
     for (he_defect_code code = 0; code < HE_DEFECTS; code++) {
@@ -82,7 +82,7 @@ static void bowties_and_isolated_vertices_are_named(void **state)
     assert_int_equal(first(HE_DEFECT_BOWTIE)->id, 0);
     assert_true(first(HE_DEFECT_BOWTIE)->value == 3);
     he_mesh_free(m);
-    m = query_with_dead_rows(); /* vertex 3 is isolated, from 4 on there is nothing */
+    m = query_with_dead_rows(); /* vertex 3 is isolated, and rows from 4 on are dead */
     find(m, (he_thresholds){0, 1, 0, 0});
     assert_int_equal(found.of[HE_DEFECT_ISOLATED].total, 1);
     assert_int_equal(first(HE_DEFECT_ISOLATED)->id, 3);
@@ -134,7 +134,7 @@ static void faces_that_are_not_flat_are_named(void **state)
     assert_int_equal(found.of[HE_DEFECT_NONPLANAR].total, 1);
     assert_int_equal(first(HE_DEFECT_NONPLANAR)->id, 0);
     assert_true(fabs(first(HE_DEFECT_NONPLANAR)->value - 0.05) < 1e-12);
-    /* A face of the same form, however large or small. */
+    /* A similar face, however large or small. */
     for (int k = -1000; k <= 1000; k += 100) {
         for (uint32_t v = 0; v < 4; v++) {
             m->c.position[v] = (he_vec3){ldexp(at[v].x, k), ldexp(at[v].y, k), ldexp(at[v].z, k)};
@@ -166,7 +166,7 @@ static void small_components_are_named_by_their_lowest_face(void **state)
     he_mesh_free(m);
 }
 
-/* A tetrahedron each: outward, and inward within the first. */
+/* Two tetrahedra: one facing outward, one facing inward inside the first. */
 static const he_vec3 nested[] = {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}, {0, 0, 8},
                                  {1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}};
 
@@ -177,14 +177,14 @@ static void closed_components_of_negative_volume_are_inside_out(void **state)
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);
     he_mesh_free(m);
-    /* The wall of a hollow looks inward, and is listed. */
+    /* The wall of a cavity faces inward, and is listed. */
     m = mesh_at("021,013,032,123,456,475,467,576", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 1);
     assert_int_equal(first(HE_DEFECT_INSIDE_OUT)->id, 4);
     assert_true(fabs(first(HE_DEFECT_INSIDE_OUT)->value + 1.0 / 6) < 1e-12);
     he_mesh_free(m);
-    /* Open at face 123: there is no inside. */
+    /* With face 123 missing there is no inside. */
     m = mesh_at("012,031,023", nested);
     find(m, he_thresholds_of(m));
     assert_int_equal(found.of[HE_DEFECT_INSIDE_OUT].total, 0);
@@ -230,7 +230,7 @@ static void labels_of_components_are_those_of_the_list(void **state)
 
 /* --- positions --- */
 
-/* Listed are those near an earlier one that is not listed. */
+/* Listed are the vertices near an earlier one that is not listed. */
 static uint64_t search_all(const he_mesh *m, double merge, bool *listed)
 {
     uint64_t total = 0;
@@ -257,7 +257,8 @@ static void duplicates_are_those_that_trying_all_finds(void **state)
         for (uint32_t v = 0; v < 100; v++) {
             double *x = &m->c.position[v].x;
             for (int k = 0; k < 3; k++) {
-                /* On a lattice, so that distances are often just what is merged, and both zeros. */
+                /* On a lattice, so that distances often equal the limit exactly, and with both
+                 * zeros. */
                 x[k] = ldexp((double)(query_random(&seed) % 256) - 128, -8) + far;
                 x[k] = round % 2 == 0 ? x[k] : floor(x[k] * 4) / 4 * -1;
             }
@@ -329,7 +330,7 @@ static void hostile_coordinates_give_finite_values(void **state)
     }
 }
 
-/* --- giving up --- */
+/* --- cancelling --- */
 
 typedef struct patience {
     long calls, most;

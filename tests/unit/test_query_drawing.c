@@ -1,4 +1,4 @@
-/* The arrays for drawing, against the polygons they are made from. */
+/* The arrays for drawing, compared with the polygons from which they are made. */
 #include "query_specimens.h"
 
 #include "draw/drawing.h"
@@ -54,7 +54,7 @@ static he_vec3 area_vector(const he_mesh *m, const row *r)
     return he_vec3_scale(he_vec3_cross(he_vec3_sub(b, a), he_vec3_sub(c, a)), 0.5);
 }
 
-/* Is from -> to a side of the face, by walking about it? */
+/* Is from -> to a side of the face? Decided by walking around the face. */
 static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
 {
     uint32_t first = m->c.face_halfedge[face], h = first;
@@ -67,8 +67,8 @@ static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
     return false;
 }
 
-/* The triangles of one face: as many as its corners less two, each side of the polygon marked once
- * and in its direction, each diagonal unmarked and met once from either side. */
+/* The triangles of one face: two fewer than its corners, each side of the polygon marked once and
+ * in its direction, each diagonal unmarked and used once in either direction. */
 static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t count)
 {
     uint32_t degree = he_face_degree(m, (he_face){face}), marked = 0;
@@ -90,8 +90,8 @@ static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t c
     assert_int_equal(marked, degree);
 }
 
-/* What holds of a face's triangles beside their sides: their area vectors add up to the face's; and
- * where it is planar and does not cross itself their areas do too. */
+/* What must hold for a face's triangles besides their sides: their area vectors add up to the
+ * face's; and if it is planar and does not cross itself, their areas do, too. */
 typedef enum promise { OUTLINED, SUMMED, COVERED } promise;
 
 static void check_drawing(const he_mesh *m, promise promised)
@@ -236,7 +236,8 @@ typedef struct polygon {
     uint32_t n;
 } polygon;
 
-/* One face in a slanted plane, `turn` corners on, far from the origin or small where asked. */
+/* One face in a slanted plane, starting `turn` corners later, far from the origin or small if
+ * requested. */
 static he_mesh *face_of(const polygon *p, uint32_t turn, double size, double away)
 {
     he_soup soup;
@@ -285,7 +286,8 @@ static void test_concave_faces_from_every_corner(void **state)
     }
 }
 
-/* Star-shaped about the origin, so that it never crosses itself, with as many corners as asked. */
+/* Star-shaped around the origin, so that it never crosses itself, with the given number of
+ * corners. */
 static void test_random_polygons(void **state)
 {
     (void)state;
@@ -307,7 +309,7 @@ static void test_random_polygons(void **state)
     }
 }
 
-/* Faces without a plane, and a pentagram: still as many triangles as there should be. */
+/* Faces without a plane, and a pentagram: still the right number of triangles. */
 static void test_faces_without_a_plane(void **state)
 {
     (void)state;
@@ -345,7 +347,7 @@ static void test_a_comb_of_many_teeth_is_covered_once(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
-    /* Alone it costs what its corners do, not their square. */
+    /* The time for a single face depends on the number of its corners, not on the square. */
     const uint32_t face = 0;
     he_frame frame = he_frame_of(m);
     he_drawing d;
@@ -357,7 +359,7 @@ static void test_a_comb_of_many_teeth_is_covered_once(void **state)
     he_mesh_free(m);
 }
 
-/* --- rows of what is dead, and of what did not change --- */
+/* --- rows of dead elements, and of unchanged ones --- */
 
 static void test_dead_rows(void **state)
 {
@@ -422,7 +424,7 @@ static void test_frames(void **state)
         assert_true(he_vec3_is_finite(frame.origin));
         he_mesh_free(m);
     }
-    /* Something of the mesh is seen: it fills at least an eighth of the ball's width. */
+    /* The mesh is visible: it fills at least an eighth of the ball's width. */
     he_mesh *m = query_shape("cube", 3.7, 0, 0, 0);
     he_frame frame = he_frame_of(m);
     assert_true(3.7 * frame.scale >= 0.5);
@@ -454,7 +456,7 @@ static void test_each_allocation_failing(void **state)
     he_mesh_free(m);
 }
 
-/* The same triangles as among all; and what would take long is told before it is begun. */
+/* A single face has the same triangles as among all; long work is announced before it begins. */
 static void test_one_face_alone(void **state)
 {
     (void)state;

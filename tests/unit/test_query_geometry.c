@@ -1,4 +1,4 @@
-/* Lengths, areas, normals and angles, against closed forms and other formulas. */
+/* Lengths, areas, normals and angles, compared with closed forms and other formulas. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -47,7 +47,7 @@ static void test_geometry_of_a_cube(void **state)
     for (uint32_t f = 0; f < 6; f++) {
         he_face_shape shape = he_face_measure(m, (he_face){f});
         assert_true(shape.area == 4 && shape.degree == 4 && !shape.degenerate);
-        /* The normal is where the face's middle is. */
+        /* The normal is parallel to the centroid. */
         assert_vector(shape.normal, shape.centroid.x, shape.centroid.y, shape.centroid.z);
         he_vec3 normal, centroid = he_face_centroid(m, (he_face){f});
         assert_true(he_face_normal(m, (he_face){f}, &normal));
@@ -97,7 +97,8 @@ static void test_geometry_weights_differ(void **state)
     assert_true(he_vertex_normal(m, (he_vertex){6}, HE_WEIGHT_ANGLE, &normal));
     assert_vector(normal, 1 / sqrt(3), 1 / sqrt(3), 1 / sqrt(3));
     he_mesh_free(m);
-    /* By angle it does not matter that a side is cut at the corner; counted alike, it does. */
+    /* Weighted by angle, dividing a face at the corner makes no difference; with equal weights it
+     * does. */
     m = fixture_mesh("0123,034,045,051");
     place(m, 0, 0, 0, 0);
     place(m, 1, 0, 1, 0);
@@ -121,7 +122,7 @@ static void test_geometry_dihedral_has_a_sign(void **state)
     place(m, 1, 1, 0, 0);
     place(m, 2, 0, 1, 0);
     for (int i = -8; i <= 8; i++) {
-        /* Face 103 goes down by the angle for a ridge, up for a valley. */
+        /* Face 103 is folded down by the angle for a ridge, up for a valley. */
         double wanted = i * PI / 9;
         place(m, 3, 0, -cos(wanted), -sin(wanted));
         assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
@@ -174,8 +175,8 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
     he_mesh_free(m);
 }
 
-/* Each rim edge of a cone lies beside its base of 200,000 corners: measuring the base again for
- * each would take 40 billion steps, which a run of the tests does not survive. */
+/* Each rim edge of a cone is beside its base of 200,000 corners: measuring the base again for each
+ * edge would take 40 billion steps, and the run would not end in time. */
 static void dihedrals_measure_a_face_of_many_corners_once(void **state)
 {
     (void)state;
@@ -200,7 +201,8 @@ static void dihedrals_are_refused_where_memory_is_out(void **state)
     he_mesh_free(m);
 }
 
-/* Gauss and Bonnet: what the angles at all vertices lack of 2 pi is 2 pi times euler. */
+/* Gauss and Bonnet: the sum of 2 pi minus the angles at each vertex is 2 pi times the Euler
+ * number. */
 static void test_geometry_angle_defects_sum_to_euler(void **state)
 {
     (void)state;
@@ -266,8 +268,8 @@ static void test_geometry_degenerate_faces(void **state)
     he_mesh_free(m);
 }
 
-/* Scaling by powers of two changes no bit of a normal, however far, and no bit of a length or area
- * while it fits. */
+/* Scaling by powers of two changes no bit of a normal, and no bit of a length or area that does not
+ * overflow. */
 static void test_geometry_does_not_depend_on_scale(void **state)
 {
     (void)state;
@@ -374,7 +376,8 @@ static void test_geometry_of_extreme_coordinates_is_finite(void **state)
     }
 }
 
-/* Whole-mesh functions say what those of one element say; the area vector is Newell's other sum. */
+/* Functions for the whole mesh give the results of those for one element; the area vector is
+ * Newell's other sum. */
 static void test_geometry_whole_and_single_agree(void **state)
 {
     (void)state;
@@ -493,7 +496,7 @@ static void assert_measures(const he_mesh *m, double area, double volume)
     }
 }
 
-/* How far away the far vertices of the tests below lie. */
+/* Coordinates of the far vertices in the tests below. */
 static const double far_away[] = {1e60, 1e81, 1e108, 1e160, -1e200, 1e300, DBL_MAX};
 enum { DISTANCES = sizeof far_away / sizeof *far_away };
 
@@ -512,7 +515,7 @@ static void a_far_vertex_does_not_change_the_area(void **state)
     }
 }
 
-/* A component that is only far, not large, has no area: one that is near keeps its own. */
+/* A component that is far away but small has no area; a near one keeps its own. */
 static void a_far_face_without_size_does_not_change_area_and_volume(void **state)
 {
     (void)state;
@@ -533,7 +536,7 @@ static void a_far_face_without_size_does_not_change_area_and_volume(void **state
     }
 }
 
-/* A right tetrahedron with legs `leg` has the volume leg^3 / 6, whatever that is. */
+/* A right tetrahedron with legs `leg` has the volume leg^3 / 6, whatever its size. */
 static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state)
 {
     (void)state;
@@ -560,7 +563,7 @@ static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state
     }
 }
 
-/* The distance to the origin, be it along an axis of no other use, takes no digits away. */
+/* The distance to the origin costs no digits, even along an axis that is otherwise unused. */
 static void a_small_face_far_from_the_origin_has_its_area(void **state)
 {
     (void)state;
@@ -646,7 +649,7 @@ static void test_geometry_ends_on_broken_links(void **state)
         he_mesh_free(m);
     }
     assert_true(corrupt > 1000);
-    /* A face whose links lead into a loop beside it, and a vertex that turns for ever. */
+    /* A face whose links lead into a loop beside it, and a vertex whose turn never ends. */
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     m->c.next[4] = 2;
     m->c.prev[8] = 8 ^ 1;

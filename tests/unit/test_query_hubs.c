@@ -1,5 +1,5 @@
-/* Triangles that meet where very many have a corner: the same pairs as trying each with each, in
- * steps that grow with the spokes and not with their pairs. */
+/* Triangles that meet where very many have a corner: the same pairs as by testing all pairs, in
+ * steps that grow with the number of triangles and not with its square. */
 #include "query_specimens.h"
 
 #include "geometry/meet.h"
@@ -20,7 +20,7 @@ static uint32_t below(uint64_t *seed, uint32_t most)
     return (uint32_t)(query_random(seed) % most);
 }
 
-/* --- specimens: triangles that share no vertex, only places --- */
+/* --- specimens: triangles that share no vertices, only positions --- */
 
 enum { MOST = 400 };
 
@@ -43,14 +43,14 @@ static he_vec3 around(double turn, double radius, double z)
     return (he_vec3){radius * cos(turn), radius * sin(turn), z};
 }
 
-/* A place with whole coordinates from -3 to 3. */
+/* Returns a position with whole coordinates from -3 to 3. */
 static he_vec3 on_grid(uint64_t *seed)
 {
     he_vec3 p = {(double)below(seed, 7), (double)below(seed, 7), (double)below(seed, 7)};
     return he_vec3_sub(p, (he_vec3){3, 3, 3});
 }
 
-/* A fan of n spokes: a disc, or a cone where z is not 0; wound `turns` times. */
+/* A fan of n triangles: a disc, or a cone if z is not 0; wound `turns` times. */
 static void fan(specimen *s, uint32_t n, he_vec3 hub, double z, double turns, double radius)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -61,7 +61,7 @@ static void fan(specimen *s, uint32_t n, he_vec3 hub, double z, double turns, do
     }
 }
 
-/* Spokes to places of a small grid: equal directions, folds, equal triangles, no area. */
+/* Triangles to points of a small grid: equal directions, folds, equal triangles, no area. */
 static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_flat)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -74,7 +74,7 @@ static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_
     }
 }
 
-/* Pages that share an edge, some of them twice. */
+/* Triangles that share an edge, some of them twice. */
 static void book(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -104,7 +104,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     case 0: /* a disc, or a disc that goes around more than once */
         fan(s, n, zero, 0, 1 + below(seed, 3), 1);
         break;
-    case 1: /* cones within one another */
+    case 1: /* nested cones */
         fan(s, n, zero, -1, 1, 1);
         fan(s, n, below(seed, 2) == 0 ? zero : up, -1, 1, 0.7);
         break;
@@ -124,7 +124,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
         book(s, seed, n, aside);
         fan(s, n, aside, 0.5, 2, 1);
         break;
-    default: /* hubs beside what is none */
+    default: /* hubs beside ordinary triangles */
         fan(s, n, zero, 0.1, 1, 2);
         burst(s, seed, 40, zero, false);
         litter(s, seed, 60);
@@ -132,7 +132,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     }
 }
 
-/* Turned, so that no plane lies along an axis, and moved. */
+/* Rotated, so that no plane is parallel to an axis, and moved. */
 static void turn(specimen *s, uint64_t *seed)
 {
     he_vec3 x = {uniform(seed, -1, 1), uniform(seed, -1, 1), 0.3}, y = {0.2, 0.9, -0.7};
@@ -164,7 +164,7 @@ static he_mesh *mesh_of(const specimen *s)
     return m;
 }
 
-/* --- the same pairs --- */
+/* --- equal pairs --- */
 
 static void expect_pairs(const specimen *s, uint64_t seed)
 {
@@ -214,7 +214,7 @@ static void pairs_at_a_hub_are_those_that_trying_all_finds(void **state)
     free(s);
 }
 
-/* --- in steps that grow with the spokes --- */
+/* --- steps that grow with the number of triangles --- */
 
 typedef struct searched {
     uint64_t steps;
@@ -260,8 +260,8 @@ static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
     return m;
 }
 
-/* Two hubs that share a rim take more, but less than their pairs would: boxes about the one fan lie
- * across those of the other. */
+/* Two hubs that share a rim take more steps, but fewer than all pairs: boxes around one fan overlap
+ * those of the other. */
 static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
 {
     (void)state;
@@ -282,7 +282,7 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
                          (unsigned long long)found.steps);
             }
             last = found.steps;
-            /* Charged exactly, whoever runs it, and refused one step earlier. */
+            /* Charged exactly, on every thread, and refused one step earlier. */
             assert_int_equal(search_for(m, found.steps).steps, found.steps);
             assert_true(search_for(m, found.steps).complete);
             assert_false(search_for(m, found.steps - 1).complete);
@@ -291,7 +291,7 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
     }
 }
 
-/* All triangles of one polygon hold its first corner. */
+/* All triangles of one polygon have its first corner. */
 static void a_wide_polygon_is_not_tried_with_itself(void **state)
 {
     (void)state;
@@ -347,7 +347,7 @@ static bool ask(void *context, const char *phase, double done)
     return p->calls++ < p->most;
 }
 
-/* However many pairs there are to try, what is given up ends within a known number of steps. */
+/* However many pairs there are, a cancelled search ends within a known number of steps. */
 static void a_search_at_a_hub_ends_when_it_is_given_up(void **state)
 {
     (void)state;
@@ -392,7 +392,7 @@ static void starved_hubs_say_so(void **state)
         }
         bool done = fixture_memory.calls < n;
         fixture_memory_back();
-        /* What only becomes smaller is kept where it cannot be moved. */
+        /* A block that is only to be shrunk is kept if it cannot be moved. */
         assert_true(status == HE_NO_MEMORY || (status == HE_OK && complete));
         assert_int_equal(pairs.count, 0);
         he_ids_clear(&pairs);

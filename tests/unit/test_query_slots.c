@@ -1,4 +1,4 @@
-/* Runs of slots for faces of all sizes, as they come and go. */
+/* Runs of slots for faces of all sizes, as faces are added and removed. */
 #include "query_specimens.h"
 
 #include "draw/slots.h"
@@ -13,7 +13,7 @@
 
 enum { VERTICES = 3000, FACES = 60 };
 
-/* Isolated vertices on a circle, of which faces take intervals. */
+/* Isolated vertices on a circle, between which faces take intervals. */
 typedef struct world {
     he_mesh *m;
     he_delta *delta;
@@ -96,7 +96,7 @@ static he_status advance(world *w, uint64_t most)
     return status;
 }
 
-/* Each live face has one run of its length, and what is left is dead. */
+/* Each live face has one run of its length, and all other slots are dead. */
 static void check_slots(const world *w)
 {
     const he_slots *s = w->slots;
@@ -138,7 +138,7 @@ static uint32_t owner_of(const uint32_t *owner, uint32_t slot)
     return (owner[slot] & HE_SLOT_DEAD) != 0 ? HE_NONE : owner[slot];
 }
 
-/* What differs from before is listed; of a face that has a listed slot all are. */
+/* Every difference is listed; if a slot of a face is listed, all its slots are. */
 static void check_changes(const world *w, const uint32_t *before, uint32_t count)
 {
     he_ids vertices = {0}, slots = {0};
@@ -221,7 +221,7 @@ static void test_too_many_steps_change_nothing(void **state)
     close_world(&w);
 }
 
-/* A vertex that comes to life at the origin has no record of its position. */
+/* A vertex that becomes live at the origin has no record of its position. */
 static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
 {
     (void)state;
@@ -245,7 +245,7 @@ static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
     he_mesh_free(m);
 }
 
-/* Changes are forgotten from the oldest on, and the memory for them does not grow. */
+/* The oldest changes are forgotten first, and the memory for them does not grow. */
 static void test_old_changes_are_forgotten(void **state)
 {
     (void)state;

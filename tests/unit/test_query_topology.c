@@ -1,4 +1,5 @@
-/* Pieces, holes and handles, against counting and relabelling without union-find. */
+/* Components, holes and handles, compared with counting and with relabelling instead of
+ * union-find. */
 #include "query_specimens.h"
 
 #include "query/topology.h"
@@ -20,7 +21,7 @@ static bool has_corner(const he_mesh *m, uint32_t f, uint32_t v)
 
 enum { SMALL = 64 };
 
-/* Give every face the lowest label among those it touches until nothing changes. */
+/* Gives every face the lowest label among the faces it touches until nothing changes. */
 static void label_faces(const he_mesh *m, he_connection by, uint32_t *label)
 {
     uint32_t n = he_mesh_issued(m, HE_FACE);
@@ -174,7 +175,7 @@ static void test_topology_agrees_with_counting(void **state)
     }
 }
 
-/* Squares kept at random from a grid: holes, bow-ties, islands that touch at corners. */
+/* Random squares of a grid: holes, bow-ties, islands that touch at corners. */
 static void test_topology_agrees_on_random_holes(void **state)
 {
     (void)state;
@@ -222,7 +223,7 @@ static void test_topology_by_hand(void **state)
         he_mesh *m = fixture_mesh(rows[i].faces);
         he_topology t;
         assert_int_equal(he_topology_find(m, &t, NULL), HE_OK);
-        if (rows[i].bowties == 0) { /* how fans chain at a bow-tie decides the loops there */
+        if (rows[i].bowties == 0) { /* the order of fans at a bow-tie decides the loops there */
             assert_int_equal(t.boundary_loops, rows[i].loops);
         }
         assert_int_equal(t.isolated_vertices, rows[i].isolated);

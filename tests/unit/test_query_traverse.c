@@ -1,4 +1,4 @@
-/* Walks, against distances found another way (Floyd and Warshall) and by hand. */
+/* Walks, compared with distances found in another way (Floyd and Warshall) and by hand. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -19,7 +19,7 @@ static void assert_ids(const he_ids *ids, const char *wanted)
 
 enum { SMALL = 100 };
 
-/* Distances between all vertices (or faces), INFINITY where there is no way. */
+/* Distances between all vertices (or faces), INFINITY if not connected. */
 typedef struct distances {
     double d[SMALL][SMALL];
     uint32_t n;
@@ -180,7 +180,7 @@ static void test_traverse_path(void **state)
     he_mesh *m = fixture_mesh("012,023");
     he_ids ids = {0};
     he_halfedge start = {0};
-    /* Half-edges: 0 = 0>1, 2 = 1>2, 4 = 2>0; the second face is 5 = 0>2, 6 = 2>3, 8 = 3>0. */
+    /* Half-edges: 0 = 0>1, 2 = 1>2, 4 = 2>0; the second face has 5 = 0>2, 6 = 2>3, 8 = 3>0. */
     assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 2 4 0 2");
@@ -202,13 +202,13 @@ static void test_traverse_path(void **state)
                      HE_OK);
     assert_ids(&ids, "0 2 4");
     ids.count = 0;
-    /* From 0 over the diagonal 5, to the hole's 9 = 0>3. */
+    /* From 0 across the diagonal 5, to 9 = 0>3 of the hole. */
     assert_int_equal(
         he_traverse_path(m, start, turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
         HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
-    /* Never at a hole: ends when the list has led back. */
+    /* It never meets a hole: ends when the list of steps leads back. */
     assert_int_equal(
         he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
         HE_OK);
@@ -218,7 +218,7 @@ static void test_traverse_path(void **state)
                                       0, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
-    /* The limit is in steps, and what was there stays. */
+    /* The limit is in steps, and earlier contents of the list stay. */
     assert_int_equal(he_traverse_path(m, start, next, 1, 3, HE_UNTIL_COUNT, 3, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1 0 2 4 0");
@@ -244,7 +244,7 @@ static void test_traverse_loop(void **state)
     assert_int_equal(he_traverse_loop(m, (he_halfedge){2}, &ids, NULL), HE_OK);
     assert_ids(&ids, "2 4 0");
     ids.count = 0;
-    /* The hole runs the other way round. */
+    /* The hole runs in the opposite direction. */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){1}, &ids, NULL), HE_OK);
     assert_ids(&ids, "1 9 7 3");
     assert_int_equal(he_traverse_loop(m, (he_halfedge){99}, &ids, NULL), HE_NO_SUCH_ELEMENT);
@@ -303,7 +303,8 @@ static void test_traverse_edge_loops_and_rings(void **state)
         expect_chain(m, true, e, tube ? 5 : 4, true);
     }
     he_mesh_free(m);
-    /* On a grid a loop runs from side to side, and a ring has one edge more than the cells. */
+    /* On a grid a loop runs from side to side, and a ring has one edge more than there are
+     * cells. */
     m = query_shape("grid", 4, 3, 1, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         bool along_x = m->c.origin[2 * e] / 5 == m->c.origin[2 * e + 1] / 5;
@@ -313,7 +314,7 @@ static void test_traverse_edge_loops_and_rings(void **state)
     }
     he_ids ids = {0};
     bool closed;
-    /* In order from the end behind half-edge 2e: vertices are 5 to a row. */
+    /* In order from the end behind half-edge 2e: there are 5 vertices per row. */
     uint32_t e = edge_between(m, 6, 7);
     uint32_t a = edge_between(m, 5, 6), c = edge_between(m, 7, 8), d = edge_between(m, 8, 9);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){e}, &ids, &closed, NULL), HE_OK);
@@ -326,7 +327,7 @@ static void test_traverse_edge_loops_and_rings(void **state)
     assert_ids(&ids, wanted);
     he_ids_clear(&ids);
     he_mesh_free(m);
-    /* On a cube no vertex has four edges, and each ring has four. */
+    /* On a cube no vertex has four edges, and each ring has four edges. */
     m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     for (e = 0; e < 12; e++) {
         expect_chain(m, false, e, 1, false);
@@ -371,7 +372,7 @@ static void test_traverse_refuses(void **state)
         HE_DELETED_ELEMENT);
     assert_true(closed && path.length == 5);
     assert_int_equal(a.count + b.count, 0);
-    /* An isolated vertex reaches itself. */
+    /* An isolated vertex is at distance 0 from itself. */
     assert_int_equal(
         he_traverse_shortest_path(m, (he_vertex){3}, (he_vertex){3}, HE_BY_LENGTH, &path, &err),
         HE_OK);
@@ -381,7 +382,7 @@ static void test_traverse_refuses(void **state)
     he_mesh_free(m);
 }
 
-/* Sums that a double cannot hold stay finite. */
+/* Sums that overflow a double are replaced by finite ones. */
 static void test_traverse_shortest_path_of_huge_lengths(void **state)
 {
     (void)state;
@@ -398,7 +399,7 @@ static void test_traverse_shortest_path_of_huge_lengths(void **state)
     he_mesh_free(m);
 }
 
-/* Every walk over a mesh; ids and sizes do not matter, only that they end. */
+/* Runs every walk on a mesh; only that they end matters. */
 static void walk_all(const he_mesh *m, he_status *worst)
 {
     static const he_step steps[] = {HE_STEP_NEXT, HE_STEP_TWIN, HE_STEP_PREV};
@@ -439,7 +440,7 @@ static void test_traverse_ends_on_broken_links(void **state)
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     he_ids ids = {0};
     bool closed;
-    m->c.next[m->c.next[0]] = m->c.next[0]; /* a loop that never comes back to 0 */
+    m->c.next[m->c.next[0]] = m->c.next[0]; /* a loop that never returns to 0 */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){0}, &ids, NULL), HE_CORRUPT);
     m->c.next[0] = 1000;
     he_error err = {0};
@@ -517,7 +518,7 @@ static void test_traverse_survives_failing_memory(void **state)
     he_mesh_free(m);
 }
 
-/* What a local walk asks for does not grow with the mesh. */
+/* The memory of a local walk does not grow with the mesh. */
 static void test_traverse_costs_what_it_touches(void **state)
 {
     (void)state;
