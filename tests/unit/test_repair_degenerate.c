@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* "012,230" of a soup. */
+/* Writes the faces of a soup as "012,230". */
 static void faces_of(const he_soup *soup, char *text)
 {
     for (size_t f = 0; f < soup->face_count; f++) {
@@ -23,29 +23,29 @@ static void a_face_keeps_what_has_an_area(void **state)
         const char *before, *after;
         unsigned gone, mended;
     } rows[] = {
-        /* a quad that is a triangle, wherever the vertex is that comes twice */
+        /* a quad that is a triangle, wherever the repeated vertex is */
         {"0122", "012", 0, 1},
         {"0012", "012", 0, 1},
         {"0120", "012", 0, 1},
         {"00122", "012", 0, 1},
         {"0000123", "0123", 0, 1},
-        /* spikes, there and back, at the end, at the beginning and about it */
+        /* spikes at the end, at the beginning and around it */
         {"01232", "012", 0, 1},
         {"012343", "0123", 0, 1},
         {"20123", "201", 0, 1},
         {"0123432", "012", 0, 1},
         {"30123", "3012", 0, 1},
         {"3012333", "3012", 0, 1},
-        /* nothing is left, or never was */
+        /* nothing is left, or nothing was there */
         {"011", "", 1, 0},
         {"0101", "", 1, 0},
         {"01210", "", 1, 0},
         {"0", "", 1, 0},
         {"01", "", 1, 0},
-        /* round twice: the rim of nothing */
+        /* the loop runs around twice: it has no rim */
         {"012012", "", 1, 0},
         {"01230123", "", 1, 0},
-        /* beside others, which keep their order */
+        /* among other faces, which keep their order */
         {"045,0122,11,123", "045,012,123", 1, 1},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -70,7 +70,7 @@ static void a_face_keeps_what_has_an_area(void **state)
     }
 }
 
-/* Twice the area of a triangle seen from above. */
+/* Returns twice the area of a triangle seen from above. */
 static double twice_area(const he_soup *soup, size_t f)
 {
     const uint32_t *v = soup->corners + soup->starts[f];
@@ -78,8 +78,8 @@ static double twice_area(const he_soup *soup, size_t f)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* A ring of two regular polygons of so many corners, as one face: out, along an edge to the inner
- * one, round that the other way, and back. */
+/* A ring between two regular polygons with `sides` corners, as one face: along an edge to the inner
+ * one, around it in the opposite direction, and back. */
 static void make_keyhole(he_soup *soup, uint32_t sides)
 {
     const double turn = 6.283185307179586 / sides;
@@ -130,7 +130,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
     }
 }
 
-/* Loops that touch themselves in a vertex: side by side, and one inside the other. */
+/* Loops that touch themselves at a vertex: side by side, and one inside the other. */
 static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
 {
     (void)state;
@@ -168,7 +168,7 @@ static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
     }
 }
 
-/* The rows that go round a vertex many times are refused before they are cut. */
+/* Faces that visit a vertex many times are refused before they are divided. */
 static void a_face_that_repeats_its_corners_is_left_out(void **state)
 {
     (void)state;

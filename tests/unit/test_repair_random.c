@@ -1,4 +1,5 @@
-/* Repairs beside obvious checks, on soups of every kind. SEED=n in the environment repeats a run.
+/* Repairs compared with obvious checks, on soups of every kind. SEED=n in the environment repeats a
+ * run.
  */
 #include "repair_fixture.h"
 
@@ -28,7 +29,7 @@ static bool is_near(he_vec3 a, he_vec3 b, double tolerance)
                                  1;
 }
 
-/* As the header says it, comparing each with each. */
+/* Checks the weld as the header defines it, comparing all pairs. */
 static void expect_welded(const he_soup *soup, double tolerance)
 {
     he_soup copy;
@@ -103,7 +104,7 @@ static void welding_is_what_comparing_all_would_do(void **state)
 
 /* --- soups of every kind --- */
 
-/* Faces over few vertices: mostly triangles that walk on from the one before. */
+/* Faces over few vertices: mostly triangles that continue from the one before. */
 static void random_soup(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};
@@ -154,7 +155,7 @@ static bool is_degenerate(const he_soup *soup, size_t f)
     return end - begin < 3;
 }
 
-/* Turned to any corner, either way round. */
+/* Do the two faces have equal corners, from any corner on, in either direction? */
 static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
 {
     uint32_t n = he_soup_end(soup, f) - soup->starts[f];
@@ -174,7 +175,7 @@ static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
     return found;
 }
 
-/* A loop without what repeats in a row, and without spikes: whatever is found first goes first. */
+/* Removes repeated neighbours and spikes from a loop, in the order in which they are found. */
 static uint32_t reduce(uint32_t *loop, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -189,7 +190,7 @@ static uint32_t reduce(uint32_t *loop, uint32_t n)
     return n;
 }
 
-/* Edges as loops run along them, from one end to the other. */
+/* The edges of loops, with both ends. */
 typedef struct runs {
     uint32_t ends[32][2];
     uint32_t count;
@@ -222,7 +223,7 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* What runs both ways apart, both run along the same edges. */
+/* Apart from edges used in both directions, both must use the same edges. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -233,7 +234,7 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* The faces from `at` on that face f of the soup became: how many? */
+/* Checks the faces from `at` on that replaced face f of the soup; returns their number. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {
@@ -259,7 +260,7 @@ static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
     return made;
 }
 
-/* `out` is to be cleared. */
+/* The caller clears `out`. */
 static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cut)
 {
     he_repaired done = {0};
@@ -287,7 +288,7 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
     he_repaired_clear(&done);
 }
 
-/* Drops degenerate faces first: they may be duplicates too. */
+/* Drops degenerate faces first, because they may be duplicates, too. */
 static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;
@@ -315,7 +316,7 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* How often faces run along a-b in each direction. */
+/* Counts the faces that run along a-b in each direction. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;
@@ -329,8 +330,8 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
     }
 }
 
-/* Is there a way of turning the faces so that those of edges with two agree? Twice the faces, kept
- * and turned, in classes: a face must not be in the class of its own turned self. */
+/* Can the faces be reversed so that all edges with two faces agree? Each face is entered twice,
+ * kept and reversed, in classes: no face may be in the class of its reverse. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;
@@ -392,7 +393,7 @@ static void expect_oriented(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Splitting leaves no bow-tie, and joined what was joined by an edge of two opposite faces. */
+/* Splitting leaves no bow-tie, and keeps joined what an edge of two opposite faces joins. */
 static void expect_split(const he_soup *soup)
 {
     he_soup copy, again;
@@ -426,7 +427,7 @@ static void expect_split(const he_soup *soup)
     he_soup_clear(&again);
 }
 
-/* Whatever is asked for first: where it is refused, the set that is named then lets it pass. */
+/* Whatever is requested first: if it is refused, the named set of repairs makes it pass. */
 static void expect_advice(const he_soup *soup, unsigned asked)
 {
     he_soup copy;

@@ -1,10 +1,10 @@
-/* split: what is closed, and wound consistently, stays closed. */
+/* split: a closed, consistently oriented surface stays closed. */
 #include "repair_fixture.h"
 
 #include "model/random.h"
 #include "seed.h"
 
-/* Split and checked: closed, with the faces there were. */
+/* Splits and checks that the result is closed, with all faces. */
 static void expect_closed(const he_soup *soup)
 {
     he_repaired done = {0};
@@ -16,15 +16,15 @@ static void expect_closed(const he_soup *soup)
     he_repaired_clear(&done);
 }
 
-/* Each closed by itself or with another, with edges of four faces: paired in their order, two pairs
- * of each lie between the same fans. */
+/* Surfaces that are closed alone or together, with edges of four faces. If faces were paired in
+ * their order, two pairs would lie between the same fans. */
 static void pairs_between_the_same_fans_exchange_partners(void **state)
 {
     (void)state;
     static const char *const rows[] = {
-        /* a tetrahedron, and itself inside out */
+        /* a tetrahedron and its reverse */
         "031,123,320,321,130,210,023,201",
-        /* two pillows of two triangles, the second's in the other order */
+        /* two pillows of two triangles, the second in reverse order */
         "012,013,103,102",
         /* three, in a circle */
         "012,013,014,103,104,102",
@@ -77,7 +77,7 @@ static void random_closed_soups_stay_closed(void **state)
     }
 }
 
-/* Pillows in a circle about one edge: at first all their pairs lie between the same two fans. */
+/* Pillows around one edge: at first all their pairs lie between the same two fans. */
 static void an_edge_of_very_many_faces_takes_no_longer(void **state)
 {
     (void)state;

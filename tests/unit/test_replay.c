@@ -1,5 +1,5 @@
-/* A copy that travels along a log of edits is, at every point of it, the mesh as it was then:
- * links, positions, columns that came, went and came back, whole contents that were replaced. */
+/* A copy that travels along a log of edits equals the mesh of each point: links, positions, columns
+ * that were added, removed and restored, replaced contents. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -56,8 +56,8 @@ static void test_every_point_of_a_log_can_be_reached(void **state)
     }
 }
 
-/* A column that came lives in the mesh and nowhere else: a copy that was made before cannot have
- * it from the delta. */
+/* A column that was added is owned by the mesh alone: a copy made before cannot get it from the
+ * delta. */
 static void test_what_the_mesh_holds_cannot_be_had_from_the_delta(void **state)
 {
     (void)state;
@@ -94,7 +94,7 @@ static void test_every_allocation_may_fail(void **state)
         }
         failed = allocation_failed();
         fail_allocation(0);
-        /* A mesh without slack may refuse to be grown; nothing else goes wrong. */
+        /* A mesh without spare capacity may refuse to grow; nothing else may fail. */
         assert_true(status == HE_OK || (failed && status == HE_NO_MEMORY));
         if (status == HE_OK) {
             assert_true(he_mesh_equal(he_replay_mesh(replay), h->mesh));

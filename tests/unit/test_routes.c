@@ -1,4 +1,4 @@
-/* Dispatch and the frame about every handler, with a store that holds one mesh, "m". */
+/* Dispatch and everything around a handler, with a store that holds one mesh, "m". */
 #include "api/describe/routes.h"
 #include "api/request/exchange.h"
 #include "query/adjacency.h"
@@ -65,7 +65,7 @@ typedef struct sent {
     const char *body;    /* NULL: none */
 } sent;
 
-/* The values of a list of headers; they are borrowed until api_free. */
+/* The values of a list of headers, which must live until api_free. */
 typedef struct header_list {
     char value[API_REQUEST_HEADERS][256];
 } header_list;
@@ -236,14 +236,14 @@ static const struct {
     {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
     {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
-    /* A form may send no body, of a type that asks nobody. */
+    /* A form may send no body, but with a type for which browsers do not ask the server first. */
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", ""}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/redo", "Content-Type: application/x-www-form-urlencoded", NULL},
      415,
      "unsupported_media_type"},
-    /* what pages of other sites may ask for */
+    /* what pages of other sites may request */
     {{"GET /v1/meshes/m/check", OTHER_SITE, NULL}, 403, "foreign_origin"},
     {{"HEAD /v1/meshes/m/check", OTHER_SITE, NULL}, 403, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: Cross-Site", NULL}, 403, "foreign_origin"},
@@ -255,7 +255,7 @@ static const struct {
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-origin", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-site", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: none", NULL}, 200, NULL},
-    /* The upload's cap is 100 bytes here. */
+    /* The maximum upload is 100 bytes here. */
     {{"POST /v1/meshes", JSON,
       "{\"name\":\"012345678901234567890123456789012345678901234567890123456789012345678901234567"
       "8901234567890123456789\"}"},
@@ -544,7 +544,7 @@ static void documents_of_the_tables_are_json(void **state)
     }
 }
 
-/* What the table promises of its own rows. */
+/* Consistency of the table's rows. */
 static void rows_are_whole(void **state)
 {
     (void)state;
@@ -637,7 +637,7 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
     }
 }
 
-/* The answer is whole whatever allocation fails, or there is no exchange at all. */
+/* The answer is complete whichever allocation fails, or there is no exchange at all. */
 static void every_failed_allocation_is_answered(void **state)
 {
     (void)state;
@@ -660,7 +660,7 @@ static void every_failed_allocation_is_answered(void **state)
             assert_true(x != NULL || !good);
             if (x != NULL && !good && api_answer_of(x)->status != 507 &&
                 api_answer_of(x)->status >= 400) {
-                /* The refusal that was due anyhow is as good. */
+                /* The refusal that the request gets anyway is also correct. */
                 assert_true(api_answer_of(x)->length > 0);
             }
             assert_true(x == NULL || api_answer_of(x)->status >= 200);

@@ -138,7 +138,7 @@ static void test_shape_open_cylinder_has_two_loops_of_six(void **state)
     he_mesh_free(m);
 }
 
-/* Every row: its size is what it fills, it builds, and its faces look outwards or up. */
+/* Every row: it has the requested size, it builds, and its faces look outwards or up. */
 static void test_shape_every_row(void **state)
 {
     (void)state;

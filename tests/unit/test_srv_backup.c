@@ -1,4 +1,4 @@
-/* Backups of a store and their way back (core/journal/sqlite/sqlite_backup.h). */
+/* Backups of a store, and restoring them (core/journal/sqlite/sqlite_backup.h). */
 #include "tests/pace.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
@@ -28,7 +28,7 @@ static int make_folders(void **state)
     return 0;
 }
 
-/* The folders that a restore leaves, too. */
+/* Removes the folders that a restore leaves, too. */
 static void remove_befores(void)
 {
     DIR *dir = opendir(folder);
@@ -88,7 +88,7 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
     return status;
 }
 
-/* A mesh "a" with so many edits, closed. */
+/* A closed store with a mesh "a" and this many edits. */
 static kept_mesh make_store(unsigned edits)
 {
     told_journal told;
@@ -128,7 +128,7 @@ static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
     }
     kept_mesh other = new_mesh("b");
     told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
-    /* Not while a daemon has it. */
+    /* A restore is refused while a daemon uses the store. */
     assert_false(st_sqlite_restore(folder, backup, before, message));
     assert_non_null(strstr(message, "in use by process"));
     told_end(&told);
@@ -159,7 +159,7 @@ static bool count_key(void *context, const st_kept_key *key)
     assert_string_equal(key->key.text, "a key");
     assert_string_equal(key->id, "a");
     assert_true(key->key.digest[1] == 8);
-    /* The key no longer names the state that its request made: that state may be gone. */
+    /* The key no longer names the state that its request made, because that state may be gone. */
     assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
     return true;
 }
@@ -260,13 +260,13 @@ static void a_backup_takes_the_place_of_no_file_of_a_store(void **state)
                        names[i]);
         expect_no_backup(path, "of a store");
     }
-    /* By another name. */
+    /* Through another path to the same file. */
     (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
     (void)snprintf(linked, sizeof linked, "%s/linked", aside);
     assert_int_equal(symlink(path, linked), 0);
     expect_no_backup(linked, "hedge.db of a store");
     assert_int_equal(unlink(linked), 0);
-    /* Under a name of its own it may lie beside. */
+    /* With a name of its own it may be in the store's folder. */
     (void)snprintf(path, sizeof path, "%s/of today.db", folder);
     for (int again = 0; again < 2; again++) {
         if (!st_sqlite_backup(folder, path, message)) {
@@ -295,7 +295,7 @@ static void a_backup_goes_under_no_log(void **state)
     }
 }
 
-/* A -wal that kill -9 left behind is not replayed onto the restored file. */
+/* A -wal file left by kill -9 is not replayed onto the restored file. */
 static void a_log_left_behind_stays_with_its_database(void **state)
 {
     (void)state;
@@ -331,7 +331,8 @@ static void move(const char *from, const char *to)
     (void)rename(a, b);
 }
 
-/* Each state that an interruption leaves, made by hand, is ended by the next start. */
+/* Each state that an interruption can leave is made by hand; the next start completes the
+ * restore. */
 static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
 {
     (void)state;
@@ -365,7 +366,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
         }
         expect_records(1, &incarnation);
         open_store(&told);
-        /* Without the note nothing was decided yet: the store is the one there was. */
+        /* Before the note is written nothing is decided: the old store is kept. */
         assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
         told_end(&told);
         char path[2 * FOLDER_PATH];
@@ -379,7 +380,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
     }
 }
 
-/* A journal that a killed restore left would put its pages, here a first one of zeros, into the
+/* A journal that a killed restore left would write its pages (here a first page of zeros) into the
  * next copy. */
 static void what_a_killed_restore_left_is_not_played_into_the_next(void **state)
 {

@@ -1,5 +1,5 @@
-/* The board of jobs with real threads: memory comes back when a job is cancelled, an end is shown
- * when it is durable, and a stop ends everything. */
+/* The table of jobs with real threads: cancelling a job frees its memory, an end is shown when it
+ * is durable, and a stop ends everything. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -27,7 +27,7 @@ static st_pool *pool;
 static api_job_table *jobs;
 static api_service *service;
 
-static const char *key; /* of the requests; NULL: none */
+static const char *key; /* Idempotency-Key of the requests; NULL: none */
 
 static bool submit(void *context, const st_task *task)
 {
@@ -62,7 +62,7 @@ static int start(void **state)
     return 0;
 }
 
-/* Nothing becomes durable before the test says so. */
+/* Nothing becomes durable until the test says so. */
 static int start_behind(void **state)
 {
     (void)state;
@@ -80,7 +80,7 @@ static int stop(void **state)
     return 0;
 }
 
-/* 202; the job's id goes to `id`. */
+/* Expects 202; writes the job's id to `id`. */
 static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
 {
     api_request request = {.method = "POST",
@@ -126,7 +126,7 @@ static api_job wait_for(const char *id, api_job_state state)
     return job;
 }
 
-/* How many values of a job's progress are seen before it has ended. */
+/* Returns how many values of a job's progress are seen before it ends. */
 static size_t watch_a_job(void)
 {
     char id[API_JOB_ID + 1];
@@ -142,7 +142,7 @@ static size_t watch_a_job(void)
     return values;
 }
 
-/* Where other programs want the processor, a job may end between two looks: it is watched again. */
+/* On a busy machine a job may end between two reads: the test then tries again. */
 static void progress_is_seen_and_never_falls(void **state)
 {
     (void)state;
@@ -154,7 +154,7 @@ static void progress_is_seen_and_never_falls(void **state)
     print_message("note: %zu values seen\n", values);
 }
 
-/* False where it was done before it could be cancelled. */
+/* Returns false if the job ended before it could be cancelled. */
 static bool cancel_at(int percent)
 {
     char id[API_JOB_ID + 1];
@@ -175,7 +175,7 @@ static bool cancel_at(int percent)
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
     assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
-    /* The pool's thread gives its hold of the job back last. */
+    /* The pool's thread releases its reference to the job last. */
     while (st_memory_used() != before) {
         assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
     }
@@ -214,7 +214,7 @@ static void an_end_is_shown_when_it_is_durable(void **state)
     do {
         job = look(first);
     } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
-    /* A refusal may be about what is not durable: it waits like any answer. */
+    /* A refusal may depend on something that is not durable, so it waits like any answer. */
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
     while (strcmp(look(second).phase, "storing") != 0) {
     }
@@ -379,9 +379,9 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
 
 #define BOARD_TEST(f) cmocka_unit_test_setup_teardown(f, start, stop)
 
-/* --- notes --- */
+/* --- records of jobs --- */
 
-static st_status refuses; /* what a note is answered */
+static st_status refuses; /* result of recording */
 static unsigned notes;
 
 static st_status take_note(void *self, const st_note *what, uint64_t *position)
@@ -403,7 +403,7 @@ static int start_noting(void **state)
     return 0;
 }
 
-/* A disk that is behind refuses the job; one that takes nothing any more leaves it to memory. */
+/* A journal that is behind refuses the job; with a full disk the job is kept in memory only. */
 static void a_job_that_cannot_be_noted(void **state)
 {
     (void)state;
@@ -424,7 +424,7 @@ static void a_job_that_cannot_be_noted(void **state)
         }
         assert_int_equal(notes, refuses == ST_OK ? 2 : 0);
     }
-    /* What was noted is not forgotten before that is noted too. */
+    /* A recorded job is not deleted before the deletion is recorded, too. */
     refuses = ST_OK;
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     (void)wait_for(id, API_JOB_DONE);

@@ -1,4 +1,5 @@
-/* Options: flag over environment over default, and every refusal in a sentence. */
+/* Options: a flag overrides the environment, which overrides the default; every refusal is a
+ * sentence. */
 #include "tests/unit/fixture.h"
 
 #include "server/config.h"
@@ -186,7 +187,7 @@ static void test_actions(void **state)
     assert_true(READ(&config, "-V"));
     assert_true(config.version);
     srv_config_clear(&config);
-    /* Actions are not for the environment, which is the same for every command. */
+    /* Actions cannot be set in the environment, which is shared by all commands. */
     static const char *const set[] = {"HEDGE_HELP", "1", NULL};
     variables = set;
     assert_true(read_words(&config, (const char *const[]){NULL}));
@@ -194,7 +195,8 @@ static void test_actions(void **state)
     srv_config_clear(&config);
 }
 
-/* What --print-config shows is taken again and gives the same; --help names every option of it. */
+/* The output of --print-config is a valid file that gives the same settings; --help names every
+ * option in it. */
 static void test_print_and_help(void **state)
 {
     (void)state;
@@ -235,7 +237,7 @@ static void test_print_and_help(void **state)
     assert_string_equal(printed, twice);
 }
 
-/* A file of settings, read with these words and variables after it. */
+/* Reads a file of settings, with these words and variables in addition. */
 static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
 {
     char path[] = "/tmp/settings-XXXXXX";
@@ -372,7 +374,7 @@ static void a_choice_is_one_of_its_words(void **state)
     }
 }
 
-/* So that the refusal itself is written in it. */
+/* The refusal itself is written in this format. */
 static void the_format_of_the_log_outlives_a_refusal(void **state)
 {
     (void)state;

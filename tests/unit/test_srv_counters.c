@@ -1,4 +1,4 @@
-/* Counters and histograms: nothing that several threads add at once is lost. */
+/* Counters and histograms: nothing that several threads add at the same time is lost. */
 #include "tests/unit/fixture.h"
 
 #include "api/metric/metric_page.h"

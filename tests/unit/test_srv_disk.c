@@ -1,5 +1,5 @@
-/* A store on a disk, while memory or the disk is out: each request is whole or not at all, what was
- * lost is told however late, and nobody is stopped for good. */
+/* A store on a disk, without memory or disk space: each request is done completely or not at all,
+ * what was lost is reported however late, and no thread is blocked for ever. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -60,7 +60,7 @@ static st_mesh *load(const char *id)
     return mesh;
 }
 
-/* Vertex 0 says which revision put it where it is. */
+/* The position of vertex 0 shows which revision put it there. */
 static st_status edit(st_mesh *mesh, st_mesh_info *info)
 {
     const uint32_t vertex = 0;
@@ -99,7 +99,7 @@ static st_status disk_status(void)
     return health.status;
 }
 
-/* --- memory: the N-th request for it fails --- */
+/* --- memory: the N-th allocation fails --- */
 
 static _Atomic long calls, fails_at;
 
@@ -113,7 +113,7 @@ static void *failing_resize(void *context, void *memory, size_t size)
     return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
 }
 
-/* 0: none fails. The hook itself is set while the journal's thread does not run. */
+/* 0: none fails. The hook itself is set while the journal's thread is not running. */
 static void fail_memory_at(long n)
 {
     atomic_store(&calls, 0);
@@ -128,10 +128,10 @@ static bool was_done(st_status status)
 
 typedef struct did {
     bool made;
-    uint64_t revision; /* of m; 0: it was not changed */
+    uint64_t revision; /* of m; 0: m was not changed */
 } did;
 
-/* Loads m, which is on the disk alone, reads and changes it, makes n and lists both. */
+/* Loads m, which is on the disk only, reads and changes it, makes n and lists both. */
 static void use_all(did *out)
 {
     st_mesh *mesh = NULL, *made = NULL;
@@ -163,7 +163,7 @@ static void use_all(did *out)
     assert_int_equal(disk_status(), ST_OK);
 }
 
-/* What was said to be done is there, and nothing else. */
+/* Everything that was reported as done must be there, and nothing else. */
 static void compare(const did *done)
 {
     open_store();
@@ -177,7 +177,7 @@ static void compare(const did *done)
     close_store();
 }
 
-/* The start, which asks for memory most often, is in test_srv_journal_faults.c. */
+/* The start, which allocates most often, is tested in test_srv_journal_faults.c. */
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;
@@ -218,8 +218,8 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* The handler is stopped after its commit, sleeps through the disk being full and others' writes
- * after that, and only then asks whether its answer may be sent. */
+/* The handler is stopped after its commit. Meanwhile the disk is full and then accepts other
+ * writes; only then the handler asks whether its answer may be sent. */
 static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **state)
 {
     (void)state;
@@ -244,7 +244,7 @@ static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **
     while (disk_status() == ST_FULL) {
         sched_yield();
     }
-    /* The same revision, by another. */
+    /* Another request makes a revision with this number. */
     st_mesh *again = load("m");
     assert_int_equal(revision_of(again), 1);
     assert_int_equal(edit(again, &info), ST_OK);
@@ -312,7 +312,8 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* Everything that the budget has left; how many blocks. Again and again: others free some. */
+/* Takes all memory that the budget has left; returns the number of blocks. It tries repeatedly,
+ * because other threads free some. */
 static size_t take_all(void **blocks, size_t count)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {

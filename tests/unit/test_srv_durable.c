@@ -1,6 +1,7 @@
-/* Writers, readers and listeners of a few meshes that come and go, over a journal that lags, and
- * whose disk is full now and then: nothing is shown before the journal has it, groups of records
- * are whole, what is lost is not shown, and nothing durable stands on what was lost. */
+/* Writers, readers and listeners of a few meshes that are created and deleted, on a journal that
+ * lags and whose disk is sometimes full: nothing is shown before the journal has it, groups of
+ * records are complete, lost changes are not shown, and nothing durable depends on a lost
+ * change. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -27,7 +28,7 @@ static const char *const ids[MESHES] = {"a", "b", "c"};
 
 /* --- the journal --- */
 
-/* A record at its position, which is its place here. */
+/* A record; its index here is its position. */
 typedef struct note {
     uint64_t incarnation, number, revision;
     uint64_t group; /* position of the last record of its group */
@@ -38,15 +39,15 @@ static struct {
     pthread_mutex_t lock;
     note notes[NOTES + 1];
     uint64_t newest;
-    bool losing;              /* what is appended is lost, and nothing is admitted */
-    size_t out;               /* rooms */
-    uint64_t removed[MESHES]; /* position of the last removal of an id */
+    bool losing;              /* appended records are lost, and no more are accepted */
+    size_t out;               /* rooms that exist */
+    uint64_t removed[MESHES]; /* position of the last deletion of an id */
     _Atomic uint64_t durable;
     st_journal_listener listener;
 } journal = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 static _Atomic bool writing;
-static _Atomic int broken; /* a line of this file */
+static _Atomic int broken; /* line of this file where a check failed */
 
 static void expect_at(bool good, int line)
 {
@@ -134,7 +135,8 @@ static void lose(uint64_t from, uint64_t to)
 
 static _Atomic size_t incidents;
 
-/* All that is queued is lost, and what comes in rooms that are out; returns how far. */
+/* Loses everything in the queue, and what arrives in existing rooms; returns up to which
+ * position. */
 static uint64_t fill_up(uint64_t at)
 {
     pthread_mutex_lock(&journal.lock);
@@ -156,7 +158,7 @@ static uint64_t fill_up(uint64_t at)
     return at;
 }
 
-/* Groups become durable whole. */
+/* Groups become durable as a whole. */
 static void *lag_behind(void *context)
 {
     md_random *random = context;
@@ -183,7 +185,7 @@ static void *lag_behind(void *context)
     return NULL;
 }
 
-/* --- what must be durable, by the journal's own notes --- */
+/* --- what must be durable, according to the journal --- */
 
 static uint64_t position_of_record(uint64_t incarnation, uint64_t number)
 {
@@ -220,7 +222,7 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
 
 typedef struct answer {
     st_wait wait;
-    uint64_t needs[MESHES]; /* the newest records it shows */
+    uint64_t needs[MESHES]; /* the newest records that it shows */
     _Atomic bool over;
 } answer;
 
@@ -401,7 +403,7 @@ static void read_one(worker *w)
     if (!info.removed) {
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
-        /* The last removal before the search is what it shows, or a later one. */
+        /* It shows the last deletion before the search, or a later one. */
         bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
         const uint64_t needs[MESHES] = {shows ? removed : 0};
         send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
@@ -445,7 +447,8 @@ static void wake(void *context)
 
 static _Atomic size_t events;
 
-/* Until the mesh is removed, or the run ends; false where there is nothing to read now. */
+/* Listens until the mesh is deleted, or the run ends; returns false if there is nothing to read
+ * now. */
 static bool hear(st_listener *listener, bool *ended)
 {
     told event;
@@ -499,8 +502,8 @@ static void *listen_some(void *context)
 
 /* --- the run --- */
 
-/* A mesh's records are numbered without a gap in the order of positions, and none is kept after one
- * that was lost. */
+/* The records of a mesh are numbered without gaps in the order of positions, and none is kept after
+ * a lost one. */
 static void expect_order(void)
 {
     for (uint64_t at = 1; at <= journal.newest; at++) {
@@ -570,7 +573,7 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     }
     pthread_join(lagging, NULL);
 
-    /* The rest is lost, and what showed it was not sent. */
+    /* The rest is lost, and answers that showed it were not sent. */
     advance(fill_up(atomic_load(&journal.durable)));
     assert_int_equal(journal.out, 0);
     size_t made = 0;

@@ -1,5 +1,5 @@
-/* Meshes leave memory and come back while threads find, change, make, remove and list them: each is
- * loaded once for all who ask for it, and nothing is lost or doubled. */
+/* Meshes leave memory and are loaded again while threads find, change, create, delete and list
+ * them: each is loaded once for all threads that need it, and nothing is lost or doubled. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/dense.h"
@@ -44,7 +44,7 @@ static void expect(bool good)
     }
 }
 
-/* Everything that nobody uses goes. */
+/* Evicts every mesh that is not in use. */
 static void evict(void)
 {
     st_make_room(store, BUDGET - BUDGET / 16);
@@ -64,7 +64,7 @@ static void make(const char *id)
     }
 }
 
-/* Each edit puts vertex 0 where it says which revision it made. */
+/* Each edit moves vertex 0 to a position that shows its revision. */
 static bool is_whole(const he_mesh *m, uint64_t revision)
 {
     double x = he_position(m, (he_vertex){0}).x;
@@ -257,7 +257,7 @@ static void what_is_used_stays_in_memory(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* The oldest go, and no more than are needed. */
+/* The meshes used longest ago are evicted, and no more than needed. */
 static void the_least_recently_used_go_first(void **state)
 {
     (void)state;
@@ -271,7 +271,7 @@ static void the_least_recently_used_go_first(void **state)
     for (int i = 0; i < MANY; i++) {
         atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
     }
-    /* An eighth is to be free: about as much as one of them holds. */
+    /* An eighth must become free: about as much as one of them takes. */
     st_memory_set_budget(st_memory_used());
     st_make_room(store, 0);
     st_memory_set_budget(BUDGET);
@@ -305,11 +305,11 @@ static void for_what_never_fits_nothing_goes(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- what is asked for by a request --- */
+/* --- memory needed by a request --- */
 
 enum { LARGE = 1 << 20, SIDE = 128 };
 
-/* A store whose meshes hold memory that is all but used up. */
+/* A store whose meshes use almost all memory. */
 static void open_full(void)
 {
     st_memory_install(BUDGET);
@@ -353,7 +353,7 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     assert_non_null(memory);
     const size_t left = in_memory();
     assert_true(left < MESHES);
-    /* What could never fit frees nothing. */
+    /* A request that could never fit evicts nothing. */
     assert_null(he_mem_alloc(st_memory_budget()));
     assert_int_equal(in_memory(), left);
     st_store_serve(NULL);
@@ -361,7 +361,7 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     close_full();
 }
 
-/* Under any lock it is refused, sooner or later: there is nothing to wait for. */
+/* Under a lock the request is refused, and not delayed: there is nothing to wait for. */
 static void a_request_under_locks_is_not_stopped(void **state)
 {
     (void)state;
@@ -377,7 +377,7 @@ static void a_request_under_locks_is_not_stopped(void **state)
     const size_t before = in_memory();
     void *first = he_mem_alloc(LARGE), *second = he_mem_alloc(LARGE);
     assert_true(first != NULL && second != NULL && in_memory() < before);
-    /* The mesh that is written to stays. */
+    /* The mesh that is being written stays. */
     st_mesh *found = NULL;
     assert_int_equal(st_find(store, "a", &found), ST_OK);
     st_release(found);
@@ -400,7 +400,7 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     assert_int_equal(in_memory(), MESHES - 1);
     st_mesh *mesh = NULL;
     assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
-    /* With room enough all stay. */
+    /* With enough memory all stay. */
     st_memory_set_budget(BUDGET);
     for (size_t i = 0; i < store->count; i++) {
         atomic_store(&store->meshes[i]->used, 1);
@@ -410,8 +410,8 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     close_full();
 }
 
-/* What the process holds beside counted blocks: here a mapping, in a daemon its program and the
- * holes between blocks. */
+/* Resident memory besides counted blocks: here a mapping, in a daemon its program and the holes
+ * between blocks. */
 static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state)
 {
     (void)state;
@@ -429,17 +429,17 @@ static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state
     memset(beside, 1, BESIDE);
     st_make_room(store, 0);
     st_store_rest(store);
-    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* nobody measures */
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* without a measurement */
     st_release(mesh);
     st_resident_watch();
-    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* never more */
+    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* it is limited to this */
     st_make_room(store, 0);
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
 
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
     st_store_rest(
-        store); /* resident bytes are beyond the budget: it need not have been cold long */
+        store); /* resident bytes exceed the budget, so recently used meshes are evicted, too */
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);

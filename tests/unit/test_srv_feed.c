@@ -1,5 +1,5 @@
-/* A feed: everybody reads everything in order, nobody what is not allowed, and who is slow is told
- * so and costs nothing. */
+/* The broadcast queue: every listener reads all messages in order, and none that is not released; a
+ * slow listener is told so and costs nothing. */
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
@@ -38,7 +38,7 @@ static void join(st_listener *listener, unsigned *wakes)
     st_queue_wake(listener, count_wake, wakes);
 }
 
-/* A message that says its stamp. */
+/* Adds a message that contains its stamp. */
 static void add(uint64_t stamp, uint64_t key)
 {
     char text[32];
@@ -76,7 +76,7 @@ static void everybody_reads_everything_once(void **state)
     join(&late, &late_wakes);
     add(9, 5);
     st_queue_allow(&feed, 9);
-    assert_int_equal(early_wakes, 0); /* it does not wait yet */
+    assert_int_equal(early_wakes, 0); /* it is not waiting yet */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
@@ -108,7 +108,7 @@ static void what_is_not_allowed_is_not_read(void **state)
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
     st_queue_end(&feed);
-    assert_step(&listener, ST_QUEUE_WAIT); /* the end, too, is not allowed yet */
+    assert_step(&listener, ST_QUEUE_WAIT); /* the end, too, is not released yet */
     st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
     assert_step(&listener, ST_QUEUE_ENDED);
@@ -128,7 +128,7 @@ static void what_is_beside_a_message_comes_after_it(void **state)
     add(8, 4);
     st_queue_add_beside(&feed, "b;", 2);
     st_queue_add_beside(&feed, "c;", 2);
-    assert_reads(&listener, "a;"); /* what is beside 8 shows it */
+    assert_reads(&listener, "a;"); /* a message after position 8 releases it */
     assert_int_equal(wakes, 1);
     add(9, 5);
     st_queue_allow(&feed, 9);
@@ -165,7 +165,7 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* Not even where to go on may be told. */
+    /* Not even the position to continue from may be shown. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
     assert_step(&slow, ST_QUEUE_BEHIND);
@@ -198,10 +198,10 @@ static void bytes_are_bounded_too(void **state)
         assert_true(feed.bytes <= ST_QUEUE_BYTES);
     }
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
-    st_queue_shed(&feed); /* somebody listens */
+    st_queue_shed(&feed); /* there is a listener */
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
     st_queue_leave(&slow);
-    assert_true(st_queue_is_followed(&feed)); /* until lately */
+    assert_true(st_queue_is_followed(&feed)); /* there was one until recently */
     st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
     assert_int_equal(feed.bytes, 0);
@@ -214,7 +214,7 @@ static void a_listener_goes_back_to_a_key(void **state)
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
-    add(9, 4); /* beside the revision */
+    add(9, 4); /* a message without a revision */
     add(10, 5);
     st_queue_allow(&feed, 10);
     assert_true(st_queue_rewind(&listener, 3));
@@ -307,7 +307,7 @@ static void wait_for_wake(reader *r)
     pthread_mutex_unlock(&r->lock);
 }
 
-/* A message is a stamp of eight bytes; a buffer holds whole ones. */
+/* A message is a stamp of eight bytes; a buffer holds complete ones. */
 static void take(reader *r, const char *bytes, size_t length)
 {
     for (size_t at = 0; at < length; at += sizeof(uint64_t)) {

@@ -1,5 +1,5 @@
-/* Where the target, the body and the headers of a request are, and requests that are for somebody
- * else. What makes a request ambiguous or too large is found in its bytes: test_srv_syntax.c. */
+/* Finding target, body and headers of a request, and requests for other servers. Ambiguous and too
+ * large requests are found in their bytes: test_srv_syntax.c. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/syntax/http_framing.h"

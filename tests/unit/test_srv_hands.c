@@ -1,4 +1,5 @@
-/* Work in parts: each is run once, whoever runs it, and what comes out does not tell who did. */
+/* Parallel work: each part is run once, on whichever thread, and the result does not depend on
+ * that. */
 #include "tests/unit/fixture.h"
 
 #include "algo/subdivide.h"
@@ -19,8 +20,8 @@ enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
 
 typedef struct tally {
     _Atomic uint32_t runs[PARTS];
-    const he_exec *exec; /* with it each part is cut into parts again */
-    uint32_t failing;    /* this part and all that follow */
+    const he_exec *exec; /* with it each part is divided into parts again */
+    uint32_t failing;    /* this part and all later ones fail */
 } tally;
 
 static he_status count_part(void *context, uint32_t part, he_error *err)
@@ -106,7 +107,7 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
     }
 }
 
-/* --- giving up -------------------------------------------------------------------------------- */
+/* --- cancelling ------------------------------------------------------------------------------ */
 
 typedef struct listener {
     pthread_t owner;
@@ -140,9 +141,9 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
     }
 }
 
-/* --- what core makes with it ------------------------------------------------------------------ */
+/* --- what core computes in parallel ---------------------------------------------------------- */
 
-/* Soups large enough for many parts; vertices and faces are in no order where `shuffled`. */
+/* Soups large enough for many parts; vertices and faces are in random order if `shuffled`. */
 enum { SIDE = 220 };
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
@@ -170,7 +171,7 @@ static void add_torus(he_soup *soup, bool shuffled)
     }
 }
 
-/* Quads and pentagons with holes in them, and a fan of triangles about one vertex. */
+/* Quads and pentagons with holes in them, and a fan of triangles around one vertex. */
 static void add_mixed(he_soup *soup)
 {
     for (uint32_t v = 0; v < (SIDE + 1) * (SIDE + 1) + 2 * SIDE * SIDE; v++) {
@@ -231,7 +232,7 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* Normals of all faces, then of all corners; the caller frees them. */
+/* Returns the normals of all faces, then of all corners; the caller frees them. */
 static he_vec3 *normals_of(const he_mesh *mesh, he_watch *watch)
 {
     size_t faces = he_mesh_issued(mesh, HE_FACE),
@@ -245,7 +246,7 @@ static he_vec3 *normals_of(const he_mesh *mesh, he_watch *watch)
 
 enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
 
-/* What becomes of a mesh by a scheme; loop refuses other faces than triangles and names one. */
+/* The result of a scheme; loop refuses faces other than triangles and names one. */
 typedef struct subdivided {
     he_mesh *mesh;
     he_status status;
@@ -310,7 +311,7 @@ static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **sta
 static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
-    /* A third face on two edges, a face twice, and a closed fan beside another. */
+    /* A third face on two edges, a face given twice, and a second closed fan at a vertex. */
     static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
     for (int which = 0; which < 3; which++) {
         static he_report alone, report;

@@ -1,5 +1,5 @@
-/* The history of a stored mesh: earlier revisions and walks along them are what the mesh was,
- * columns that came and went included, within the budget, while others write. */
+/* The history of a stored mesh: earlier revisions and cursors along them equal the mesh at that
+ * time, with columns that were added and removed, within the budget, while other threads write. */
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -60,7 +60,7 @@ static void drop_column(he_mesh *m)
     }
 }
 
-/* One edit, refused ones included, which make no revision. */
+/* Makes one edit; a refused one makes no revision. */
 static void edit(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char text[96];
@@ -122,7 +122,7 @@ static uint64_t head_of(st_mesh *mesh, he_mesh **content)
     return info.revision;
 }
 
-/* Copies of all revisions; those a change of several steps passed through are missing. */
+/* Copies of all revisions, except those that a change of several steps passed through. */
 typedef struct album {
     he_mesh *at[MOST];
     uint64_t head;
@@ -179,7 +179,7 @@ static void snapshots_of_earlier_revisions(void **state)
         take_picture(&pictures, mesh);
         uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
         expect_snapshot(&pictures, mesh, revision);
-        if (i % 16 == 0) { /* somebody reads on, so that the copy has to stay */
+        if (i % 16 == 0) { /* a cursor is still open, so the copy must stay */
             if (held != NULL) {
                 st_snapshot_release(held);
             }
@@ -237,7 +237,7 @@ static void a_walk_follows_the_mesh(void **state)
         assert_int_equal(st_cursor_begin(mesh, from, &walk), ST_OK);
         assert_int_equal(st_cursor_begin(mesh, pictures.head + 1, &none), ST_AHEAD);
         follow(&pictures, walk, pictures.head);
-        /* On behind a mesh that goes on, columns that nobody but it holds included. */
+        /* Continues while the mesh changes, with columns that only the mesh owns. */
         for (unsigned i = 0; i < 30; i++) {
             change(mesh, &random, 100 + i);
             take_picture(&pictures, mesh);
@@ -252,7 +252,8 @@ static void a_walk_follows_the_mesh(void **state)
     }
 }
 
-/* What a walk lends stays, though the log has dropped it; and it is told when it was left behind.
+/* What a cursor lends stays after the log dropped it; and the cursor reports when the history was
+ * cut behind it.
  */
 static void a_walk_is_told_that_the_history_was_cut(void **state)
 {
@@ -288,7 +289,7 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
 
 /* --- memory --- */
 
-/* Undone, a column is held by the log: its bytes are counted where they are. */
+/* After undo the log owns a column: its bytes are counted there. */
 static void the_log_keeps_its_budget(void **state)
 {
     (void)state;
@@ -402,8 +403,8 @@ static void every_allocation_may_fail(void **state)
 enum { ROUNDS = 400, THREADS = 4 };
 static _Atomic bool writing, broken;
 
-/* Vertices 0 and 1 are at the same place in each revision, which says which one it is: x is the
- * revision of the edit that put them there. */
+/* Vertices 0 and 1 are at one position in each revision, which identifies it: x is the revision of
+ * the edit that put them there. */
 static void *write_on(void *context)
 {
     st_mesh *mesh = context;

@@ -1,5 +1,5 @@
-/* Whose meshes are, on a disk: counts are those of all meshes, in memory or not, they stay within
- * the limits whoever races, and follow what was lost. */
+/* Quotas of holders, on a disk: counts include all meshes, in memory or not, stay within the limits
+ * under concurrent requests, and follow losses. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -52,7 +52,7 @@ static int remove_folder(void **state)
     return 0;
 }
 
-/* A store without a thread of its own, so that the hook for memory may be set. */
+/* A store without a thread of its own, so that the hook for memory can be set. */
 static int keep_in_memory(void **state)
 {
     (void)state;
@@ -166,7 +166,7 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     expect("alice", 1);
     assert_int_equal(create("e", "alice"), ST_OK);
     assert_int_equal(create("f", "alice"), ST_QUOTA);
-    limit("bob", 1, 0); /* and alice may have any number */
+    limit("bob", 1, 0); /* and alice has no limit */
     assert_int_equal(create("f", "alice"), ST_OK);
     assert_int_equal(create("g", "bob"), ST_QUOTA);
 
@@ -211,7 +211,8 @@ static void what_would_grow_beyond_the_bytes_is_refused_and_changes_nothing(void
     assert_int_equal(bytes_of("alice"), grown);
     assert_int_equal(create("n", "alice"), ST_QUOTA);
 
-    /* A PUT that takes less is taken, whoever sends it; one that takes more is not. */
+    /* A PUT that makes the mesh smaller is accepted from any holder; one that makes it larger is
+     * not. */
     st_mesh *mesh = load("m");
     st_write w;
     assert_int_equal(st_write_begin(mesh, &(st_cause){.holder = "bob"}, &w), ST_OK);

@@ -118,7 +118,7 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     assert_int_equal(send(fd, request, (size_t)length, MSG_NOSIGNAL), length);
 }
 
-/* The status of the next answer, which is read to its end; `text` gets all of it. */
+/* Reads the next answer to its end and returns its status; `text` gets all of it. */
 static int answer(int fd, char *text, size_t size)
 {
     size_t got = 0;
@@ -154,7 +154,7 @@ static int round_trip(const char *method, const char *path, const char *body)
     return status;
 }
 
-/* The one worker has served others since: what it could answer, it has. */
+/* The only worker has served other requests since, so an answer that could be sent was sent. */
 static void assert_held(int fd)
 {
     char byte;
@@ -173,14 +173,14 @@ static void test_answers_wait_until_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     assert_held(writer);
-    /* A read of what is not durable waits too. */
+    /* A read of a state that is not durable waits, too. */
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     assert_int_equal(answer(reader, text, sizeof text), 200);
 
-    /* The same connections, a second revision: only who saw it waits. */
+    /* On the same connections, with a second revision: only answers that show it wait. */
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"tetrahedron\"}");
     slow_journal_wait(&slow, 2);
     assert_held(writer);
@@ -192,7 +192,7 @@ static void test_answers_wait_until_durable(void **state)
     assert_int_equal(answer(reader, text, sizeof text), 200);
     assert_non_null(strstr(text, "\"revision\":2"));
 
-    /* What makes no revision could be lost as well. */
+    /* A change that makes no revision can be lost as well. */
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
     slow_journal_wait(&slow, 3);
     assert_held(writer);
@@ -210,7 +210,7 @@ static void test_answers_wait_until_durable(void **state)
     close(reader);
 }
 
-/* What comes until `text` is in it. */
+/* Reads until the bytes contain `text`. */
 static void read_until(int fd, const char *text)
 {
     char all[8192];
@@ -224,7 +224,7 @@ static void read_until(int fd, const char *text)
     } while (strstr(all, text) == NULL);
 }
 
-/* D1 where no mesh is at hand: what is there, and what is not there any more. */
+/* D1 for answers about no single mesh: lists, and meshes that do not exist any more. */
 static void lists_and_absence_wait_until_durable(void **state)
 {
     (void)state;
@@ -261,7 +261,7 @@ static void lists_and_absence_wait_until_durable(void **state)
             assert_held(fds[i]);
         }
     }
-    /* What shows nothing that is stored waits for no journal. */
+    /* Answers that show nothing stored wait for no journal. */
     static const char *const free_of_it[] = {
         "/livez", "/readyz", "/version", "/v1/operations", "/v1/openapi.json", "/problems/stale"};
     for (size_t i = 0; i < sizeof free_of_it / sizeof *free_of_it; i++) {
@@ -283,7 +283,8 @@ static void lists_and_absence_wait_until_durable(void **state)
     close(early);
 }
 
-/* A mesh that nobody changes is read at once, however far behind the journal is with others. */
+/* A mesh that is not being changed is read at once, however far behind the journal is with
+ * others. */
 static void an_idle_mesh_never_waits(void **state)
 {
     (void)state;
@@ -303,7 +304,7 @@ static void an_idle_mesh_never_waits(void **state)
     slow_journal_advance(&slow, 2);
 }
 
-/* Not modified, gone, stale, refused, rehearsed: all of them show what the mesh is. */
+/* Not modified, gone, stale, refused, dry run: all of them show the state of the mesh. */
 static void every_kind_of_answer_waits(void **state)
 {
     (void)state;
@@ -343,7 +344,8 @@ static void every_kind_of_answer_waits(void **state)
     close(writer);
 }
 
-/* Told before its answer is held, and after: a lost change is nobody's success. */
+/* A loss that is reported before the answer is held, and one reported later: neither is answered as
+ * a success. */
 static void an_answer_that_shows_what_was_lost_is_503(void **state)
 {
     (void)state;
@@ -366,17 +368,17 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     assert_non_null(strstr(text, "\"code\":\"store_failed\""));
     assert_non_null(strstr(text, loss.reason));
     assert_non_null(strstr(text, "Retry-After: "));
-    /* A reader of the lost state is to ask again; this journal has no mesh for it then. */
+    /* A reader of the lost state must ask again; this journal has no mesh for it then. */
     assert_int_equal(answer(reader, text, sizeof text), 503);
     assert_non_null(strstr(text, "\"code\":\"store_lost\""));
     assert_non_null(strstr(text, "Retry-After: 0"));
     ask(writer, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(writer, text, sizeof text), 404);
-    /* Its event is told to nobody. */
+    /* No listener gets its event. */
     read_until(listener, "\"reason\":\"lost\"");
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
-    /* Others lost nothing. */
+    /* Other meshes lost nothing. */
     slow_journal_advance(&slow, 3);
     assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);
@@ -392,7 +394,7 @@ static void test_events_wait_until_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     ask(listener, "GET", "/v1/meshes/m/events", "");
-    assert_held(listener); /* where it begins is not durable itself */
+    assert_held(listener); /* the state where it begins is not durable itself */
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     read_until(listener, ".1\n\n");
@@ -417,7 +419,7 @@ static void test_events_wait_until_durable(void **state)
     ask(writer, "DELETE", "/v1/meshes/m", "");
     slow_journal_wait(&slow, 4);
     assert_held(listener);
-    /* What was not durable is not told at the end either. */
+    /* What was not durable is not sent at the end either. */
     assert_int_equal(stop(state), 0);
     read_until(listener, "\"stopping\"");
     read_until(late, "\"stopping\"");
@@ -428,7 +430,7 @@ static void test_events_wait_until_durable(void **state)
     start(state);
 }
 
-/* Known before the body has come, shown when it is durable. */
+/* Known before the body arrived, sent when the state it shows is durable. */
 static void test_early_refusals_wait_too(void **state)
 {
     (void)state;
@@ -479,7 +481,7 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
-/* The one thread for long work stands at the gate. */
+/* Blocks the only thread for long work. */
 static void shut_gate(void)
 {
     gate_entered = gate_open = false;
@@ -518,7 +520,7 @@ static void test_full_queue_is_503(void **state)
     assert_non_null(strstr(text, "RateLimit: \"requests\";r=9999"));
 
     open_gate();
-    /* Refused, not broken: the connection serves on. The queue may still be emptying. */
+    /* The request was refused without closing the connection. The queue may still be emptying. */
     int status;
     do {
         ask(fd, "POST", "/v1/meshes", large);
@@ -528,7 +530,7 @@ static void test_full_queue_is_503(void **state)
     close(fd);
 }
 
-/* The client is gone at once, without a goodbye. */
+/* The client disconnects at once, by a reset. */
 static void hang_up(int fd)
 {
     const struct linger at_once = {.l_onoff = 1};
@@ -536,7 +538,7 @@ static void hang_up(int fd)
     close(fd);
 }
 
-/* Whose client hangs up while it is suspended is not waited for by a stop that comes later. */
+/* A stop does not wait for a client that disconnected while its request was suspended. */
 static void test_a_stop_after_a_held_client_hung_up(void **state)
 {
     int writer = connect_client();
@@ -563,7 +565,7 @@ static void test_a_stop_after_a_working_client_hung_up(void **state)
     start(state);
 }
 
-/* Nor is his work done when there is nobody to tell. */
+/* Work for a client that disconnected is cancelled. */
 static void test_work_of_who_hung_up_is_given_up(void **state)
 {
     (void)state;
@@ -576,14 +578,14 @@ static void test_work_of_who_hung_up_is_given_up(void **state)
     hang_up(writer);
     open_gate();
     int status;
-    do { /* until the queue has room, and after it */
+    do { /* until the queue accepts the request, and after that */
         status = round_trip("PUT", "/v1/meshes/n", large);
     } while (status == 503);
     assert_int_equal(status, 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 404);
 
-    /* A client that has only closed its side still reads. It is waited for a second, so that this
-     * is the least work that leaves the worker. */
+    /* A client that closed only its writing side can still read. The server waits a second for it,
+     * so the test uses the shortest work that leaves the worker. */
     char text[8192];
     writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":4}");
@@ -599,7 +601,7 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     read_seconds = 0;
     start(state);
     slow_journal_advance(&slow, UINT64_MAX);
-    /* Large enough that the read is not a worker's. Imports and edits have no such limit. */
+    /* Large enough that the read leaves the worker. Imports and edits have no such limit. */
     int fd = connect_client();
     ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_int_equal(answer(fd, text, sizeof text), 201);
@@ -621,7 +623,8 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     start(state);
 }
 
-/* All that is sent, and the end of it, in one segment: the server is told of both at once. */
+/* Sends everything and the end of the stream in one segment, so that the server notices both at
+ * once. */
 static void send_with_end(int fd, const char *text)
 {
     assert_int_equal(send(fd, text, strlen(text), MSG_MORE | MSG_NOSIGNAL), strlen(text));
@@ -661,7 +664,7 @@ static void a_client_that_ends_with_its_request_is_answered_and_closed(void **st
         read_to_end(fd, text, sizeof text);
         close(fd);
         assert_int_equal(count_of(text, "HTTP/1.1 200"), answers[i]);
-        /* The last of them says that it is. */
+        /* The last answer says that the connection closes. */
         assert_int_equal(count_of(text, "Connection: close"), 1);
         const char *last = text;
         for (const char *at = text; (at = strstr(at, "HTTP/1.1 200")) != NULL; at++) {
@@ -690,14 +693,14 @@ static void test_too_many_connections(void **state)
         close(fds[i]);
     }
     int status;
-    do { /* until the server has seen them go */
+    do { /* until the server has noticed that they are gone */
         status = round_trip("GET", "/livez", "");
     } while (status == 503);
     assert_int_equal(status, 200);
 }
 
-/* A body that is refused: small, it is passed over and the connection goes on; large or endless, it
- * is cut off, with the reason. */
+/* A refused body: if it is small, it is skipped and the connection stays open; if it is large or
+ * endless, it is cut off, with the reason. */
 static void test_refused_bodies(void **state)
 {
     (void)state;
@@ -740,7 +743,7 @@ static void test_refused_bodies(void **state)
     close(fd);
 }
 
-/* Whatever let libmicrohttpd read from the socket directly. */
+/* If libmicrohttpd read from the socket without the check. */
 static void a_request_that_was_not_checked_is_not_served(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The start of a store compares the list of its meshes with the indexes (sqlite_index.c), however
- * many there are. */
+/* The start of a store compares the list of its meshes with the indexes (sqlite_index.c), for any
+ * number of meshes. */
 #include "tests/pace.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
@@ -57,7 +57,7 @@ static void run_sql(const char *text)
     assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
-/* A store that counts so many meshes; their rows' own sums are nothing to the start. */
+/* A store that counts this many meshes; the start does not check the checksums of their rows. */
 static void make_store(size_t meshes)
 {
     char text[1024];
@@ -75,7 +75,7 @@ static void make_store(size_t meshes)
     run_sql(text);
 }
 
-/* Turns a bit in each place where the id stands, one at a time: in the row, and in the index. */
+/* Flips one bit at a time in each place where the id is stored: in the row, and in the index. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;
@@ -105,7 +105,7 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* Entries under another's key. */
+    /* Index entries of another key. */
     run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
             "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "
             "WHERE name = 'sqlite_autoindex_mesh_2'");

@@ -1,5 +1,5 @@
-/* The journal in a folder (core/journal/sqlite) by itself: what was appended is there after a
- * restart, and what was damaged is named. */
+/* The journal in a folder (core/journal/sqlite) alone: appended records are there after a restart,
+ * and damage is named. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -80,7 +80,8 @@ static kept_mesh mesh_as(const char *id, const he_mesh *content)
     return mesh;
 }
 
-/* What a load gives: the content of the base, and how many records of each kind after it. */
+/* The result of loading a mesh: the content of the base, and how many records of each kind
+ * follow. */
 typedef struct loaded {
     st_status status;
     st_card card;
@@ -100,7 +101,7 @@ static void loaded_clear(loaded *l)
     he_mesh_free(l->staged_content);
 }
 
-/* What is found damaged is condemned, as the store does it. */
+/* A mesh found damaged is marked, as the store does it. */
 static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *out)
 {
     st_status status = j->read(reader, out);
@@ -230,7 +231,7 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     assert_int_equal(l.body[0], 49);
     assert_int_equal(l.card.counts.faces, he_mesh_faces(content));
     loaded_clear(&l);
-    /* Positions go on. */
+    /* Positions continue. */
     assert_true(kept_append(j, kept_edit(&b), &b, "x", 1) == last + 1);
     l = load(j, "b");
     assert_int_equal(l.status, ST_OK);
@@ -270,7 +271,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     st_card card;
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_ABSENT);
     assert_int_equal(j->open(j->self, "z", &card, NULL), ST_OK);
-    /* The id is free for another incarnation. */
+    /* The id can be used by another incarnation. */
     kept_mesh again = mesh_as("c", content);
     kept_append(j, kept_content(&again), &again, NULL, 0);
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_OK);
@@ -279,7 +280,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     he_mesh_free(content);
 }
 
-/* --- large contents, bases, what is purged --- */
+/* --- large contents, bases, purging --- */
 
 static he_mesh *large_mesh(void)
 {
@@ -290,7 +291,7 @@ static he_mesh *large_mesh(void)
     return mesh;
 }
 
-/* Opens the store and appends a mesh "a" of this content. */
+/* Opens the store and appends a mesh "a" with this content. */
 static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
 {
     kept_mesh mesh = mesh_as("a", content);
@@ -305,7 +306,7 @@ static void wait_until_purged(told_journal *told)
     const st_room_need need = {.records = 1};
     st_room *room;
     st_card card;
-    /* Each look lets a commit go by; purging goes on without others, while something is written. */
+    /* Each read lets a commit pass; purging proceeds while there are writes. */
     do {
         assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
         j->leave(j->self, room);
@@ -322,7 +323,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     st_stage *stage;
     const st_journal *j = &told.journal;
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
-    /* An edit with a content, which can be undone: the base stays. */
+    /* An edit with a content that can be undone: the base stays. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     st_record record = kept_edit(&mesh);
     record.stage = stage;
@@ -333,7 +334,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(l.staged, 1);
     assert_true(l.base.number == 1);
     loaded_clear(&l);
-    /* A PUT: what is before goes. */
+    /* A PUT: everything before it is purged. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     record = kept_content(&mesh);
     record.stage = stage;
@@ -349,13 +350,13 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(number_of("SELECT count(*) FROM record"), 1);
     assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 1);
     assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
-    /* One that nobody wants leaves nothing. */
+    /* A stage that is not used leaves nothing. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->unstage(j->self, stage);
     kept_append(j, kept_edit(&mesh), &mesh, "z", 1);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
-    /* And the removal nothing at all. */
+    /* And after the deletion there is nothing at all. */
     kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
@@ -365,7 +366,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     he_mesh_free(large);
 }
 
-/* Overwrites the first page of a table, of a store that is closed. */
+/* Overwrites the first page of a table in a closed store. */
 static void spoil(const char *table)
 {
     enum { PAGE = 4096 };
@@ -433,7 +434,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->rebase(j->self, stage, &facts, facts.revision);
     loaded l = load(j, "a");
-    /* The order of queues: the load may have begun before the rebase was taken. */
+    /* Because of the order of queues, the load may have begun before the rebase was accepted. */
     loaded_clear(&l);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "d", 1));
     l = load(j, "a");
@@ -445,7 +446,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT min(number) FROM record"), 23);
-    /* The record it is of was never there: nothing happens, and nothing is left. */
+    /* The record that it belongs to never existed: nothing happens, and nothing is left. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
@@ -466,7 +467,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
 
 /* --- damage --- */
 
-/* A store of two meshes, "good" and "bad", closed. */
+/* Makes a closed store of two meshes, "good" and "bad". */
 static void make_two(void)
 {
     told_journal told;
@@ -530,7 +531,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         st_card at_once;
         assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
         assert_true(at_once.damage[0] != '\0');
-        /* It is on the card from now on. */
+        /* The damage is on the card from now on. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);
         other.content = content;
@@ -544,7 +545,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         assert_int_equal(l.status, ST_OK);
         assert_int_equal(l.edits, 5);
         loaded_clear(&l);
-        /* It can be removed by its card, and made anew. */
+        /* It can be deleted by its card, and created again. */
         kept_mesh bad = {.incarnation = card.incarnation, .number = card.record};
         memcpy(bad.id, card.id, sizeof bad.id);
         bad.revision = card.revision;
@@ -607,7 +608,7 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused("/proc/1/no/folder", "cannot make");
 }
 
-/* Its pages are written to with every key: the first write would be the last. */
+/* Every key is written to its pages, so the first write would fail for ever. */
 static void a_damaged_table_of_keys_refuses_the_start(void **state)
 {
     (void)state;
@@ -616,11 +617,12 @@ static void a_damaged_table_of_keys_refuses_the_start(void **state)
     expect_refused(folder, "`hedged --restore` puts a backup in its place");
 }
 
-/* --- a -wal that is cut or damaged --- */
+/* --- a -wal file that is truncated or damaged --- */
 
 enum { EDITS = 4 };
 
-/* Opens the copy: refused with a sentence, or all that was acknowledged is there. */
+/* Opens the copy: it must be refused with a sentence, or contain everything that was
+ * acknowledged. */
 static bool open_copy(const char *copy, const char *what, size_t at)
 {
     st_sqlite_opened out;
@@ -643,7 +645,7 @@ static bool open_copy(const char *copy, const char *what, size_t at)
     return whole;
 }
 
-/* What kill -9 leaves of a store with a mesh "a" and some edits, all acknowledged. */
+/* The files that kill -9 leaves of a store with a mesh "a" and some edits, all acknowledged. */
 static void make_killed(const char *copy)
 {
     told_journal told;
@@ -732,7 +734,7 @@ static void a_flipped_bit_is_refused_or_named_or_harmless(void **state)
     folder_remove(copy);
 }
 
-/* Whoever fills a new store can be killed before it is done. */
+/* The process that fills a new store may be killed before it is done. */
 static void a_store_is_new_until_its_first_start_is_over(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The journal in a folder when the disk is full, slow or fails, and when memory is out: what was
- * acknowledged is there, what was not is told as lost, and nothing else changes. */
+/* The journal in a folder when the disk is full, slow or failing, and when memory is out:
+ * acknowledged records are there, others are reported as lost, and nothing else changes. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
@@ -68,7 +68,7 @@ static kept_mesh open_with_mesh(told_journal *told, size_t queue)
     return mesh;
 }
 
-/* Reads a mesh whole: how many records follow its base. */
+/* Reads a whole mesh and counts the records after its base. */
 static st_status count_records(const st_journal *j, const char *id, unsigned *records)
 {
     st_card card;
@@ -84,7 +84,7 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
     return status;
 }
 
-/* Reserves again and again until it is no longer refused so; the journal comes there by itself. */
+/* Reserves again and again until the refusal ends; the journal gets there without further calls. */
 static st_room *reserve_after(const st_journal *j, st_status refusal, bool freeing)
 {
     const st_room_need need = {.records = 1, .bytes = 16, .freeing = freeing};
@@ -127,7 +127,7 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     assert_int_equal(records, 1);
     disk_fill(false);
     j->leave(j->self, reserve_after(j, ST_FULL, false));
-    /* The number of what was lost is free. */
+    /* The number of the lost record can be used again. */
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
     assert_int_equal(count_records(j, "a", &records), ST_OK);
     assert_int_equal(records, 2);
@@ -135,9 +135,9 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     told_end(&told);
 }
 
-/* Files that SQLite does not write find no space either. */
+/* Files that SQLite does not write get no disk space either. */
 static _Atomic bool no_space;
-static _Atomic unsigned asked_for_space; /* times */
+static _Atomic unsigned asked_for_space; /* number of requests for disk space */
 
 int __real_fstatvfs(int file, struct statvfs *out);
 int __wrap_fstatvfs(int file, struct statvfs *out);
@@ -157,7 +157,7 @@ int __wrap_posix_fallocate(int file, off_t from, off_t size)
     return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
 }
 
-/* The folder whose sync is watched, and perhaps fails. */
+/* The folder whose sync is watched, and may fail. */
 static struct stat watched;
 static bool watched_fails;
 static unsigned watched_syncs;
@@ -177,7 +177,7 @@ int __wrap_fsync(int file)
     return watched_fails ? -1 : __real_fsync(file);
 }
 
-/* Else a loss of power takes the folder with all that was acknowledged in it. */
+/* Otherwise a power loss removes the folder with everything acknowledged in it. */
 static void the_folder_above_a_new_one_is_synced(void **state)
 {
     (void)state;
@@ -213,7 +213,7 @@ static bool has_ballast(void)
     return size > 0;
 }
 
-/* The ballast makes room for the start, and what is left of it is for removals. */
+/* The ballast file makes space for the start, and the rest of it for deletions. */
 static void a_store_starts_from_a_full_disk(void **state)
 {
     (void)state;
@@ -248,7 +248,7 @@ static st_health health_of(const st_journal *j)
     return health;
 }
 
-/* The log has room that is used again and again: that a page can be written says nothing. */
+/* The -wal file has space that is reused, so a successful write shows nothing. */
 static void a_full_disk_stays_full_until_there_is_space(void **state)
 {
     (void)state;
@@ -303,7 +303,7 @@ static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(voi
     assert_true(told.loss.from == last && told.loss.to == last);
     assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
     j->leave(j->self, left);
-    /* Now a removal may come, and then all. */
+    /* Now a deletion is accepted, and then everything. */
     room = reserve_after(j, ST_FULL, true);
     record = kept_remove(&mesh);
     told_wait(&told, j->append(j->self, room, &record, 1));
@@ -350,8 +350,8 @@ static void what_was_made_and_lost_was_never_there(void **state)
 
 enum { EDITS = 12 };
 
-/* Appends one by one while the N-th sync fails. Returns how many were acknowledged, the first of
- * them the creation. */
+/* Appends one record at a time while the N-th sync fails. Returns how many were acknowledged, the
+ * creation first. */
 static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
 {
     const st_journal *j = &told->journal;
@@ -400,7 +400,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
         open_store(&told, 0);
         unsigned records = 0;
         st_status status = count_records(&told.journal, "a", &records);
-        /* What was not acknowledged may be there: it had reached the disk before the sync. */
+        /* A record that was not acknowledged may be there: it had reached the disk before the
+         * sync. */
         assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
                                     : status == ST_ABSENT && acknowledged == 0);
         told_end(&told);
@@ -411,7 +412,7 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
     assert_true(runs > EDITS && opened > EDITS);
 }
 
-/* The store looks for space by itself: a sync that fails there has failed as any other. */
+/* The store checks for space on its own: a sync that fails there counts like any other. */
 static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
 {
     (void)state;
@@ -485,7 +486,7 @@ static void a_slow_disk_bounds_the_queue(void **state)
     assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);
     disk_hold(false);
     told_wait(&told, last);
-    /* What is larger than the queue is admitted when that is empty. */
+    /* A record larger than the queue is accepted when the queue is empty. */
     st_status status;
     while ((status = j->reserve(j->self, &large, &room)) == ST_BEHIND) {
         sched_yield();
@@ -544,7 +545,7 @@ static void fail_memory_at(long n)
     }
 }
 
-/* Everything once. Whether what was asked for was done is for the caller to see. */
+/* Does everything once. The caller checks what was done. */
 static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
 {
     const st_journal *j = &told->journal;

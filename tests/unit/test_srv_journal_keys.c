@@ -1,4 +1,4 @@
-/* Keys of requests in a folder: those of the last day come back, whole or not at all. */
+/* Idempotency-Keys in a folder: those of the last day are restored, completely or not at all. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -45,7 +45,7 @@ static int teardown(void **state)
 typedef struct taken {
     char texts[MOST][32], holders[MOST][32];
     st_kept_key keys[MOST];
-    size_t count, most; /* none is taken beyond `most` */
+    size_t count, most; /* no more than `most` are accepted */
 } taken;
 
 static bool take(void *context, const st_kept_key *key)
@@ -109,7 +109,7 @@ static void keys_come_back_with_what_they_were_for(void **state)
         told_end(&told);
         open_store();
     }
-    /* They go with their mesh, but what made it stays made. */
+    /* They are deleted with their mesh, but the creation of the mesh stays known. */
     told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
     assert_int_equal(keys_of("a").count, 0);
     assert_int_equal(keys_of(NULL).count, 2);
@@ -152,7 +152,7 @@ static void keys_older_than_a_day_go(void **state)
     taken t = keys_of("a");
     assert_int_equal(t.count, 1);
     assert_string_equal(t.texts[0], "new");
-    /* Two rows went with it: that of the creation, and the oldest of the edits. */
+    /* Two rows were deleted with it: that of the creation, and the oldest of the edits. */
     assert_int_equal(keys_of(NULL).count, 0);
 }
 
@@ -232,7 +232,7 @@ static bool count_key(void *context, const st_kept_key *key)
     return true;
 }
 
-/* It is told, and given for what it is: nobody is to do the request again without a word. */
+/* It is reported as damaged, so that the request is not silently executed again. */
 static void a_damaged_key_is_told(void **state)
 {
     (void)state;

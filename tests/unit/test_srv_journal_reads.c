@@ -1,4 +1,4 @@
-/* What happens to a mesh in a folder's journal while it is read, and what a newer release wrote. */
+/* Changes of a mesh in a folder's journal while it is read, and records of a newer release. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -78,7 +78,7 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
         position = kept_append(j, kept_edit(mesh), mesh, body, each);
         assert_int_not_equal(position, 0);
         if (done % (64 * each) == 0) {
-            told_wait(told, position); /* the queue has an end */
+            told_wait(told, position); /* the queue is limited */
         }
     }
     told_wait(told, position);
@@ -93,7 +93,8 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
     j->shut(reader);
 }
 
-/* SQLite is never refused memory: what it keeps of the file would leave none for meshes. */
+/* SQLite's allocations are never refused: a large cache of the file would leave no memory for
+ * meshes. */
 static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 {
     (void)state;
@@ -112,10 +113,10 @@ static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
     assert_true(kept < BUDGET / 8);
 }
 
-/* --- while it is read --- */
+/* --- changes while it is read --- */
 
-/* Opens a reader, lets `change` happen to the mesh, and condemns what was read: is the mesh of that
- * id damaged then? `change` is 0 for an edit, 1 for a new content, 2 for a mesh made anew. */
+/* Opens a reader, changes the mesh, and reports what was read as damaged: is the mesh with that id
+ * damaged then? `change` is 0 for an edit, 1 for a new content, 2 for a mesh created again. */
 static bool is_condemned_after(int change, bool restarts)
 {
     told_journal told;
@@ -159,7 +160,7 @@ static void a_mesh_made_anew_is_not_condemned_for_its_predecessor(void **state)
     }
 }
 
-/* Puts a record back with another version and a sum that is right. */
+/* Writes a record back with another version and a correct checksum. */
 static void set_version(unsigned char version)
 {
     unsigned char bytes[256];
@@ -226,7 +227,7 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     assert_int_equal(read_to_end(), ST_OK);
 }
 
-/* A snapshot that was staged of a content which was replaced before it could be the base. */
+/* A staged snapshot of a content that was replaced before the snapshot could become the base. */
 static void a_base_before_the_base_leaves_nothing(void **state)
 {
     (void)state;
@@ -283,7 +284,7 @@ static void wait_until_purged(told_journal *told)
     const st_room_need need = {.records = 1};
     st_room *room;
     st_card card;
-    /* Each look lets a commit go by; purging goes on without others, while something is written. */
+    /* Each read lets a commit pass; purging proceeds while there are writes. */
     do {
         assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
         j->leave(j->self, room);
@@ -316,7 +317,7 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     open_store(&told);
     expect_parts_of_edit(&told.journal, bytes, SIZE);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 4);
-    /* A PUT: its parts go with the record. */
+    /* A PUT: its parts are deleted with the record. */
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 0);

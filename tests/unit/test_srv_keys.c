@@ -1,4 +1,4 @@
-/* Answers kept for an Idempotency-Key: given again, bounded, forgotten in time. */
+/* Answers kept for an Idempotency-Key: repeated, limited in number, forgotten in time. */
 #include "store/idempotency.h"
 
 #include "base/mem.h"
@@ -44,7 +44,7 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
     st_keyed_end(c);
 }
 
-/* Begins and keeps at once. */
+/* Begins a key and keeps its answer at once. */
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;
@@ -162,7 +162,8 @@ static void bytes_are_bounded(void **state)
     assert_int_equal(c->answer.length, ST_KEPT_BODY + 1);
     st_keyed_end(c);
 
-    /* What changed nothing is better tried again than answered without its body. */
+    /* For a request that changed nothing, executing it again is better than an answer without its
+     * body. */
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     keep(c, body, ST_KEPT_BODY + 1, false);
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);

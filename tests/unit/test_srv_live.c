@@ -1,5 +1,5 @@
-/* Streams that wait: resumed exactly once for each time they were put aside, whoever wakes them and
- * when; comments in silence; a stop ends all. */
+/* Streams that wait: each is resumed exactly once for each time it was put aside, whatever wakes it
+ * and when; comments are sent in silence; a stop ends all. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/http_live.h"
@@ -9,7 +9,7 @@
 
 enum { STREAMS = 40, NEWS = 2000, LONG = 1000000000 };
 
-/* A stream with its source: numbers that were told and not yet read. */
+/* A stream with its source: numbers that were announced and not read yet. */
 typedef struct talk {
     srv_stream stream;
     pthread_mutex_t lock;
@@ -17,7 +17,7 @@ typedef struct talk {
     void *context;
     unsigned told, read, starts, finishes;
     bool waiting, finished;
-    /* The rest is the pool's. */
+    /* The pool uses the rest. */
     bool aside, begun, ended;
     unsigned comments;
     struct talk *next;
@@ -68,7 +68,7 @@ static void tell(talk *t)
     pthread_mutex_unlock(&t->lock);
 }
 
-/* --- workers that pull what is resumed, as libmicrohttpd's do --- */
+/* --- workers that pull resumed streams, as libmicrohttpd's do --- */
 
 static struct {
     pthread_mutex_t lock;
@@ -94,7 +94,7 @@ static void resume(srv_stream *stream)
     pthread_mutex_unlock(&pool.lock);
 }
 
-/* Until it waits or ends. */
+/* Pulls until it waits or ends. */
 static void pull(talk *t)
 {
     char buffer[64];

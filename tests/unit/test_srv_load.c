@@ -1,5 +1,5 @@
-/* Meshes that come back from what the journal keeps: after random edits a mesh that is dropped and
- * loaded is what it was, with its history. */
+/* Meshes that are loaded from the journal: after random edits a mesh that is dropped and loaded
+ * equals the old one, with its history. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/edit_log.h"
@@ -123,7 +123,7 @@ static void change(st_mesh *mesh, md_random *random, unsigned serial)
     }
 }
 
-/* --- what is loaded is what was there --- */
+/* --- what is loaded equals what was there --- */
 
 static he_mesh *content_of(st_mesh *mesh)
 {
@@ -147,10 +147,10 @@ static uint64_t dropped_by(st_mesh *mesh)
     return reach.dropped;
 }
 
-/* Undo and redo lead where they would have led. Each is a revision, for which older ones may have
- * to go, and what an edit takes that replaced the content among other changes is not to the byte
- * what it took: so the one may have to let go of a step before the other. The journal is given the
- * steps of both: it is to keep neither. */
+/* Undo and redo must lead to the same states. Each makes a revision, for which older ones may have
+ * to be dropped. An edit that replaced the content among other changes does not take exactly as
+ * many bytes as before, so one of the meshes may have to drop a step earlier. The journal gets the
+ * steps of both and keeps neither. */
 static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
@@ -171,7 +171,7 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
     }
 }
 
-/* Loaded into a store of its own it is the mesh that was there. Returns the store. */
+/* Loads the mesh into a store of its own, where it must equal the old one. Returns the store. */
 static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
 {
     st_store *other = open_store(budget);
@@ -180,7 +180,7 @@ static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
     return other;
 }
 
-/* The end of a run: loaded it is the same, and so is what undo and redo lead to. */
+/* At the end of a run: the loaded mesh is equal, and so are the states that undo and redo reach. */
 static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 {
     st_mesh *loaded;
@@ -194,7 +194,7 @@ static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 
 enum { ROUNDS = 12, CHANGES = 80 };
 
-/* Loaded again and again on its way, and once more at its end beside the one that was there. */
+/* Loaded again and again during the run, and once more at its end beside the old one. */
 static void a_mesh_comes_back_as_it_was(void **state)
 {
     (void)state;
@@ -210,7 +210,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
             if (md_chance(&random, 15)) {
                 st_mesh *loaded;
                 st_store *other = expect_loads(mesh, budget, &loaded);
-                /* The one that was loaded goes on. */
+                /* The loaded mesh continues. */
                 st_release(mesh);
                 st_store_free(store);
                 mesh = loaded;
@@ -223,7 +223,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* More changes than a body has room for, of a claim: they come to the journal in parts. */
+/* A claim changes more than a body holds: the changes reach the journal in parts. */
 static void a_large_edit_comes_back_from_its_parts(void **state)
 {
     (void)state;
@@ -251,8 +251,7 @@ static void a_large_edit_comes_back_from_its_parts(void **state)
     kept_journal_free(journal);
 }
 
-/* Three threads have one for what no client waits for: this comes after all that was asked of the
- * mesh before. */
+/* Three threads run background work, so this comes after all earlier requests of the mesh. */
 static void post(void *context)
 {
     sem_post(context);
@@ -331,7 +330,8 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     kept_journal_free(journal);
 }
 
-/* What the history has dropped is read from the disk for as long as its records are there. */
+/* Revisions that the history has dropped are read from the disk as long as their records are
+ * there. */
 static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
 {
     (void)state;
@@ -371,7 +371,7 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     kept_journal_free(journal);
 }
 
-/* A mesh that stands on a base after its last change of many, with nothing of them in memory. */
+/* A mesh whose base is newer than its last many changes, with none of them in memory. */
 static st_mesh *make_rebased(st_store **store, st_pool **pool)
 {
     journal = kept_journal_new();
@@ -430,7 +430,7 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
         assert_int_equal(info.revision, 4);
         assert_true(i == 0 || info.modified == modified);
         modified = info.modified;
-        /* What is not there does not cost those their copy who ask for what is. */
+        /* A request for a revision that does not exist does not evict copies that others use. */
         assert_int_equal(st_snapshot_at(mesh, 99, &none), ST_AHEAD);
         assert_int_equal(st_snapshot_at(mesh, 0, &none), ST_GONE);
         st_snapshot_release(snapshot);
@@ -441,7 +441,7 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     kept_journal_free(journal);
 }
 
-/* The undo stack keeps the snapshot from being the base; what replaces the mesh ends that. */
+/* The undo stack keeps the snapshot from becoming the base; replacing the content ends that. */
 static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
 {
     (void)state;
@@ -459,7 +459,7 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
     assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
     assert_int_equal(kept_journal_out(journal), 0);
     assert_int_equal(kept_journal_facts(journal, "m").base, 1);
-    /* Nor does the replacement itself ask for another. */
+    /* The replacement does not request another base either. */
     await_bases(pool);
     assert_int_equal(kept_journal_out(journal), 0);
     end_rebased(mesh, store, pool);
@@ -565,7 +565,7 @@ static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
     }
     assert_int_equal(all, 40);
     assert_int_equal(st_store_count(store), 40);
-    /* An id on the disk is taken, and nothing is loaded to say so. */
+    /* An id on the disk is in use, and nothing is loaded to find that. */
     st_mesh *mesh;
     he_mesh *content = fixture_mesh("012");
     size_t opened = kept_journal_facts(journal, "m01").opened;

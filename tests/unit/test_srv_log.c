@@ -1,4 +1,4 @@
-/* The log: its lines in both formats, its levels, and what becomes of lines that nobody reads. */
+/* The log: its lines in both formats, its levels, and lines that are not read. */
 #include "tests/unit/fixture.h"
 
 #include "server/log/log.h"
@@ -79,7 +79,7 @@ static void a_trace_is_in_each_line(void **state)
                                  "0123456789abcdef\n"));
 }
 
-/* Every field as long as it can be, and every character of the path an escape. */
+/* Every field has its maximum length, and every character of the path is escaped. */
 static void the_longest_line_fits(void **state)
 {
     (void)state;
@@ -125,7 +125,7 @@ static void open_log(reader *r, const srv_log_settings *settings, size_t ring)
     assert_non_null(r->log);
 }
 
-/* All that the log has said, which it has when it is freed. */
+/* Everything that the log has written when it is freed. */
 static const char *close_log(reader *r)
 {
     size_t got = 0;
@@ -265,7 +265,7 @@ static void lines_come_in_the_order_in_which_they_were_said(void **state)
     free(r.said);
 }
 
-/* --- nobody reads --- */
+/* --- without a reader --- */
 
 static void *free_log(void *log)
 {
@@ -273,7 +273,8 @@ static void *free_log(void *log)
     return NULL;
 }
 
-/* Nobody reads until the ring has overflowed: lines and drops together are what was logged. */
+/* Nothing is read until the ring has overflowed: lines and drops together must be the lines
+ * logged. */
 static void lines_that_find_no_place_are_counted(void **state)
 {
     (void)state;
@@ -291,7 +292,7 @@ static void lines_that_find_no_place_are_counted(void **state)
             srv_log_request(log, &sample, false);
         }
     }
-    /* Freeing waits for the writer, and the writer for room in the pipe. */
+    /* Freeing waits for the writing thread, which waits for space in the pipe. */
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
     size_t got = 0;
@@ -319,7 +320,7 @@ static void lines_that_find_no_place_are_counted(void **state)
     close(ends[1]);
 }
 
-/* Nobody reads at all: the daemon must end all the same. */
+/* Nothing is read at all: the daemon must end nevertheless. */
 static void a_log_ends_without_a_reader(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What the journal loses is gone from memory too: meshes, claims, listeners, keys, answers. */
+/* What the journal loses is also removed from memory: meshes, claims, listeners, keys, answers. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -77,7 +77,7 @@ static st_shown change(st_mesh *of)
     return st_shown_of(&w.info);
 }
 
-/* All from `from` on. */
+/* Loses everything from position `from` on. */
 static void lose(uint64_t from)
 {
     const uint64_t to = slow_journal_newest(&journal);
@@ -105,19 +105,19 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
     assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
     assert_int_equal(st_listeners(store), 0);
-    /* The change of the other one was kept. */
+    /* The change of the other mesh was kept. */
     assert_int_equal(st_find(store, "n", &found), ST_OK);
     st_release(found);
     assert_false(facts(other).lost);
     (void)change(other);
-    /* The id may be used again, and its mesh is another one. */
+    /* The id may be used again, for another mesh. */
     st_mesh *again = create("m");
     assert_true(facts(again).incarnation != facts(mesh).incarnation);
     assert_false(facts(again).lost);
     st_release(again);
 }
 
-/* What others made of a change is lost with it, or comes too late to be made. */
+/* Copies made of a change are lost with it, or are refused if they come later. */
 static void nothing_is_made_of_what_was_lost(void **state)
 {
     (void)state;
@@ -126,7 +126,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     const st_shown kept = st_shown_of(&(st_mesh_info){.position = 2});
     const st_shown from[] = {kept, change(other)};
     he_mesh *content = fixture_mesh("012");
-    /* While it is not lost, it may be built on. */
+    /* Until it is lost, it can be copied. */
     assert_int_equal(st_create_from(store, "c", NULL, fixture_mesh("012"), NULL, &from[1], &made),
                      ST_OK);
     assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
@@ -153,7 +153,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
     assert_int_equal(facts(mesh).revision, 1);
     assert_true(journal.groups == groups);
-    /* From what was kept it is made. */
+    /* A copy of the kept state is made. */
     assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[0], &made), ST_OK);
     st_release(made);
 }
@@ -161,7 +161,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
 static void creations_and_removals_are_lost_too(void **state)
 {
     (void)state;
-    enum { MANY = 150 }; /* more than are looked at at once */
+    enum { MANY = 150 }; /* more than are processed at once */
     st_mesh *found = NULL;
     uint64_t durable = slow_journal_newest(&journal);
     for (int i = 0; i < MANY; i++) {
@@ -202,8 +202,8 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* The handler was stopped after its commit, slept through the disk being full, and goes on when all
- * is well again. */
+/* The handler was stopped after its commit while the disk was full, and continues when all is well
+ * again. */
 static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
 {
     (void)state;
@@ -229,7 +229,7 @@ static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
     }
 }
 
-/* A long edit is under way when what it was made from is lost. */
+/* A long edit is in progress when the state it started from is lost. */
 static void a_claim_of_a_lost_mesh_commits_nothing(void **state)
 {
     (void)state;
@@ -272,7 +272,7 @@ static void listeners_are_sent_away(void **state)
     st_unfollow(mesh, &listener);
 }
 
-/* It is tried anew, rather than answered with what is not there. */
+/* The request is executed again rather than answered with a mesh that does not exist. */
 static void the_key_of_a_lost_creation_is_forgotten(void **state)
 {
     (void)state;

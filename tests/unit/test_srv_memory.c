@@ -1,4 +1,4 @@
-/* What the daemon holds: what is freed goes back to the system once the process rests. */
+/* Memory of the daemon: freed memory is returned to the system once the process is idle. */
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
@@ -15,7 +15,7 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
     st_memory_rest rest = {0};
     assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* hardly anything was done */
     assert_false(st_memory_rests(&rest, 400 * MILLIS));
-    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* it still works */
+    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* it is still working */
     assert_true(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 518 * MILLIS));
@@ -23,7 +23,7 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
     assert_false(st_memory_rests(&rest, 520 * MILLIS));
 }
 
-/* A sanitizer has an allocator of its own. */
+/* A sanitizer has its own allocator. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB, and each 64th block stays */
 
@@ -61,7 +61,7 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
     }
 }
 
-/* Was the system asked for huge pages at this address? */
+/* Did the process request huge pages at this address? */
 static bool asks_for_huge_pages(const void *address)
 {
     char line[512];
@@ -80,7 +80,8 @@ static bool asks_for_huge_pages(const void *address)
     return asks;
 }
 
-/* Pieces are in the heap, and once they are freed there is room for a large block among them. */
+/* Small blocks are in the heap, and once they are freed there is space for a large block between
+ * them. */
 static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **state)
 {
     (void)state;

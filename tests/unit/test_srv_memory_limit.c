@@ -1,5 +1,5 @@
-/* The limit the kernel sets is found wherever in the tree of control groups it is, seen from the
- * machine or from a container. Each test makes a small system of its own in a folder. */
+/* The memory limit of the kernel is found wherever it is in the tree of control groups, seen from
+ * the machine or from a container. Each test makes a small file system of its own in a folder. */
 #define _XOPEN_SOURCE 700 /* nftw */
 
 #include "tests/unit/fixture.h"
@@ -40,7 +40,7 @@ static int remove_root(void **state)
     return nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Write a file of the system, with the folders above it. */
+/* Writes a file of that file system, with the folders above it. */
 static void put(const char *name, const char *text)
 {
     char path[PATH_MAX];
@@ -124,7 +124,8 @@ static void version_1_and_a_mixed_system_are_read(void **state)
     expect(100 * MIB, "/sys/fs/cgroup/unified/user/memory.max");
 }
 
-/* A container of version 1 has a bind mount of its own group, whose path the process still has. */
+/* A container of version 1 has a bind mount of its own group, whose path the process still
+ * shows. */
 static void a_bind_mount_of_the_own_group_is_found(void **state)
 {
     (void)state;
@@ -136,12 +137,12 @@ static void a_bind_mount_of_the_own_group_is_found(void **state)
     put("/proc/self/cgroup", "4:memory:/docker/abc/inner\n");
     put("/sys/fs/cgroup/memory/inner/memory.limit_in_bytes", "104857600\n");
     expect(100 * MIB, "/sys/fs/cgroup/memory/inner/memory.limit_in_bytes");
-    /* /docker/abcd is not below /docker/abc: of what can be seen only the mount's root counts. */
+    /* /docker/abcd is not below /docker/abc: of the visible groups only the mount's root counts. */
     put("/proc/self/cgroup", "4:memory:/docker/abcd/inner\n");
     expect(300 * MIB, "/sys/fs/cgroup/memory/memory.limit_in_bytes");
 }
 
-/* In a namespace the own group is "/", and what is above it is "/..". */
+/* In a namespace the own group is "/", and the groups above it are "/..". */
 static void a_namespace_is_read_from_inside(void **state)
 {
     (void)state;

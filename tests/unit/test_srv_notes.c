@@ -1,5 +1,5 @@
-/* Jobs in a folder: as they were noted last, done with the record that is their work, or not at
- * all. */
+/* Jobs in a folder: restored as they were recorded last, as done if their work is recorded, or not
+ * at all. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -223,14 +223,14 @@ static void a_damaged_job_is_as_good_as_none(void **state)
     run_sql("UPDATE job SET number = 9 WHERE id = 'a'");
     run_sql("UPDATE job SET state = 7 WHERE id = 'b'");
     assert_int_equal(jobs_kept().count, 0);
-    /* The work that it was is no less done. */
+    /* The work that it did is still done. */
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), "a");
     assert_int_equal(told_losses(&told), 0);
     assert_int_equal(told.journal.count(told.journal.self), 1);
 }
 
-/* A file of version 1, which had no jobs, is raised by the first start, and by a restore. */
+/* A file of version 1, which had no jobs, is upgraded by the first start, and by a restore. */
 static void an_older_file_is_raised(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Parts of contents come back from zstd as they were; what is damaged is refused, within the room
+/* Parts of contents are restored from zstd unchanged; damaged ones are refused, within the memory
  * of one part. */
 #include "journal/part_packing.h"
 #include "tests/unit/dense.h"
@@ -94,7 +94,8 @@ static void what_would_be_longer_than_a_part_is_refused(void **state)
     expect_refused("not a frame at all", 18, "no zstd frame");
 }
 
-/* Whatever became of its bytes, it is refused with a reason or has the length that it names. */
+/* Whatever happened to its bytes, it is refused with a reason or has the length that it
+ * declares. */
 static void a_damaged_part_stays_within_its_room(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The thread pool: who begins when, and what keeps whom from a thread. */
+/* The thread pool: the order of tasks, and which tasks may occupy all threads. */
 #include "system/thread_pool.h"
 
 #include <pthread.h>
@@ -97,7 +97,7 @@ static void submit(st_pool *pool, const char *name, double cost, uint64_t flow)
         pool, &(st_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
 }
 
-/* Four threads: of them two may have long reads, two jobs, and three either. */
+/* Four threads: at most two run long reads, at most two jobs, and at most three either. */
 static void long_work_leaves_a_thread_to_brief_work(void **state)
 {
     (void)state;
@@ -150,7 +150,7 @@ static void a_full_queue_refuses_its_own_share_only(void **state)
     assert_string_equal(order, "b");
 }
 
-/* One thread, which stands at the gate while tasks are submitted. */
+/* One thread, which is blocked while tasks are submitted. */
 static st_pool *one_at_gate(void)
 {
     st_pool *pool = st_pool_new("test", 1, ROOM);
@@ -198,7 +198,7 @@ static void a_flow_keeps_its_order(void **state)
     assert_string_equal(order, "123");
 }
 
-/* Each short task is submitted by the one before, so that there is always one that waits. */
+/* Each short task is submitted by the one before, so that there is always one waiting. */
 typedef struct stream {
     st_pool *pool;
     int left;

@@ -1,4 +1,4 @@
-/* What a trusted proxy tells of its client, and what a client cannot make it tell. */
+/* What a trusted proxy says about its client, and what a client cannot forge. */
 #include "tests/unit/fixture.h"
 
 #include "server/net/proxy.h"

@@ -1,5 +1,5 @@
-/* Buckets of requests and bytes, by a clock that the test turns: what they let in, what a debt
- * costs, which of them goes when the table is full, and what the fields say. */
+/* Buckets of requests and bytes, with a clock that the test sets: what they let in, what a debt
+ * costs, which bucket is evicted when the table is full, and the header fields. */
 #include "unit/fixture.h"
 
 #include "api/limit/rate.h"
@@ -9,7 +9,7 @@
 #include <time.h>
 
 #define SECOND UINT64_C(1000000)
-/* A clock begins anywhere. */
+/* A clock may start anywhere. */
 #define START UINT64_C(77000000)
 
 static api_rate_key key_of(uint64_t client)
@@ -70,14 +70,14 @@ static void bytes_make_a_debt_that_is_paid_before_another_request(void **state)
     charge(rates, 1, &rate, 9999, START);
     assert_true(admit(rates, 1, &rate, START, &said)); /* one byte is left */
     assert_int_equal(said.bytes.left, 1);
-    assert_int_equal(said.requests.reset, 0); /* of requests nothing is said */
+    assert_int_equal(said.requests.reset, 0); /* without a limit of requests, none is reported */
     charge(rates, 1, &rate, 50001, START);
     assert_false(admit(rates, 1, &rate, START, &said));
-    assert_int_equal(said.bytes.wait, 51); /* until a byte is there: rounded up */
+    assert_int_equal(said.bytes.wait, 51); /* until a byte is available: rounded up */
     assert_int_equal(said.bytes.reset, 60);
     assert_false(admit(rates, 1, &rate, START + 50 * SECOND, &said));
     assert_true(admit(rates, 1, &rate, START + 50 * SECOND + 1000, &said));
-    /* What is larger than any number is a debt for ever, and none that overflows. */
+    /* A charge larger than any bucket is a debt for ever, without overflow. */
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     assert_false(admit(rates, 1, &rate, START + 1000 * SECOND, &said));
@@ -97,7 +97,7 @@ static void a_refused_request_costs_nothing(void **state)
     }
     assert_true(admit(rates, 1, &rate, START + SECOND, &said));
     charge(rates, 1, &rate, 20, START + SECOND);
-    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* for its bytes */
+    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* because of its bytes */
     assert_int_equal(said.requests.left, 1);
     assert_int_equal(said.requests.wait, 0);
     assert_true(said.bytes.wait > 0);
@@ -119,7 +119,7 @@ static void new_limits_hold_at_once_for_a_bucket_that_is_there(void **state)
     assert_true(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &none, START, &said)); /* a limit that is gone is forgotten */
+    assert_true(admit(rates, 1, &none, START, &said)); /* a limit that was removed is forgotten */
     assert_true(admit(rates, 1, &small, START, &said));
     api_rates_free(rates);
 }
@@ -146,7 +146,7 @@ static void of_a_full_table_the_oldest_full_bucket_goes(void **state)
     api_rate_state said;
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
-    charge(rates, 1, &rate, 1000, START); /* owes for long */
+    charge(rates, 1, &rate, 1000, START); /* in debt for long */
     assert_true(admit(rates, 2, &rate, START, &said));
     assert_true(admit(rates, 3, &rate, START, &said));
     assert_int_equal(api_rates_count(rates), 3);
@@ -156,14 +156,14 @@ static void of_a_full_table_the_oldest_full_bucket_goes(void **state)
     assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 3, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
-    /* None is full: the one that was used longest ago goes, and comes back as new. */
+    /* None is full: the one used longest ago is evicted, and starts again as a new one. */
     assert_true(admit(rates, 5, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
     api_rates_free(rates);
 }
 
-/* --- beside an oracle that fills a microsecond at a time --- */
+/* --- compared with an oracle that fills one microsecond at a time --- */
 
 enum { CLIENTS = 14, ROOM = 10 };
 
@@ -171,7 +171,7 @@ typedef struct naive {
     bool is_there;
     uint64_t requests, bytes; /* taken, millionths */
     uint64_t used;            /* which step used it last */
-    api_rate rate;            /* it had then */
+    api_rate rate;            /* the rate at that time */
 } naive;
 
 static naive world[CLIENTS];
@@ -198,7 +198,7 @@ static bool is_full(const naive *n)
     return (n->requests == 0 || n->rate.requests == 0) && (n->bytes == 0 || n->rate.bytes == 0);
 }
 
-/* Those that are there, the one that was used longest ago first. */
+/* The existing ones, the one used longest ago first. */
 static size_t by_age(size_t order[CLIENTS])
 {
     size_t count = 0;
@@ -250,7 +250,8 @@ static bool expect_admit(naive *n)
 static void random_steps_agree_with_a_slow_oracle(void **state)
 {
     (void)state;
-    /* A client keeps its limits: a bucket fills at those of its last use in the oracle. */
+    /* A client keeps its limits, because in the oracle a bucket fills at the rate of its last
+     * use. */
     static const api_rate kinds[] = {{.requests = 2000, .seconds = 1},
                                      {.bytes = 50000, .seconds = 1},
                                      {.requests = 900, .bytes = 30000, .seconds = 2},
@@ -313,7 +314,7 @@ static void the_fields_say_what_is_limited_and_what_is_left(void **state)
     rate.requests = 0;
     api_rate_policy(&rate, policy);
     assert_string_equal(policy, "\"bytes\";q=10000;w=10;qu=\"content-bytes\"");
-    /* The largest there are fit, and an integer of a structured field has 15 digits at most. */
+    /* The largest values fit; an integer of a structured field has at most 15 digits. */
     rate = (api_rate){API_LIMIT_MOST, API_LIMIT_MOST_BYTES, API_BURST_MOST};
     const api_rate_state most = {{UINT64_MAX, UINT64_MAX, 0}, {UINT64_MAX, UINT64_MAX, 0}};
     api_rate_policy(&rate, policy);
@@ -369,7 +370,7 @@ static void a_table_is_made_whole_or_not_at_all(void **state)
         assert_true(n < 10);
     }
     assert_true(n > 3);
-    /* From then on it asks for no memory. */
+    /* From now on it allocates nothing. */
     fixture_fail_at(1);
     for (uint64_t i = 0; i < 100; i++) {
         assert_true(admit(rates, i, &rate, START + i, &said));
@@ -451,7 +452,7 @@ static void a_request_costs_as_much_among_many_clients_as_among_few(void **state
     }
     printf("note: limits cost a request %.2f us with 16 clients, %.2f us with %d\n", costs[0],
            costs[1], API_ADDRESS_RATES);
-    assert_true(costs[0] < 20 && costs[1] < 20); /* with sanitizers, on a slow machine */
+    assert_true(costs[0] < 20 && costs[1] < 20); /* also with sanitizers on a slow machine */
 }
 
 int main(void)

@@ -1,4 +1,4 @@
-/* How far back a mesh can be followed: to the base on the disk, however little memory has kept. */
+/* How far back a mesh can be followed: to the base on the disk, however little is in memory. */
 #include "tests/kept_journal.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -39,7 +39,7 @@ static he_mesh *content_of(st_mesh *mesh)
     return copy;
 }
 
-/* From the first revision on, as those who listen are told what they missed. */
+/* Follows from the first revision on, as a listener does that missed events. */
 static void follow_all(st_mesh *mesh, he_mesh *const at[], uint64_t last)
 {
     st_cursor *cursor;
@@ -85,7 +85,7 @@ static void what_memory_has_dropped_is_followed_from_the_disk(void **state)
         store = open_store();
         mesh = load(store);
     }
-    /* A replacement is where it begins. */
+    /* The history begins at a replacement. */
     assert_int_equal(writing_replace(mesh, content_of(mesh), NULL, NULL), ST_OK);
     st_history reach;
     st_cursor *gone;

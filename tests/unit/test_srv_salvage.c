@@ -1,4 +1,5 @@
-/* What can be saved of a store whose file is damaged (core/journal/sqlite/sqlite_salvage.c). */
+/* What can be recovered from a store whose file is damaged
+ * (core/journal/sqlite/sqlite_salvage.c). */
 #include "tests/kept_journal.h"
 #include "tests/store_folder.h"
 #include "tests/writing.h"
@@ -45,7 +46,7 @@ static void move_vertex(st_mesh *mesh, unsigned to)
     assert_true(writing_commit(&w, "vertex_move", NULL));
 }
 
-/* Meshes of some edits each, so that every table takes several pages. */
+/* Meshes with some edits each, so that every table takes several pages. */
 static void make_store(void)
 {
     st_sqlite_opened out;
@@ -99,7 +100,7 @@ static void read_one(st_store *store, const st_card *card, found *f)
     st_release(mesh);
 }
 
-/* False where the file is refused as a whole. */
+/* Returns false if the file is refused as a whole. */
 static bool read_all(const char *file, found *f)
 {
     st_sqlite_opened out;
@@ -125,7 +126,7 @@ static bool read_all(const char *file, found *f)
     return true;
 }
 
-/* One page after the other becomes rubbish: what was on it is gone, the rest is read. */
+/* Each page in turn is overwritten: its contents are lost, the rest is read. */
 static void a_damaged_page_costs_what_was_on_it(void **state)
 {
     (void)state;
@@ -148,22 +149,22 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
             refused++;
             continue;
         }
-        /* A free page has nothing to lose, and any other is missed. */
+        /* A free page contains nothing; the loss of any other page is noticed. */
         assert_true(f.faults > 0 || f.whole == MESHES);
         named += f.faults > 0;
         if (f.listed < MESHES / 2) {
-            lists++; /* the page that leads to all others of the list */
+            lists++; /* the page that leads to all other pages of the list */
         } else if (f.whole + f.part >= MESHES / 2) {
             least = f.whole < least ? f.whole : least;
         } else {
-            lists++; /* that which leads to all records */
+            lists++; /* the page that leads to all records */
         }
     }
     printf("note: %zu pages: %u refused, %u named, %u led to all of a table; else %u of %d meshes "
            "at least are whole\n",
            size / PAGE, refused, named, lists, least, MESHES);
     assert_int_equal(refused, 1);
-    /* The roots of meshes and records, and what lies right below the latter. */
+    /* The roots of meshes and records, and the level below the latter. */
     assert_true(lists <= 3);
     assert_true(named + refused + 8 > size / PAGE);
     assert_true(least > MESHES / 2);

@@ -112,7 +112,7 @@ static void test_ids(void **state)
 
     st_mesh *c = create("a"), *d = create("c");
     assert_int_equal(st_list(store, "a", list, 1), 1);
-    /* The id the store chose may lie anywhere among the others. */
+    /* The id that the store chose may sort anywhere among the others. */
     bool first = strcmp(info.id, "a") > 0 && strcmp(info.id, "b") < 0;
     assert_ptr_equal(list[0], first ? b : a);
     st_release(list[0]);
@@ -296,7 +296,8 @@ static void test_undo_budget(void **state)
     }
     assert_true(x_of(mesh) < EDITS - 2);
 
-    /* One edit beyond the budget: applied, but it cannot be undone, nor can what came before. */
+    /* One edit exceeds the budget: it is applied, but neither it nor earlier edits can be
+     * undone. */
     st_write w;
     he_mesh *content = writing_begin(mesh, &w);
     for (int i = 0; i < EDITS; i++) {
@@ -352,7 +353,7 @@ static void test_snapshots(void **state)
     assert_ptr_equal(st_snapshot_content(b, NULL), shared);
     assert_int_equal(info.revision, 2);
 
-    /* Held: it stays as it was. */
+    /* While referenced it does not change. */
     move(mesh, 2, false, NULL);
     assert_true(he_position(shared, (he_vertex){0}).x == 1);
     st_snapshot_release(b);
@@ -363,7 +364,7 @@ static void test_snapshots(void **state)
     st_snapshot_release(a);
     st_snapshot_release(b);
 
-    /* Released: brought forward, undo and new rows included. */
+    /* After release it is brought up to date, with undo and new rows. */
     for (int round = 0; round < 4; round++) {
         if (round == 1) {
             assert_int_equal(step(mesh, ST_UNDO), ST_OK);
@@ -412,7 +413,7 @@ static void test_cache(void **state)
 }
 
 /* Every call of the store with each of its allocations failing in turn: a clean refusal, and the
- * mesh as it was. */
+ * mesh is unchanged. */
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -481,7 +482,7 @@ static void test_memory_budget(void **state)
     assert_true(st_memory_is_full());
     assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
-    /* A writer has what is only kept for later freed. */
+    /* A write has caches freed. */
     st_memory_set_budget(0);
     st_snapshot *snapshot = NULL;
     assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
@@ -513,12 +514,12 @@ static void test_memory_budget(void **state)
     open_store(BUDGET, MESHES);
 }
 
-/* Threads. Writers move vertices 0 and 1 to the same point in one edit: readers must never see
- * them apart, nor a revision go back. */
+/* Threads. Writers move vertices 0 and 1 to one point in one edit: readers must never see them
+ * apart, nor a revision decrease. */
 enum { ROUNDS = 300, WRITERS = 2, READERS = 2 };
 static _Atomic bool broken;
 
-/* --- what is derived --- */
+/* --- derived data --- */
 
 static atomic_int destroyed;
 
@@ -558,7 +559,7 @@ static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
     assert_int_equal(atomic_load(&destroyed), 2 * ST_DERIVED_COUNT);
 }
 
-/* Each revision has its delta while the history is kept; a barrier ends what was before. */
+/* Each revision has its delta while the history is kept; a barrier ends what came before. */
 static void test_deltas_by_revision(void **state)
 {
     (void)state;

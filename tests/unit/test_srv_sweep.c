@@ -1,5 +1,5 @@
-/* Connections that are late together are closed a few at a time, so that others are served between:
- * the calls of the thread that closes them are counted. */
+/* Connections that are late at the same time are closed a few at a time, so that others are served
+ * in between: the test counts the calls of the closing thread. */
 #include "server/http/http_deadline.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ int __wrap_shutdown(int socket, int how)
     return __real_shutdown(socket, how);
 }
 
-/* The other ends and what the module knows of the first ones. */
+/* The clients' ends, and the module's data about the server's ends. */
 typedef struct pairs {
     int others[LATE];
     srv_connection *watched[LATE];
@@ -82,7 +82,7 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
     srv_deadlines_free(d);
 }
 
-/* The sweep goes on behind one that is closed while it pauses. */
+/* The sweep continues after one that is closed during its pause. */
 static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
 {
     (void)state;
@@ -93,7 +93,7 @@ static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
     closed = 0;
     open_pairs(d, &p);
     while (closed == 0) {
-        /* The sweep begins with the one that was added last. */
+        /* The sweep begins with the one added last. */
     }
     char byte;
     for (int i = LATE - 1; i >= 0; i--) {

@@ -1,6 +1,6 @@
-/* The state machine that reads before libmicrohttpd does: each case of framing_cases.h has the
- * fault that it should, wherever the bytes are cut and however little room there is, and no byte
- * after a fault is passed on. */
+/* The state machine that reads before libmicrohttpd: each case of framing_cases.h has its fault,
+ * wherever the bytes are split and however little space there is, and no byte after a fault is
+ * passed on. */
 #include "tests/unit/fixture.h"
 
 #include "framing_cases.h"
@@ -17,11 +17,11 @@ typedef struct passed {
     srv_syntax syntax;
     char *bytes;
     size_t length;
-    size_t taken; /* bytes of the input that were looked at */
+    size_t taken; /* bytes of the input that were read */
 } passed;
 
-/* Hand over bytes[from, to) in a buffer with this much room beside it, as recv() would; false after
- * a fault. */
+/* Passes bytes[from, to) in a buffer with this much free space, as recv() would; returns false
+ * after a fault. */
 static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
 {
     char *at = p->bytes + p->length;
@@ -39,7 +39,7 @@ static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
     return false;
 }
 
-/* In pieces of `piece` bytes, the first of `first` (0: as the others). */
+/* Passes pieces of `piece` bytes, the first of `first` bytes (0: like the others). */
 static void feed(passed *p, const char *bytes, size_t length, size_t first, size_t piece,
                  size_t room)
 {
@@ -119,7 +119,7 @@ static void a_case_is_the_same_wherever_it_is_cut(void **state)
     }
 }
 
-/* Where the input is left: up to there the bytes are the client's, but for blanks and cookies. */
+/* The output equals the client's bytes up to the fault, except for blanks and cookies. */
 static void no_byte_after_a_fault_is_passed_on(void **state)
 {
     passed *p = *state;
@@ -136,7 +136,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         }
         assert_int_equal(same, taken);
         assert_true(p[0].length - taken <= 24);
-        /* All after the faulty byte may be anything. */
+        /* The bytes after the faulty byte may be anything. */
         if (c->fault) {
             memset(bytes + taken + 1, 'x', length - taken - 1);
             feed(&p[1], bytes, length, 0, length, ROOM / 2);
@@ -262,7 +262,7 @@ static void the_end_of_a_socket_is_passed_on(void **state)
     assert_int_equal(recv(pair[0], &byte, 1, 0), 0);
 }
 
-/* What comes byte by byte has no longer for its head than what comes at once. */
+/* A head that arrives byte by byte has no more time than one that arrives at once. */
 static void a_head_begins_with_its_first_byte(void **state)
 {
     (void)state;

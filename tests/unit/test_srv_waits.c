@@ -1,5 +1,4 @@
-/* Waits for what is durable: each ends once, in the order of positions, as durable, lost or
- * stopped. */
+/* Waits for durability: each ends once, in the order of positions, as durable, lost or stopped. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -16,7 +15,7 @@ static st_journal journal;
 static st_waits *waits;
 static st_wait all[MANY];
 static size_t resumed;
-static uint64_t last; /* position that was resumed last */
+static uint64_t last; /* position resumed last */
 static bool in_order;
 
 static void moved(void *context, uint64_t position)
@@ -59,7 +58,7 @@ static void count(st_wait *wait)
     wait->resume = NULL; /* a second call would crash */
 }
 
-/* False when it is over already. */
+/* Returns false if the wait is over already. */
 static bool add(st_wait *wait, uint64_t position, uint64_t incarnation)
 {
     uint64_t since = incarnation == 0 ? 0 : position - 1;
@@ -84,7 +83,7 @@ static void one_notice_releases_a_thousand(void **state)
         early += all[i].resume == NULL;
     }
     assert_int_equal(resumed, early);
-    /* Those that come between have their place in the order. */
+    /* Waits added in between get their place in the order. */
     st_wait late, past;
     assert_true(add(&late, 251, 7));
     assert_false(add(&past, 250, 7));
@@ -97,7 +96,7 @@ static void one_notice_releases_a_thousand(void **state)
     }
 }
 
-/* Both ends of a lost interval are lost, for the mesh that is named alone. */
+/* Both ends of a lost interval are lost, only for the mesh that is named. */
 static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
 {
     (void)state;
@@ -132,7 +131,8 @@ static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
     assert_true(st_waits_is_durable(waits, &later));
 }
 
-/* The list was begun when the journal had told of records that their writers had not noted yet. */
+/* The list was begun after the journal had reported records that their writers had not noted
+ * yet. */
 static void a_list_of_nothing_new_is_not_lost(void **state)
 {
     (void)state;
@@ -179,7 +179,8 @@ static void a_stop_ends_what_is_not_known(void **state)
     assert_int_equal(all[0].end, ST_WAIT_DURABLE);
 }
 
-/* What one request does is one group of records, so that a crash leaves all of it or nothing. */
+/* Everything that one request does is one group of records, so that a crash leaves all of it or
+ * nothing. */
 static void a_request_is_one_group_of_records(void **state)
 {
     (void)state;

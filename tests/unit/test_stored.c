@@ -1,9 +1,9 @@
-/* Meshes and edits as bytes (core/stored): what was written is read again bit for bit, and what was
- * damaged is refused with a reason and a place. Every operation goes through its bytes in
- * test_op_table.c.
+/* Meshes and edits as bytes (core/stored): what was written reads back bit for bit, and damaged
+ * bytes are refused with a reason and a place. test_op_table.c passes every operation through its
+ * bytes.
  *
- * `test_stored --write FOLDER` makes the golden files anew, for a new version of the format; those
- * of a released version stay as they are. They are the seeds of fuzz_stored. */
+ * `test_stored --write FOLDER` writes the golden files for a new version of the format; those of a
+ * released version never change. They are also the seeds of fuzz_stored. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -21,7 +21,7 @@ enum { ENTRIES = 60, GOLDEN_MOST = 65536 };
 
 /* --- logs --- */
 
-/* The bytes of each edit of a log, from a run through it. */
+/* Encodes each edit of a log while replaying it. */
 static void code_log(const edit_log *log, stored_bytes *coded)
 {
     he_mesh *m = copy_of(log->entries[0].after);
@@ -41,8 +41,9 @@ static void code_log(const edit_log *log, stored_bytes *coded)
     he_mesh_free(m);
 }
 
-/* Apply entry i as a start does, from bytes alone. A record of an undo has the marks after it too:
- * a delta that is read as one replace does not know the rows that were issued before the replace.
+/* Applies entry i as the start of a store does, from bytes alone. The record of an undo also has
+ * the numbers of ids after it: a delta that is read as a replacement does not know the rows that
+ * were issued before.
  */
 static he_status apply_coded(const edit_log *log, size_t i, const stored_bytes *coded,
                              he_delta **deltas, he_mesh *m)
@@ -123,7 +124,7 @@ static void test_without_memory_nothing_is_read_and_nothing_changes(void **state
         }
         failed = allocation_failed();
         fail_allocation(0);
-        /* A block that cannot be made smaller stays as it is. */
+        /* A block that cannot be shrunk stays as it is. */
         assert_true(status == HE_OK || (failed && status == HE_NO_MEMORY));
         assert_true(m != NULL || i == 0);
         if (m != NULL && status == HE_OK) {
@@ -163,7 +164,7 @@ static he_column *labelled_column(const he_mesh *m)
     return column;
 }
 
-/* A column comes, a value in it is written, rows are issued, and it goes; another one stays. */
+/* Adds a column, writes a value in it, issues rows, and removes it; another column stays. */
 static void change_columns(he_mesh *m)
 {
     const uint32_t value = 2;
@@ -185,7 +186,7 @@ static void drop_columns(he_mesh *m)
     }
 }
 
-/* Rows come, change twice and go; a slot in the middle stays free. */
+/* Rows are added, changed twice and removed; a slot in the middle stays free. */
 static void change_materials(he_mesh *m)
 {
     script_prepare(m, "material_set name=red base_color=1,0,0,0.5 metallic=0.25 roughness=0.5 "
@@ -278,7 +279,8 @@ static void test_columns_and_contents_come_back(void **state)
     }
 }
 
-/* A golden file: the length of the content, the content; the marks after the edit, the edit. */
+/* A golden file: the length of the content, the content; the numbers of ids after the edit, the
+ * edit. */
 static size_t golden_of(const specimen *s, unsigned char *to)
 {
     specimen_run run = run_of(s);
@@ -294,7 +296,8 @@ static size_t golden_of(const specimen *s, unsigned char *to)
     return size;
 }
 
-/* Whatever the operations do today: what the files hold is read, and has the same bytes again. */
+/* Independent of the operations: the files can be read, and their contents encode to the same
+ * bytes. */
 static void test_golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
@@ -368,16 +371,16 @@ static void expect_named(he_status status, const he_error *err, size_t size)
     assert_true(err->text[0] != '\0');
 }
 
-/* The bytes as they are given: refused, and the mesh is as it was; or the mesh is another one, from
- * which undo leads back. A bit of a value makes another edit of the same state, which the checksum
- * of the record around it tells. */
+/* Reads damaged bytes: either they are refused and the mesh is unchanged, or the mesh changes and
+ * undo restores it. A flipped bit of a value makes another valid edit, which the checksum of its
+ * record detects. */
 static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *seen)
 {
     he_mesh *m = copy_of(run->before);
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    memcpy(exact + 1, damaged.bytes, damaged.size); /* its end is the end of the block */
+    memcpy(exact + 1, damaged.bytes, damaged.size); /* the bytes end where the block ends */
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
     if (status != HE_OK) {
@@ -507,7 +510,7 @@ static void test_an_edit_names_the_change_that_does_not_fit(void **state)
     run_clear(&run);
 }
 
-/* Counts of a few bytes ask for gigabytes: nothing is taken for them. */
+/* Counts in a few bytes that would need gigabytes: no memory is allocated for them. */
 static void test_a_small_content_gets_no_large_memory(void **state)
 {
     (void)state;
@@ -526,7 +529,7 @@ static void test_a_small_content_gets_no_large_memory(void **state)
 
 /* --- parts --- */
 
-/* A mesh of many parts, whose labels alone are more than one. */
+/* A mesh of many parts, whose labels alone take more than one part. */
 static he_mesh *large_mesh(void)
 {
     he_mesh *m = script_mesh("012,023,034,045", NULL);

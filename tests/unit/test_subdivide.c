@@ -1,8 +1,8 @@
-/* Subdivision against what the papers promise: counts in closed form, limit positions, curves that
- * are cubic B-splines, what creases, darts and corners do, attributes, ids, undo and giving up.
+/* Subdivision compared with what the papers prove: counts in closed form, limit positions, curves
+ * that are cubic B-splines, creases, darts and corners; also attributes, ids, undo and cancelling.
  *
- * A limit position is a weighted sum of a vertex and its ring that no step changes: so it is summed
- * up before a step and after it. */
+ * A limit position is a weighted sum of a vertex and its ring that no step changes, so it is
+ * computed before a step and after it. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -65,7 +65,7 @@ static he_vec3 at(const he_mesh *m, uint32_t v)
     return he_position(m, (he_vertex){v});
 }
 
-/* A vertex 0 in the middle of n faces of three or four corners, none of them flat. */
+/* A vertex 0 in the middle of n faces of three or four corners, not planar. */
 static he_mesh *wheel(unsigned n, bool quads)
 {
     he_soup soup;
@@ -88,7 +88,7 @@ static he_mesh *wheel(unsigned n, bool quads)
     return m;
 }
 
-/* The sum over the neighbours of v, and over the corners across its quads. */
+/* The sum over the neighbours of v, or over the opposite corners of its quads. */
 static he_vec3 ring(const he_mesh *m, uint32_t v, bool across)
 {
     he_vec3 sum = {0, 0, 0};
@@ -150,7 +150,8 @@ static void steps_keep_limit_positions(void **state)
     }
 }
 
-/* A regular vertex of loop has its limit half in itself, and a twelfth in each neighbour. */
+/* The limit of a regular vertex of loop has weight one half for itself, and a twelfth for each
+ * neighbour. */
 static void a_regular_vertex_has_the_known_limit(void **state)
 {
     (void)state;
@@ -161,7 +162,8 @@ static void a_regular_vertex_has_the_known_limit(void **state)
     he_mesh_free(m);
 }
 
-/* (9 v + 4 e + f) / 24 of a corner at (s, s, s), whose neighbours and diagonals sum up to s and -s.
+/* (9 v + 4 e + f) / 24 for a corner at (s, s, s), whose neighbours and diagonals sum up to s and
+ * -s.
  */
 static void the_corner_of_a_cube_comes_to_half_its_place(void **state)
 {
@@ -207,7 +209,7 @@ static void counts_follow_their_formulas(void **state)
         assert_int_equal(he_mesh_boundary_halfedges(m), 4 * 16);
         he_mesh_free(m);
     }
-    /* Two steps of sqrt3 cut a triangle's sides in three and make nine of it. */
+    /* Two steps of sqrt3 divide a triangle's sides by three and make nine triangles. */
     m = script_mesh("012", NULL);
     assert_int_equal(he_subdivide(m, HE_SQRT3, 2, c, NULL), HE_OK);
     assert_int_equal(c[1].faces, 9);
@@ -256,13 +258,13 @@ static void a_flat_grid_stays_flat_and_regular(void **state)
             he_vec3 q = at(m, v);
             assert_true(q.z == 0 && q.x >= 0 && q.x <= 2 && q.y >= 0 && q.y <= 2);
         }
-        /* Its corners, which one or two faces have, and its middle stay. */
+        /* Its corners, which have one or two faces, and its centre stay. */
         assert_near(at(m, 4), p[4], 1e-15);
         he_mesh_free(m);
     }
 }
 
-/* (1 4 1) / 6 of a vertex between two others of a curve. */
+/* (1 4 1) / 6 for a vertex between two others of a curve. */
 static he_vec3 spline(const he_mesh *m, uint32_t before, uint32_t v, uint32_t after)
 {
     he_vec3 sum = plus(plus(at(m, before), 4, at(m, v)), 1, at(m, after));
@@ -356,7 +358,7 @@ static void creases_are_curves_darts_smooth_and_corners_stay(void **state)
         he_mesh_free(a);
         he_mesh_free(b);
     }
-    /* A dart is as if there were none, and the middle of its edge lies on the edge. */
+    /* A dart vertex moves as without features, and the middle of its edge stays on the edge. */
     he_mesh *a, *b, *smooth = wheel(6, false);
     subdivide_marked("mark feature edge=0-1", HE_LOOP, 1, &a, &b);
     subdivide(smooth, HE_LOOP, 1);
@@ -432,7 +434,7 @@ static void values_linear_in_the_position_remain_so(void **state)
     }
 }
 
-/* New edges have the default of `feature`, and are no curves for that. */
+/* New edges have the default of `feature`, but they are no curves. */
 static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
 {
     (void)state;
@@ -451,7 +453,7 @@ static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
     }
 }
 
-/* Without a smoothing rule a corner's value and its vertex's place say the same all along. */
+/* Without a smoothing rule, a corner's value stays equal to its vertex's position. */
 static void corners_are_refined_within_their_face(void **state)
 {
     (void)state;
@@ -488,7 +490,7 @@ static void corners_are_refined_within_their_face(void **state)
     }
 }
 
-/* By sqrt3 every corner has a value of its part's face. */
+/* After sqrt3 every corner has the value of its original face. */
 static void corners_of_flipped_triangles_are_of_their_face(void **state)
 {
     (void)state;
@@ -548,7 +550,7 @@ static void old_ids_name_the_parts_at_their_origin(void **state)
     }
 }
 
-/* --- undo, giving up --- */
+/* --- undo, cancelling --- */
 
 static void undo_is_one_step_and_issues_no_id_again(void **state)
 {

@@ -1,4 +1,4 @@
-/* Tokens: the file that says which there are, what they may do, and how one file follows another.
+/* Tokens: their file, what they may do, and replacing one file by another.
  */
 #include "unit/fixture.h"
 
@@ -43,7 +43,7 @@ static void a_line_says_whose_a_token_is_and_what_it_may_do(void **state)
     assert_string_equal(b->prefixes[1], "shared.");
     assert_true(b->expires == 1798806605.0);
     unsigned char hash[API_TOKEN_HASH];
-    api_token_hash("test", 4, hash); /* FIPS 180-4 says what that is */
+    api_token_hash("test", 4, hash); /* the value in FIPS 180-4 */
     assert_true(api_token_matches(a, hash));
     assert_false(api_token_matches(b, hash));
     hash[31] ^= 1;
@@ -157,7 +157,7 @@ static void a_file_has_its_limits(void **state)
     free(large);
 }
 
-/* Rows: what a token has; columns: what is asked for. */
+/* Rows: the role of a token; columns: the required role. */
 static void roles_include_each_other_as_documented(void **state)
 {
     (void)state;
@@ -238,7 +238,7 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     assert_true(load(tokens, "# moved\n\na read " HASH " expires=1970-01-02"));
     assert_int_equal(api_tokens_count(tokens), 1);
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
-    assert_ptr_equal(again, a); /* the other line is gone, this one says what it said */
+    assert_ptr_equal(again, a); /* the other line changed, this one did not */
     api_token_release(again);
     assert_int_equal(first.told, 0);
 
@@ -275,10 +275,10 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 10 << 20);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESH_BYTES), UINT64_C(2) << 30);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 4);
-    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* as many as it likes */
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* no limit */
     assert_int_equal(api_token_limit(NULL, API_LIMIT_REQUESTS), 0);
 
-    /* Other limits make no other token: what it began goes on, with the new limits. */
+    /* Other limits make no new token: its running requests continue, with the new limits. */
     listener watcher = {.watch = {.token = a, .gone = tell}};
     api_tokens_watch(tokens, &watcher.watch);
     assert_false(load(tokens, "a read " HASH " prefix=x requests=1 requests=2"));
@@ -286,12 +286,12 @@ static void a_line_may_set_limits_of_its_own(void **state)
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_equal(again, a);
     assert_int_equal(watcher.told, 0);
-    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the option's again */
+    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the option's limit again */
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 5);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
 
-    /* A token of the same name uses the same bucket; one of another name does not. */
+    /* A token with the same name uses the same bucket; one with another name does not. */
     api_token_list list;
     assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
     assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);
@@ -344,9 +344,9 @@ static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
     api_token_release(got);
     assert_false(api_tickets_take(tickets, ticket, "/x", 159, &got));
     assert_true(api_tickets_make(tickets, a, "/x", 100, ticket, &expires));
-    assert_false(api_tickets_take(tickets, ticket, "/x", 160, &got)); /* it has expired */
+    assert_false(api_tickets_take(tickets, ticket, "/x", 160, &got)); /* the ticket has expired */
     assert_true(api_tickets_make(tickets, a, "/x", 86390, ticket, &expires));
-    assert_false(api_tickets_take(tickets, ticket, "/x", 86400, &got)); /* its token has */
+    assert_false(api_tickets_take(tickets, ticket, "/x", 86400, &got)); /* its token has expired */
     for (int i = 0; i < API_TICKETS_OF_A_TOKEN; i++) {
         assert_true(api_tickets_make(tickets, b, "/x", 0, ticket, &expires));
     }
@@ -386,7 +386,7 @@ static void a_new_token_is_in_its_line(void **state)
     api_tokens_free(tokens);
 }
 
-/* The processor's time, which others on the machine do not take from it. */
+/* Returns processor time, which other programs do not affect. */
 static double seconds(void)
 {
     struct timespec now;
@@ -423,7 +423,7 @@ static void a_check_costs_about_a_microsecond(void **state)
     double wrong = microseconds_a_check(tokens, token);
     printf("note: a token is checked in %.2f us among %d, a wrong one in %.2f us\n", good,
            API_TOKENS, wrong);
-    assert_true(good < 20 && wrong < 20); /* with sanitizers, on a slow machine */
+    assert_true(good < 20 && wrong < 20); /* also with sanitizers on a slow machine */
     free(others);
     free(text);
     api_tokens_free(tokens);

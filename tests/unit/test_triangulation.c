@@ -1,4 +1,4 @@
-/* Long polygons, whatever their shape: valid triangles, none turned over, in bounded work. */
+/* Long polygons of any shape: valid triangles, none turned over, in bounded work. */
 #include "unit/fixture.h"
 
 #include "geometry/corner_tree.h"
@@ -27,8 +27,8 @@ static double doubled_area(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
     return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
 }
 
-/* Each triangle cuts its middle corner off what is left: so there are n - 2, every diagonal belongs
- * to two of them and every side to one. */
+/* Each triangle cuts its middle corner off the rest: so there are n - 2 triangles, every diagonal
+ * belongs to two of them and every side to one. */
 static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
 {
     uint32_t n = f->n, *next = calloc(n, sizeof *next);
@@ -50,7 +50,7 @@ static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
     free(next);
 }
 
-/* Triangles that all turn left, and whose areas add up to the polygon's, cover it once. */
+/* Triangles that all turn left and whose areas add up to the polygon's area cover it once. */
 static void assert_covers(const he_flat *f, const uint32_t *corners)
 {
     double whole = 0, sum = 0;
@@ -106,7 +106,7 @@ static void every_shape_is_covered(void **state)
     }
 }
 
-/* Steps, not seconds: at most a few times n log n for any of them. */
+/* Counted in steps, not seconds: at most a few times n log n for any polygon. */
 static void work_grows_as_n_log_n(void **state)
 {
     (void)state;
@@ -133,7 +133,7 @@ static void work_grows_as_n_log_n(void **state)
     print_message("note: %s takes %.1f steps for each of n log2 n, others less\n", name, most);
 }
 
-/* --- random simple polygons, by an obvious test --- */
+/* --- random simple polygons, checked by an obvious test --- */
 
 /* xorshift64 (Marsaglia 2003) */
 static uint64_t random_bits(uint64_t *state)
@@ -158,8 +158,8 @@ static bool meet(const he_flat *f, uint32_t a, uint32_t b, uint32_t c, uint32_t 
            on_segment(f, c, d, b);
 }
 
-/* Turns pieces round until no two sides meet; false when that goes on too long, or where points lie
- * on sides. Points are few and on a grid, so that three often lie on a line. */
+/* Reverses pieces until no two sides cross; returns false if that takes too long, or if points lie
+ * on sides. There are few points, on a grid, so that three are often collinear. */
 static bool untangle(he_flat *f)
 {
     uint32_t n = f->n;
@@ -202,7 +202,7 @@ static bool untangle(he_flat *f)
     return false;
 }
 
-/* No diagonal meets a side but at its ends. */
+/* No diagonal meets a side except at its ends. */
 static void assert_inside(const he_flat *f, const uint32_t *corners)
 {
     for (uint32_t k = 0; k + 3 < f->n; k++) {
@@ -284,7 +284,8 @@ static void what_meets_itself_is_not_swept(void **state)
 
 /* --- edges, memory, watches --- */
 
-/* Exports take what was cut without looking at edges where none of its diagonals is one. */
+/* An export uses triangles computed without regard to edges if none of their diagonals is an
+ * edge. */
 static void avoiding_edges_changes_nothing_where_there_are_none(void **state)
 {
     (void)state;
@@ -358,13 +359,13 @@ static void a_long_loop_is_given_up(void **state)
         assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
                          HE_CANCELLED);
         assert_int_equal(told, 1);
-        /* Not long after the first time: a corner, or a sweep, later. */
+        /* Soon after the first time: one corner, or one sweep, later. */
         assert_true(work.steps < 40 * 40000);
         he_mesh_free(m);
     }
 }
 
-/* --- what a copy keeps --- */
+/* --- what a copy of the mesh keeps --- */
 
 static he_replay *replay_of(const polygon_shape *shape, uint32_t n)
 {
@@ -385,7 +386,7 @@ static uint64_t steps_of(const he_mesh *m, unsigned flags, uint32_t *first)
     return steps;
 }
 
-/* The tree of boxes, the arrays of a renderer and the formats of triangles cut a face once. */
+/* The tree of boxes, the arrays of a renderer and formats of triangles triangulate a face once. */
 static void a_long_face_is_cut_once_for_all(void **state)
 {
     (void)state;
@@ -466,8 +467,8 @@ static void keeping_fails_cleanly(void **state)
     he_replay_free(replay);
 }
 
-/* A hundred corners, alone and together with three hundred that are far from all triangles: those
- * alone are a list. */
+/* A hundred corners, alone and together with three hundred that are far from all triangles: a
+ * hundred alone are kept as a list. */
 static void a_list_of_corners_finds_what_a_tree_finds(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Progress never falls and has steps enough to see; work that is given up leaves nothing behind. */
+/* Progress never decreases and has enough steps to be visible; cancelled work leaves nothing
+ * behind. */
 #include "tests/unit/fixture.h"
 
 #include "algo/shape.h"
@@ -19,7 +20,7 @@
 #include "query/curvature.h"
 #include "query/topology.h"
 
-/* --- memory that is counted --- */
+/* --- counted memory --- */
 
 static size_t blocks;
 
@@ -58,7 +59,7 @@ static bool hear(void *context, const char *phase, double done)
     return l->told != l->give_up_at;
 }
 
-enum { SIDE = 130 }; /* cells of a grid: work enough that each phase asks more than once */
+enum { SIDE = 130 }; /* cells of a grid: enough work that each phase polls more than once */
 
 static he_status make(he_watch *watch, he_mesh **out)
 {
@@ -137,7 +138,7 @@ static void making_is_given_up_anywhere_and_leaves_nothing(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* --- files that are read at their end --- */
+/* --- files that are read when complete --- */
 
 typedef struct file {
     const char *format;
@@ -145,7 +146,7 @@ typedef struct file {
     size_t length;
 } file;
 
-/* A grid of quads with an attribute of faces, which are in extras. */
+/* A grid of quads with an attribute of faces, which is in extras. */
 static file grid_glb(void)
 {
     he_mesh *mesh = NULL;
@@ -229,7 +230,7 @@ static void a_file_that_is_read_at_its_end_is_given_up_anywhere(void **state)
     }
 }
 
-/* --- what is found before an answer --- */
+/* --- work before an answer --- */
 
 typedef struct finding {
     const char *name;
@@ -476,7 +477,7 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
         blocks = 0;
         assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
         size_t before = blocks;
-        /* What was given up is tried again on the same mesh, for it is as it was. */
+        /* Cancelled work is tried again on the same mesh, which is unchanged. */
         for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 23) {
             listener l = {.give_up_at = n};
             status = run_recorded(operations[i], copy, &l);
@@ -527,7 +528,7 @@ static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **stat
 
 enum { WORDS = 5000, WRITES = 400000 };
 
-/* Writes to `words` all over the place, recorded. */
+/* Writes to `words` at places all over, recorded. */
 static he_delta *write_words(uint32_t *words)
 {
     he_delta *delta = he_delta_new();
