@@ -1,4 +1,4 @@
-/* bisect.h - a vertex put on an edge, and taken off again. */
+/* bisect.h - puts a vertex on an edge (edge_bisect), and removes it again (edge_join). */
 #ifndef HE_EDIT_LOCAL_BISECT_H
 #define HE_EDIT_LOCAL_BISECT_H
 
@@ -15,26 +15,32 @@
  * half-edge 2e' in the direction of 2e, and has e as its parent. w lies at t from a (0) to b (1).
  * Corner values at w are between those of the same face at a and b.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BAD_VALUE unless 0 < t < 1. HE_NO_MEMORY,
- * HE_IDS_EXHAUSTED. Outputs may be NULL. */
+ * Outputs may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BAD_VALUE unless 0 < t < 1.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex *vertex,
                                       he_edge *edge, he_error *err);
 
-/* edge_join: V - 1, E - 1, F + 0. The inverse: the vertex v of degree 2 goes, and so does the edge
- * of the higher id at v; the other keeps its id and direction.
+/* edge_join: V - 1, E - 1, F + 0. The inverse: the vertex v of degree 2 is deleted, and so is the
+ * edge of the higher id at v; the other keeps its id and direction.
  *
  *           a     v     b                  a           b
  *           o-----o-----o       --->       o-----------o
  *              e    e'                           e
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_WRONG_DEGREE for another degree;
- * HE_TRIANGLE_SIDE when a face at v is a triangle; HE_DOUBLED_EDGE when an edge joins a and b
- * already; HE_LOCKED_ELEMENT for v, an edge or a face at it. HE_NO_MEMORY. `edge` is the one that
- * stays, and may be NULL. */
+ * `edge` is the one that stays, and may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_WRONG_DEGREE if v has another degree.
+ * Returns HE_TRIANGLE_SIDE if a face at v is a triangle.
+ * Returns HE_DOUBLED_EDGE if an edge joins a and b already.
+ * Returns HE_LOCKED_ELEMENT if v, an edge or a face at it is locked.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
-/* COMMIT of edge_bisect, for edits that check and reserve themselves. `need` grows by what it
- * writes. Returns the new half-edge 2e'. */
+/* The COMMIT part of edge_bisect, for edits that check and reserve themselves. he_bisect_need adds
+ * what it writes to `need`; he_bisect_commit returns the new half-edge 2e'. */
 void he_bisect_need(he_need *need);
 he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t);
 

@@ -12,7 +12,7 @@ static he_status refuse(he_error *err, he_halfedge h, const char *rule, const ch
                    he_edge_of(h).i, rule, kind, id);
 }
 
-/* The corner opposite h in a triangle on its left, HE_NONE without one. */
+/* Returns the corner opposite h in a triangle on its left, HE_NONE if there is no triangle. */
 static he_vertex opposite(const he_mesh *m, he_halfedge h)
 {
     return he_is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
@@ -20,15 +20,16 @@ static he_vertex opposite(const he_mesh *m, he_halfedge h)
 
 enum { SMALL_RING = 24, BLOCK = 8 };
 
-/* The half-edges that leave a vertex, and their targets, filled up to whole blocks by HE_NONE. */
+/* The half-edges that leave a vertex, and their targets, padded with HE_NONE to whole blocks. */
 typedef struct ring {
     uint32_t count, out[SMALL_RING], target[SMALL_RING];
 } ring;
 
-/* Where two hands are that go about a vertex from one half-edge on, and what is not seen yet. */
+/* Two walks in opposite directions around a vertex from one half-edge on, and what is not visited
+ * yet. */
 typedef struct hands {
     he_halfedge up, down;
-    uint32_t ups, downs; /* filled from the front of the ring, and from the back */
+    uint32_t ups, downs; /* entries written from the front of the ring, and from the back */
     bool open;
 } hands;
 
@@ -38,7 +39,7 @@ static void put(const he_mesh *m, ring *r, uint32_t place, he_halfedge h)
     r->target[place] = he_target(m, h).i;
 }
 
-/* One turn of either hand. False where the ring is not small. */
+/* Advances each walk by one. Returns false if the ring is not small. */
 static bool turn(const he_mesh *m, hands *at, ring *r)
 {
     if (at->ups + at->downs + 2 > SMALL_RING) {
@@ -55,7 +56,7 @@ static bool turn(const he_mesh *m, hands *at, ring *r)
     return true;
 }
 
-/* In the order of turning counter-clockwise from h. */
+/* Sorts the entries in the order of turning counter-clockwise from h. */
 static void close_ring(const hands *at, ring *r)
 {
     r->count = at->ups;
@@ -68,8 +69,8 @@ static void close_ring(const hands *at, ring *r)
     }
 }
 
-/* Both ends' rings, from h and its twin on. Each turn waits for memory: they are turned about in
- * step, and both ways at once. False where one is not small. */
+/* Gathers both ends' rings, from h and from its twin on. Each step waits for memory, so the walks
+ * in both directions around both ends advance together. Returns false if a ring is not small. */
 static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
 {
     ring *const rings[2] = {of_u, of_v};
@@ -101,7 +102,8 @@ static bool is_in(const ring *r, uint32_t vertex)
     return found;
 }
 
-/* L1, and L4 by the way: both turn about u. Without `of_v` its ring is searched for each. */
+/* Checks L1, and L4 in the same walk around u. Without `of_v` the ring of v is searched for each
+ * neighbour. */
 static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
                                  he_vertex c, he_vertex d, he_error *err)
 {
@@ -110,7 +112,7 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
         (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
         return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
     }
-    /* All corners of a triangle about u are neighbours of u. */
+    /* All corners of a triangle at u are neighbours of u, so L1 covers it. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
         return HE_OK;
     }
@@ -141,7 +143,7 @@ static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
-/* L3 for the triangle left of h. */
+/* Checks L3 for the triangle left of h. */
 static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
     if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
@@ -152,7 +154,7 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
     return HE_OK;
 }
 
-/* Is h's origin interior with three triangles about it? */
+/* Is h's origin interior with three triangles around it? */
 static bool is_apex(const he_mesh *m, he_halfedge h)
 {
     he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
@@ -187,7 +189,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
-/* Everything about u goes or comes to v. */
+/* Checks the locks of everything at u, which is deleted or moved to v. */
 static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                              he_error *err)
 {
@@ -199,8 +201,7 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
-/* How many feature edges has the origin of h? One of them, other than that of h where it can be,
- * goes to *which. */
+/* Counts the feature edges at the origin of h. *which is one of them, if possible not that of h. */
 static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
                                he_edge *which)
 {
@@ -216,7 +217,7 @@ static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfe
     return count;
 }
 
-/* F1 to F4 of marks.h. */
+/* Checks F1 to F4 of marks.h. */
 static he_status check_features(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                                 he_error *err)
 {
@@ -262,8 +263,8 @@ static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_
     return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
 }
 
-/* The triangle left of h is now a face of the two half-edges kept and gone, of which `gone` goes:
- * `kept` takes the place of its twin, `outer`. */
+/* The triangle left of h now has only two sides, kept and gone. Deletes `gone`: `kept` takes the
+ * place of its twin, `outer`. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
 {
     he_halfedge outer = he_twin(gone);
@@ -289,7 +290,7 @@ static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
     he_delete_face(m, f);
 }
 
-/* Take h out of the loop on its left. */
+/* Takes h out of the loop on its left. */
 static void unlink_side(he_mesh *m, he_halfedge h)
 {
     he_face f = he_face_of(m, h);
@@ -328,7 +329,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* There is no boundary to turn about v for, which may have very many edges. */
+        /* v is interior, so the search for a boundary half-edge around it, which may take long, is
+         * not needed. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

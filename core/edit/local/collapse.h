@@ -1,10 +1,11 @@
-/* collapse.h - an edge drawn together to one vertex. */
+/* collapse.h - collapses an edge to one vertex. */
 #ifndef HE_EDIT_LOCAL_COLLAPSE_H
 #define HE_EDIT_LOCAL_COLLAPSE_H
 
 #include "mesh/mesh.h"
 
-/* edge_collapse of h: u -> v. u goes, v stays; V - 1 and, by what lies beside the edge,
+/* edge_collapse of h: u -> v. u is deleted, v stays; V - 1 and, depending on the faces beside the
+ * edge,
  *
  *     two triangles              E - 3, F - 2     triangle and boundary   E - 2, F - 1
  *     triangle and polygon       E - 2, F - 1     otherwise               E - 1, F + 0
@@ -21,35 +22,39 @@
  *              o                             o
  *              d                             d
  *
- * A triangle u, v, c beside the edge goes and its sides become one edge: that of v stays, that of
- * u is merged into it. A polygon loses the corner u. Everything else about u is about v then.
+ * A triangle u, v, c beside the edge is deleted and its other sides become one edge: the side at v
+ * stays, the side at u is merged into it. A polygon loses the corner u. All other edges and faces
+ * at u are moved to v.
  *
- * v goes to `to`, or when that is NULL to the point at t from u (0) to v (1); interpolated
- * attributes of v are taken at t, or half-way with `to`. Edges that become one take their mean.
+ * v moves to `to`, or if that is NULL to the point at t from u (0) to v (1); interpolated
+ * attributes of v are taken at t, or half-way with `to`. A merged edge takes the mean of both.
  *
- * The link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge
- * contraction", 1999), for polygons and boundaries:
+ * The link condition (Dey, Edelsbrunner, Guha and Nekhayev, "Topology preserving edge contraction",
+ * 1999), for polygons and boundaries:
  *
  *     L1  The common neighbours of u and v are the opposite corners of the triangles beside the
  *         edge, and those two differ.
  *     L2  If both ends are on the boundary, so is the edge.
  *     L3  The two other sides of a triangle beside the edge are not both on the boundary.
- *     L4  No face but those beside the edge has both u and v as corners.
+ *     L4  No face except those beside the edge has both u and v as corners.
  *     L5  The edge is not one of a tetrahedron.
  *
- * Given these no two edges become doubled (L1, L3) and no fan closes beside another: an interior
- * edge has an interior end (L2), whose only fan opens at the edge and is spliced into the other
- * end's; at a boundary edge two open fans are put end to end, and the outer ends stay apart (L3).
+ * If these hold, no edge is doubled (L1, L3) and no fan closes beside another: an interior edge has
+ * an interior end (L2), whose only fan opens at the edge and is spliced into the other end's; at a
+ * boundary edge two open fans are put end to end, and the outer ends stay apart (L3).
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_LINK_CONDITION, which names the part that
- * fails; HE_BAD_VALUE unless 0 <= t <= 1; HE_NOT_FINITE for `to`; HE_LOCKED_ELEMENT and
- * HE_FEATURE_EDGE by the rules of marks.h. HE_NO_MEMORY.
  * `vertex` is v and may be NULL. Costs at most the half-edges of the mesh, and for bounded degrees
- * a constant. */
+ * a constant.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_LINK_CONDITION if a part of it fails, which the message names.
+ * Returns HE_BAD_VALUE unless 0 <= t <= 1.
+ * Returns HE_NOT_FINITE if `to` is not finite.
+ * Returns HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if the rules of marks.h forbid it.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
 
-/* The same, with v going to `to` and attributes taken at t. */
+/* he_edge_collapse with both: v moves to `to`, and attributes are taken at t. */
 HE_NODISCARD he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to,
                                            he_error *err);
 

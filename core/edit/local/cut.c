@@ -7,7 +7,8 @@ void he_cut_need(uint32_t corners, he_need *need)
 {
     need->edges++;
     need->faces++;
-    need->links += (size_t)corners + 5; /* faces; four links of neighbours, a stored half-edge */
+    need->links +=
+        (size_t)corners + 5; /* the faces; four links of neighbours, one stored half-edge */
     need->lineage++;
 }
 
@@ -113,8 +114,8 @@ he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
     return HE_OK;
 }
 
-/* A corner of face(h), other than the ends of h, that lies on `other` too; HE_NONE without one.
- * Turns about each corner, so it costs at most the half-edges of the mesh. */
+/* Returns a corner of face(h), other than the ends of h, that is on `other` too; HE_NONE if there
+ * is none. Walks around each corner, so it costs at most the half-edges of the mesh. */
 static he_vertex shared_corner(const he_mesh *m, he_halfedge h, he_face other)
 {
     he_halfedge x = he_next(m, he_next(m, h));

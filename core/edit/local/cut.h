@@ -1,4 +1,5 @@
-/* cut.h - a face cut in two by a diagonal, and two faces joined over an edge. */
+/* cut.h - splits a face by a diagonal (face_split), and joins two faces over an edge
+ * (face_join). */
 #ifndef HE_EDIT_LOCAL_CUT_H
 #define HE_EDIT_LOCAL_CUT_H
 
@@ -17,18 +18,23 @@
  * The part to the left of from -> to keeps the id of f and its values; the other is new, descends
  * from f and has the half-edge `from`. The new corners copy those they were cut from.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT for face or half-edge; HE_NOT_A_CORNER for a
- * half-edge of another face; HE_SAME_CORNER; HE_ADJACENT_CORNERS; HE_DOUBLED_EDGE when an edge
- * elsewhere joins the two vertices. HE_NO_MEMORY, HE_IDS_EXHAUSTED. Outputs may be NULL. */
+ * Outputs may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the face or a half-edge is not live.
+ * Returns HE_NOT_A_CORNER if a half-edge is of another face.
+ * Returns HE_SAME_CORNER if both are one corner.
+ * Returns HE_ADJACENT_CORNERS if the corners are neighbours.
+ * Returns HE_DOUBLED_EDGE if an edge elsewhere joins the two vertices.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
                                      he_edge *edge, he_face *face, he_error *err);
 
-/* The half-edge that leaves vertex v inside face f, both live: HE_NONE when v is no corner of f. */
+/* Returns the half-edge that leaves vertex v inside face f, both live; HE_NONE if v is no corner of
+ * f. */
 he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
-/* face_join: V + 0, E - 1, F - 1. The inverse: the edge goes, and the face of its half-edge 2e
- * grows over the other one, which becomes part of it. Interpolated attributes of f become the mean
- * of both.
+/* face_join: V + 0, E - 1, F - 1. The inverse: the edge is deleted, and the other face is merged
+ * into f, the face of its half-edge 2e. Interpolated attributes of f become the mean of both.
  *
  *           o-------o-------o             o-------o-------o
  *           |       ^       |             |               |
@@ -36,14 +42,18 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  *           |       |       |             |               |
  *           o-------o-------o             o-------o-------o
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_SHARED_BOUNDARY when the
- * faces have another corner in common, at which f would pass twice; HE_LOCKED_ELEMENT for the edge
- * or one of the faces. HE_NO_MEMORY. `face` is f and may be NULL. */
+ * `face` is f and may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
+ * Returns HE_SHARED_BOUNDARY if the faces have another corner in common, at which f would pass
+ * twice.
+ * Returns HE_LOCKED_ELEMENT if the edge or one of the faces is locked.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
-/* COMMIT of face_split, for edits that check and reserve themselves. `need` grows by what cutting
- * off a face of `corners` corners writes. Returns half-edge 2e of the diagonal; the new face is
- * that of its twin. */
+/* The COMMIT part of face_split, for edits that check and reserve themselves. he_cut_need adds to
+ * `need` what cutting off a face of `corners` corners writes. he_cut_commit returns half-edge 2e of
+ * the diagonal; the new face is that of its twin. */
 void he_cut_need(uint32_t corners, he_need *need);
 he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to);
 

@@ -4,7 +4,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The corners of the face that would be there. */
+/* Lists the corners of the merged face. */
 static he_status find_ring(const he_mesh *m, he_vertex v, he_ids *ring, he_error *err)
 {
     he_status status = HE_OK;
@@ -75,8 +75,8 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
     if (stored.i == first.i || stored.i == he_prev(m, first).i) {
         he_set_face_halfedge(m, f, he_next(m, first));
     }
-    double taken = 0; /* faces that f has taken in */
-    /* The spokes' own links stay until they are deleted, and lead about v all the while. */
+    double taken = 0; /* faces merged into f */
+    /* The spokes keep their own links until they are deleted, so turning about v still works. */
     do {
         he_halfedge next = he_turn_ccw(m, k), back = he_twin(k), out = he_next(m, k);
         he_vertex a = he_target(m, k);

@@ -1,4 +1,4 @@
-/* dissolve.h - a vertex taken out of the middle of its faces. */
+/* dissolve.h - removes a vertex and merges the faces around it. */
 #ifndef HE_EDIT_LOCAL_DISSOLVE_H
 #define HE_EDIT_LOCAL_DISSOLVE_H
 
@@ -10,16 +10,19 @@
  *        | \       / |               |           |
  *        |   \   /   |               |           |
  *        |     v     |      --->     |     f     |        f is the face of the half-edge that v
- *        |   /   \   |               |           |        stores; the others become part of it.
+ *        |   /   \   |               |           |        stores; the others are merged into it.
  *        | /   f   \ |               |           |
  *        o-----------o               o-----------o
  *
- * The inverse of face_poke. Corners keep their values; what is interpolated becomes the mean of the
- * faces. `face` is f and may be NULL.
+ * The inverse of face_poke. Corners keep their values; interpolated attributes of f become the mean
+ * of the faces. `face` is f and may be NULL.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_VERTEX; HE_REPEATED_CORNER when the
- * ring of the faces about v passes a vertex twice, HE_TOO_FEW_CORNERS when it has only two;
- * HE_LOCKED_ELEMENT for v, or an edge or face about it. HE_NO_MEMORY. */
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BOUNDARY_VERTEX if the vertex is on the boundary.
+ * Returns HE_REPEATED_CORNER if the loop around the faces at v passes a vertex twice.
+ * Returns HE_TOO_FEW_CORNERS if it has only two corners.
+ * Returns HE_LOCKED_ELEMENT if v, or an edge or face at it, is locked.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_vertex_dissolve(he_mesh *m, he_vertex v, he_face *face, he_error *err);
 
 #endif

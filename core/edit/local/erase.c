@@ -10,14 +10,14 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
     return he_is_boundary_halfedge(m, he_twin(h));
 }
 
-/* What erasing a face writes when `doomed` other faces about it may already be gone: then every
- * edge may die. */
+/* Adds what erasing a face writes. If it is not `alone`, faces around it may be deleted before, so
+ * every edge may die. */
 static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
-        /* The face and the stored half-edge of each corner, then per dying edge two pairs of
-         * links and two stored half-edges. */
+        /* The face and the stored half-edge of each corner; for each dying edge two pairs of links
+         * and two stored half-edges. */
         need->links += 2;
         if (!alone || edge_would_die(m, h)) {
             need->links += 6;
@@ -29,8 +29,8 @@ static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
     need->deleted_faces++;
 }
 
-/* Take an edge without faces out of the rings of its ends. Where another half-edge is left there
- * it is a boundary one: the one that followed in the hole. */
+/* Takes an edge without faces out of the rings of its ends. If an end has another half-edge, the
+ * one that followed in the hole is a boundary half-edge and becomes the stored one. */
 static void erase_edge(he_mesh *m, he_edge e)
 {
     for (unsigned side = 0; side < 2; side++) {
@@ -62,9 +62,9 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     } while (h.i != first.i);
     he_delete_face(m, f);
 
-    /* Erasing an edge relinks its neighbours in the loop, so the walk holds on to the next
-     * half-edge, which a dying edge before it does not take away. The last one is known by count:
-     * the first may be gone by then. */
+    /* Erasing an edge relinks its neighbours in the loop, so the walk keeps the next half-edge,
+     * which does not die before its turn. The end is found by counting, because the first half-edge
+     * may be dead by then. */
     uint32_t corners = he_loop_length(m, first);
     for (uint32_t i = 0; i < corners; i++) {
         he_halfedge next = he_next(m, h);
@@ -82,7 +82,8 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     }
 }
 
-/* Is anything locked that goes with face f, erased now? A corner goes when the face is its last. */
+/* Is anything locked that would be deleted with face f? A corner is deleted if the face is its
+ * last. */
 static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
     he_marks marks;
@@ -105,7 +106,7 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Is there no face left of h but one of these, which go? */
+/* Is the face left of h a hole or one of these, which are deleted? */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
@@ -124,7 +125,8 @@ static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
     return true;
 }
 
-/* What goes with the faces about a vertex is unlocked. Locked corners are turned about once. */
+/* Checks that what is deleted with the faces around the vertices is unlocked. Each locked corner is
+ * visited once. */
 static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_leftover leftover,
                                   he_error *err)
 {
@@ -218,7 +220,7 @@ he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_lef
     for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
         he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
         status = he_watch_at(m->watch, i, 2 * count, err);
-        /* Gone already with a face it shares with an edge before it? */
+        /* It may be deleted already, with a face beside an earlier edge of the list. */
         if (status == HE_OK && he_edge_is_live(m, he_edge_of(h)) &&
             !he_is_boundary_halfedge(m, h)) {
             status = erase_one(m, he_face_of(m, h), leftover, err);

@@ -1,20 +1,20 @@
-/* erase.h - taking faces and vertices away.
+/* erase.h - deletes faces, edges and vertices.
  *
  * A deleted face leaves a hole: its half-edges keep their links and become boundary half-edges.
- * Edges with no face left go, so holes that touch along an edge merge; links about a vertex only
- * ever lose half-edges that leave it, so the ring still visits every fan and a bow-tie may appear.
+ * Edges without a face left are deleted, so holes that touch along an edge merge; the ring of a
+ * vertex only loses half-edges, so it still visits every fan, and a bow-tie may appear.
  *
  *        o-------o-------o            o-------o-------o
  *        |       |       |            |       |       |
  *        |   f   |   g   |    --->    |       |   g   |
  *        |       |       |            |       |       |
  *        o-------o-------o            .       o-------o
- *                                   goes      (the left edges had no other face)
+ *                                   deleted   (the left edges had no other face)
  *
- * Vertices left without an edge go too, unless they are to be kept as isolated ones.
+ * Vertices left without an edge are deleted too, unless the caller asks to keep them.
  *
- * All may be refused with HE_LOCKED_ELEMENT for a face, edge or vertex that would go (marks.h), and
- * fail with HE_NO_MEMORY; a refusal or failure leaves the mesh as it was. */
+ * Every function returns HE_LOCKED_ELEMENT if a face, edge or vertex that would be deleted is
+ * locked (marks.h), and HE_NO_MEMORY if memory is out; the mesh is then as it was. */
 #ifndef HE_EDIT_LOCAL_ERASE_H
 #define HE_EDIT_LOCAL_ERASE_H
 
@@ -23,23 +23,28 @@
 /* What happens to vertices left without an edge. */
 typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 
-/* face_delete: F - count, V and E as above. Other elements keep their ids. Refused, all or
- * nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT. */
+/* face_delete: F - count, V and E as above. Other elements keep their ids. All or nothing: a
+ * refusal changes nothing.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* edge_delete: the faces beside the edges go as by face_delete, and with them the edges. A face
- * beside two of the edges goes once. V varies, E - count at least, F - the faces beside them.
- * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT. */
+/* edge_delete: deletes the faces beside the edges as face_delete does, and with them the edges. A
+ * face beside two of the edges is deleted once. V varies, E - count at least, F - the faces beside
+ * them. All or nothing: a refusal changes nothing.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count,
                                       he_leftover leftover, he_error *err);
 
-/* vertex_delete: the faces of v go as by face_delete, then v itself; `leftover` is about the other
- * vertices. An isolated vertex just goes. Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT. */
+/* vertex_delete: deletes the faces of v as face_delete does, then v itself; `leftover` is for the
+ * other vertices. An isolated vertex is simply deleted.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live. */
 HE_NODISCARD he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover,
                                         he_error *err);
 
-/* delete_isolated: V - n, E + 0, F + 0. Every vertex without an edge goes. */
+/* delete_isolated: V - n, E + 0, F + 0. Deletes every vertex without an edge. */
 HE_NODISCARD he_status he_delete_isolated(he_mesh *m, he_error *err);
 
 #endif

@@ -3,7 +3,7 @@
 #include "edit/piece/list.h"
 #include "edit/piece/ring.h"
 
-/* The boundary half-edge that runs from a to b, or HE_NONE when no edge joins them. */
+/* Finds the boundary half-edge that runs from a to b; HE_NONE if no edge joins them. */
 static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t *out, he_error *err)
 {
     he_halfedge h = he_find_halfedge(m, a, b);
@@ -33,7 +33,7 @@ static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_er
                    he_vertex_fans(m, (he_vertex){v}) - 1);
 }
 
-/* sides[i] becomes the half-edge that runs from vertices[i] to the next. */
+/* Fills sides[i] with the half-edge that runs from vertices[i] to the next. */
 static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides,
                        he_error *err)
 {
@@ -59,8 +59,8 @@ static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uin
     return HE_OK;
 }
 
-/* Link the corner between two sides, of which some are new and have no links yet. Touches only
- * links about this vertex. */
+/* Links the corner between two sides, of which some are new and have no links yet. Writes only
+ * links at this vertex. */
 static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out,
                         bool out_is_new)
 {
@@ -85,7 +85,7 @@ static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new,
     }
 }
 
-/* The stored half-edge must stay a boundary one (I8) while the fan at v is not closed. */
+/* While the fan at v is open, the stored half-edge must be a boundary one (I8). */
 static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out)
 {
     he_halfedge stored = he_vertex_halfedge(m, v);
@@ -105,7 +105,7 @@ static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_n
 static void commit(he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides, he_face *out,
                    he_ids *edges)
 {
-    /* Sides that are new have ids from here on. */
+    /* New sides have ids from here on. */
     uint32_t old = 2 * m->c.edges.issued;
     for (size_t i = 0; i < n; i++) {
         if (sides[i] == HE_NONE) {

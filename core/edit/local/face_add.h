@@ -1,4 +1,4 @@
-/* face_add.h - a face over vertices that are there. */
+/* face_add.h - adds a face over existing vertices. */
 #ifndef HE_EDIT_LOCAL_FACE_ADD_H
 #define HE_EDIT_LOCAL_FACE_ADD_H
 
@@ -8,26 +8,31 @@
  *
  *        c       d                    c - - - d           The face runs counter-clockwise through
  *        |       |                    |       |           the vertices in the order given. Edges
- *        |       |      a,b,d,c       |  new  |           it needs that are there must be on the
+ *        |       |      a,b,d,c       |  new  |           it needs that exist must be on the
  *        a-------b      --->          a-------b           boundary on its side and are adopted.
  *
- * Where two of its sides meet at a vertex v and both are there, the face fills the gap between two
- * fans. When other fans lie in that gap their links are moved to another gap first:
+ * If two of its sides meet at a vertex v and both exist, the face fills the gap between two fans.
+ * If other fans lie in that gap, their links are moved to another gap first:
  *
  *        ring at v:  Y, Z.., X, W..   --->   Y + new + X, Z.., W..
  *
- * which always works unless X and Y are one fan: then it would close, and that is allowed only
- * when the vertex has no other.
+ * This works unless X and Y are one fan: the face would close it, which is allowed only if the
+ * vertex has no other fan.
  *
  * The old elements keep their ids. `out` is the face, whose half-edge leaves the first vertex; the
  * ids of new edges are appended to `edges`, in the face's order. Both may be NULL. Half-edge 2e of
  * a new edge runs along the face.
  *
- * Refused: HE_TOO_FEW_CORNERS; HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_CORNER for a
- * vertex; HE_INTERIOR_VERTEX for one with a closed fan; HE_NONMANIFOLD_EDGE for an edge with two
- * faces, HE_ORIENTATION for one with a face on this side; HE_CLOSED_FAN at a vertex as above.
- * A doubled edge cannot come about: an edge that joins two neighbours is adopted or refused.
- * HE_NO_MEMORY, HE_IDS_EXHAUSTED. */
+ * No edge can be doubled: an edge that joins two neighbours is adopted or refused.
+ * Returns HE_TOO_FEW_CORNERS if there are fewer than three vertices.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_CORNER if a vertex is not live or
+ * is listed twice.
+ * Returns HE_INTERIOR_VERTEX if a vertex has a closed fan.
+ * Returns HE_NONMANIFOLD_EDGE if a side is an edge with two faces.
+ * Returns HE_ORIENTATION if a side is an edge with a face on this side.
+ * Returns HE_CLOSED_FAN if a fan would close beside another.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_add(he_mesh *m, const uint32_t *vertices, size_t count, he_face *out,
                                    he_ids *edges, he_error *err);
 

@@ -3,7 +3,8 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* The next corner after `a` on what is left of the face, or its last one once the face is gone. */
+/* Returns the side after corner `a` of what is left of the face; if the face is deleted already,
+ * the last side. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {
@@ -16,8 +17,8 @@ static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex
     return he_twin(h);
 }
 
-/* What checking one side may look at, at most: the loops about the corners, but for f's own. Every
- * step does it again, about a vertex that has taken in the ones before. */
+/* Bounds the work of checking the sides: the loops at the corners, except f's own. Every step
+ * visits them again, at a vertex into which the corners before were merged. */
 static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *err)
 {
     uint64_t steps = 0, most = HE_FACE_COLLAPSE_STEPS / n;
@@ -60,7 +61,7 @@ he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *e
         return status;
     }
     for (uint32_t k = 1; status == HE_OK && k < n; k++) {
-        /* From the one that goes to a, which stands for k corners already. */
+        /* The weight of the corner that is merged into a, which stands for k corners already. */
         double t = (double)k / (k + 1);
         status = he_edge_collapse(m, next_side(m, f, a, last), t, NULL, NULL, err);
     }

@@ -1,15 +1,15 @@
-/* face_collapse.h - a face drawn together to one vertex. */
+/* face_collapse.h - collapses a face to one vertex. */
 #ifndef HE_EDIT_LOCAL_FACE_COLLAPSE_H
 #define HE_EDIT_LOCAL_FACE_COLLAPSE_H
 
 #include "mesh/mesh.h"
 
-/* The work of one face: its corners times the half-edges of the loops about them. */
+/* The most work for one face: its corners times the half-edges of the loops at them. */
 enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
 
-/* face_collapse: a face of n corners goes, and its corners become one vertex at their mean:
- * V - (n - 1). Among polygons of more corners E - n, F - 1; a triangle beside one of the sides goes
- * too, with another edge.
+/* face_collapse: a face of n corners is deleted, and its corners become one vertex at their mean: V
+ * - (n - 1). Among polygons of more corners E - n, F - 1; a triangle beside one of the sides is
+ * deleted too, with another edge.
  *
  *        o---o---o---o               o----o----o
  *        |   |   |   |               |\   |   /|
@@ -19,13 +19,16 @@ enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
  *        |   |   |   |               |/   |   \|
  *        o---o---o---o               o----o----o
  *
- * It is edge_collapse of the sides, in order: a, the corner that the stored half-edge leaves, stays
- * and takes in the one after it, until only the two ends of the last side are left, then that one.
- * Interpolated attributes of a become the mean of the corners'.
+ * It runs edge_collapse on the sides, in order: a, the corner that the stored half-edge leaves,
+ * stays, and the corner after it is merged into it, until only the two ends of the last side are
+ * left, which is collapsed too. Interpolated attributes of a become the mean of the corners'.
  *
- * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; what edge_collapse refuses at
- * any of these steps: HE_LINK_CONDITION, HE_LOCKED_ELEMENT, HE_FEATURE_EDGE; HE_LIMIT where that is
- * too much work. HE_NO_MEMORY. `vertex` is a and may be NULL. */
+ * All or nothing: a refusal changes nothing. `vertex` is a and may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_LINK_CONDITION or HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if edge_collapse refuses one of
+ * the sides.
+ * Returns HE_LIMIT if that is more work than HE_FACE_COLLAPSE_STEPS.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *err);
 
 #endif

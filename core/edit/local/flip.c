@@ -4,7 +4,8 @@
 #include "mesh/marks.h"
 
 /* The origin of h, of edge e, loses that edge and must keep three unless it is on the boundary.
- * Three turns tell: a thousand flips about one vertex would each turn all about it. */
+ * Three steps around the vertex decide whether its degree is at least 4: a walk around the whole
+ * vertex would make a thousand flips at one vertex slow. */
 static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_halfedge second = he_turn_ccw(m, he_turn_ccw(m, h));
@@ -60,14 +61,15 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    /* From here on the search turns both ways about c, and has both sides of face(h) at hand. */
+    /* This half-edge leaves c inside face(h), so the search, which walks in both directions around
+     * c, soon reaches both sides of that face. */
     he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
                        "edge %u already joins vertices %u and %u", he_edge_of(joined).i, c.i, d.i);
     }
     he_face f = he_face_of(m, h), g = he_face_of(m, t);
-    /* The corners of a triangle are a, b and its own third. */
+    /* A triangle has only the corners a, b and c, so d is none of them. */
     if (!he_is_triangle(m, h) && he_face_corner(m, f, d).i != HE_NONE) {
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would pass vertex %u twice",
                        f.i, d.i);
@@ -79,8 +81,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     return check_marks(m, e, err);
 }
 
-/* Move the origin of h, whose face loses that corner, to the corner after the other one's face:
- * `side` is the half-edge that follows twin(h) and comes over into face(h). */
+/* Moves the origin of h, whose face loses that corner, to the corner after the other end: `side` is
+ * the half-edge that follows twin(h) and moves into face(h). */
 static void turn_end(he_mesh *m, he_halfedge h, he_halfedge side)
 {
     he_vertex a = he_origin(m, h);

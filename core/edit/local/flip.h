@@ -1,4 +1,4 @@
-/* flip.h - an edge turned inside the two faces beside it. */
+/* flip.h - flips the edge between two faces. */
 #ifndef HE_EDIT_LOCAL_FLIP_H
 #define HE_EDIT_LOCAL_FLIP_H
 
@@ -18,14 +18,19 @@
  *
  * The corner values of f's new corner d are those it had in g, and the reverse for c.
  *
- * A fan loses or gains an edge between two of its faces, so none closes or opens.
+ * Every fan concerned loses or gains an edge between two of its faces, so none closes or opens.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_SAME_ENDS when c = d;
- * HE_LOW_DEGREE when an interior end has degree 3 or less (on the boundary an end of an interior
- * edge has at least 3 and keeps 2); HE_DOUBLED_EDGE when an edge joins c and d; HE_REPEATED_CORNER
- * when d is on f already, or c on g; HE_FEATURE_EDGE; HE_LOCKED_ELEMENT for the edge or one of the
- * faces (marks.h). HE_NO_MEMORY. Costs the corners of both faces and the lesser degree of c and d.
- */
+ * Costs the corners of both faces and the lesser degree of c and d.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
+ * Returns HE_SAME_ENDS if c = d.
+ * Returns HE_LOW_DEGREE if an interior end has degree 3 or less (on the boundary an end of an
+ * interior edge has at least 3 and keeps 2).
+ * Returns HE_DOUBLED_EDGE if an edge joins c and d.
+ * Returns HE_REPEATED_CORNER if d is on f already, or c on g.
+ * Returns HE_FEATURE_EDGE if the edge is a feature.
+ * Returns HE_LOCKED_ELEMENT if the edge or one of the faces is locked (marks.h).
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err);
 
 #endif

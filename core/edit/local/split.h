@@ -1,4 +1,4 @@
-/* split.h - an edge split together with the faces beside it. */
+/* split.h - splits an edge together with the faces beside it. */
 #ifndef HE_EDIT_LOCAL_SPLIT_H
 #define HE_EDIT_LOCAL_SPLIT_H
 
@@ -8,12 +8,12 @@ typedef struct he_split {
     he_vertex vertex;
     he_edge edges[3]; /* the new part of the edge, then the diagonals */
     he_face faces[2];
-    unsigned sides; /* faces beside the edge: 2, or 1 on the boundary; edges are one more */
+    unsigned sides; /* faces beside the edge: 2, or 1 on the boundary; there is one edge more */
 } he_split;
 
-/* edge_split: V + 1, E + 3, F + 2; on the boundary V + 1, E + 2, F + 1. edge_bisect, and in each
- * face beside the edge a diagonal from the new vertex w to the second corner after it: in a
- * triangle the opposite one.
+/* edge_split: V + 1, E + 3, F + 2; on the boundary V + 1, E + 2, F + 1. Bisects the edge
+ * (edge_bisect), and adds in each face beside it a diagonal from the new vertex w to the second
+ * corner after it, which in a triangle is the opposite one.
  *
  *              c                          c
  *             o                          o
@@ -31,9 +31,12 @@ typedef struct he_split {
  * Edge e and both faces keep the part with a, the origin of half-edge 2e. New edge and faces have
  * the old ones as parents; the diagonals have none. Left of 2e comes first.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BAD_VALUE unless 0 < t < 1; HE_DOUBLED_EDGE
- * when c = d, since both diagonals would join it to w. HE_NO_MEMORY, HE_IDS_EXHAUSTED.
- * `out` may be NULL. */
+ * `out` may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BAD_VALUE unless 0 < t < 1.
+ * Returns HE_DOUBLED_EDGE if c = d, since both diagonals would join it to w.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_edge_split(he_mesh *m, he_edge e, double t, he_split *out, he_error *err);
 
 #endif

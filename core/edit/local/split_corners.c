@@ -26,7 +26,7 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
     return HE_OK;
 }
 
-/* Put h into the corner of the half-edge that enters the vertex by it. */
+/* Puts h into the corner after the half-edge `enters`, which arrives at the vertex. */
 static void into_corner(he_mesh *m, he_halfedge enters, he_halfedge h)
 {
     he_halfedge leaves = he_next(m, enters);

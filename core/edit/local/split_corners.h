@@ -1,4 +1,4 @@
-/* split_corners.h - a vertex drawn apart between two of its corners. */
+/* split_corners.h - splits a vertex between two of its corners. */
 #ifndef HE_EDIT_LOCAL_SPLIT_CORNERS_H
 #define HE_EDIT_LOCAL_SPLIT_CORNERS_H
 
@@ -16,17 +16,21 @@
  *          f                         o   |   o
  *                                      a o
  *
- * The new edge lies between the two corners that part them: that of the face of twin(a), which is
- * clockwise before a, and that of twin(b). Either may be a hole's, and each face has one corner
+ * The new edge lies between the two corners that separate them: that of the face of twin(a), which
+ * is clockwise before a, and that of twin(b). Either may be a hole's, and each face has one corner
  * more. u lies where v does; half-edge 2e runs from u to v, so that edge_collapse of it is the
- * inverse. At a bow-tie whole fans may go along: in the order in which turning about v meets them.
+ * inverse. At a bow-tie whole fans may go to u too, in the order in which turning about v visits
+ * them.
  *
- * u and the edge descend from v and nothing; u and the new corners have the values of v and of the
+ * u descends from v, the edge has no parent; u and the new corners have the values of v and of the
  * corner that each was part of. Outputs may be NULL.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_SAME_CORNER when a is b;
- * HE_DIFFERENT_ORIGINS; HE_NO_FACE when both corners are a hole's. HE_NO_MEMORY,
- * HE_IDS_EXHAUSTED. */
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_SAME_CORNER if a is b.
+ * Returns HE_DIFFERENT_ORIGINS if a and b leave different vertices.
+ * Returns HE_NO_FACE if both corners are a hole's.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_vertex_split_corners(he_mesh *m, he_halfedge a, he_halfedge b,
                                                he_vertex *vertex, he_edge *edge, he_error *err);
 

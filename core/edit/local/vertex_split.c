@@ -63,8 +63,8 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     if (status != HE_OK) {
         return status;
     }
-    /* A null stands for the hole at v: the ring goes through it from the boundary half-edge that
-     * leaves v, its last, to the first of the fan. */
+    /* A null stands for the hole at v: the ring passes it from its last half-edge, the boundary
+     * half-edge that leaves v, to the first of the fan. */
     he_halfedge hole = he_vertex_halfedge(m, v);
     he_halfedge end = c.right.i != HE_NONE ? c.right : he_turn_ccw(m, hole);
     he_halfedge h = he_turn_ccw(m, c.left.i != HE_NONE ? c.left : hole);
@@ -117,7 +117,8 @@ static he_face new_triangle(he_mesh *m, he_halfedge a, he_halfedge b, he_halfedg
     return f;
 }
 
-/* Put a boundary half-edge between the one that enters v from the hole and the one that leaves. */
+/* Puts a boundary half-edge between the one that arrives at v from the hole and the one that
+ * leaves. */
 static void into_hole(he_mesh *m, he_halfedge h, he_halfedge hole)
 {
     he_link(m, he_prev(m, hole), h);

@@ -1,4 +1,4 @@
-/* vertex_split.h - a vertex drawn apart into an edge: edge_collapse backwards. */
+/* vertex_split.h - splits a vertex into an edge: the inverse of edge_collapse. */
 #ifndef HE_EDIT_LOCAL_VERTEX_SPLIT_H
 #define HE_EDIT_LOCAL_VERTEX_SPLIT_H
 
@@ -6,9 +6,9 @@
 
 typedef struct he_vertex_parts {
     he_vertex vertex; /* u */
-    he_edge edges[3]; /* u-v, then u-left and u-right as far as there are */
+    he_edge edges[3]; /* u-v, then u-left and u-right, if they exist */
     he_face faces[2]; /* left and right of u -> v */
-    unsigned sides;   /* faces: 2, or 1 with a null; edges are one more */
+    unsigned sides;   /* faces: 2, or 1 with a null; there is one edge more */
 } he_vertex_parts;
 
 /* vertex_split: V + 1, E + 3, F + 2; with one null V + 1, E + 2, F + 1.
@@ -26,20 +26,26 @@ typedef struct he_vertex_parts {
  *
  * `left` and `right` are neighbours of v. The sectors about v from left to right, counter-
  * clockwise (a and b), go to the new vertex u, which lies at `to`; the others stay with v, and v
- * stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of
- * u -> v is the exact inverse: all links are as they were, but for which half-edge an interior v
- * stores.
+ * stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of u ->
+ * v is the exact inverse: it restores all links, except which half-edge an interior v stores.
  *
- * On the boundary one of the two may be null, {HE_NONE}: it stands for the hole at v, which then
- * comes to lie on that side of the new edge, and there is a triangle on the other side only.
+ * On the boundary one of the two may be null, {HE_NONE}: it stands for the hole at v, which
+ * afterwards is on that side of the new edge, and there is a triangle on the other side only.
  *
  * The edges v-left and v-right keep their ids; the edges of u to the same vertices are new and
  * descend from them, as u does from v. Half-edge 2e of a new edge leaves u.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOWTIE when v has several fans;
- * HE_NOT_NEIGHBOUR; HE_REPEATED_ELEMENT when left = right; HE_NOT_BOUNDARY for a null at an
- * interior vertex; HE_NO_SECTOR when no face lies from left to right; HE_BAD_VALUE when both are
- * null; HE_NOT_FINITE for `to`. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL. */
+ * `out` may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BOWTIE if v has several fans.
+ * Returns HE_NOT_NEIGHBOUR if left or right is no neighbour of v.
+ * Returns HE_REPEATED_ELEMENT if left = right.
+ * Returns HE_NOT_BOUNDARY if one is null and v is interior.
+ * Returns HE_NO_SECTOR if no face lies from left to right.
+ * Returns HE_BAD_VALUE if both are null.
+ * Returns HE_NOT_FINITE if `to` is not finite.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_vertex_split(he_mesh *m, he_vertex v, he_vertex left, he_vertex right,
                                        he_vec3 to, he_vertex_parts *out, he_error *err);
 
