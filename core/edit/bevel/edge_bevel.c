@@ -13,10 +13,10 @@ void he_bevel_clear(he_bevel *bevel)
 
 /* One end of the edge. */
 typedef struct bevel_end {
-    he_halfedge along; /* leaves this end on the edge */
-    he_ids ring;       /* the other half-edges of the fan that do, counter-clockwise from it */
-    size_t gap;        /* the hole lies before this place of the ring; 0 at an interior end */
-    uint32_t first;    /* the new vertex at place 0 */
+    he_halfedge along; /* the half-edge of the edge that leaves this end */
+    he_ids ring; /* the other half-edges of the fan that leave the end, counter-clockwise from it */
+    size_t gap;  /* the hole is before this index of the ring; 0 at an interior end */
+    uint32_t first; /* the new vertex at index 0 */
 } bevel_end;
 
 static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, he_error *err)
@@ -29,7 +29,7 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* Behind the hole, or other fans, this fan begins where turning clockwise ends. */
+        /* After the hole, or other fans, this fan begins where turning clockwise ends. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
@@ -115,8 +115,8 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
         need.edges += ends[i].gap > 0;
         need.deleted_vertices += ends[i].gap == 0;
     }
-    /* Of each cut edge the origin and two links, of the faces beside the edge two links and a
-     * stored half-edge, at a hole two links more. */
+    /* Each cut edge writes its origin and two links; the faces beside the edge two links and a
+     * stored half-edge; a hole two links more. */
     need.links = 3 * cuts + 2 * (3 + 2 + HE_SETTLE_LINKS);
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;
@@ -127,7 +127,7 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
-/* The new face while it is linked side by side. */
+/* The new face while its sides are linked one by one. */
 typedef struct new_face {
     he_face face;
     he_halfedge first, last;
@@ -146,7 +146,7 @@ static void add_side(he_mesh *m, new_face *rim, he_halfedge h)
     rim->last = h;
 }
 
-/* Half-edge 2e, which runs along the new face. */
+/* Returns half-edge 2e, which runs along the new face. */
 static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
 {
     he_halfedge h = he_edge_halfedge(he_new_edge(m), 0);
@@ -166,7 +166,7 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
     return (he_vertex){end->first + (uint32_t)i};
 }
 
-/* From the end (0) to the other end of edge i (1), where the cut is. */
+/* Returns where edge i is cut, from this end (0) to its other end (1). */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
     return he_bevel_part(m, at(end, i), width);
@@ -186,8 +186,8 @@ static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
     }
 }
 
-/* A long side takes the place of `h`, from cut 0 of its origin to the last cut of its target, in
- * the face to the left of h. Its half-edge along the new face. */
+/* Makes a long side, which takes the place of `h`, from cut 0 of its origin to the last cut of its
+ * target, in the face to the left of h. Returns its half-edge along the new face. */
 static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *from,
                                   const bevel_end *to, double width)
 {
@@ -205,8 +205,8 @@ static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *fr
     return in;
 }
 
-/* The sides about the hole: from the cut at place `gap` - 1 to the end, and on to the next cut.
- * `corner` leaves the first inside the face before it. */
+/* Makes the two sides at the hole: from the cut at index `gap` - 1 to the end, and on to the next
+ * cut. `corner` leaves the first inside the face before it. */
 static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new_face *rim)
 {
     he_vertex v = he_origin(m, end->along);
@@ -257,7 +257,7 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
             he_carry_copy(m, HE_HALFEDGE, in.i, h.i);
         }
         he_set_origin(m, h, cut_at(end, i));
-        /* The first cut behind the hole stores its stub, on the boundary. */
+        /* The first cut after the hole stores its stub, which is on the boundary. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;
         he_set_vertex_halfedge(m, cut_at(end, i), stored);

@@ -1,4 +1,4 @@
-/* edge_bevel.h - an edge flattened into a face. */
+/* edge_bevel.h - bevels an edge: replaces it by a face. */
 #ifndef HE_EDIT_BEVEL_EDGE_BEVEL_H
 #define HE_EDIT_BEVEL_EDGE_BEVEL_H
 
@@ -11,7 +11,7 @@ typedef struct he_bevel {
 
 /* edge_bevel, for ends with d1 and d2 edges: V + d1 + d2 - 4, E + d1 + d2 - 3, F + 1, and V + 1, E
  * + 1 more for each end on the boundary. Every other edge at the two ends is cut at `width` from
- * its end, and a new face joins the cuts; edge and interior ends go.
+ * its end, and a new face joins the cuts; the edge and interior ends are deleted.
  *
  *        o           o             o           o
  *         \    f    /               \    f    /          the face f left of half-edge 2e, u -> v,
@@ -39,10 +39,15 @@ typedef struct he_bevel {
  * theirs, and the face from the one left of half-edge 2e. Half-edge 2e of a new edge runs along the
  * new face, whose stored half-edge leaves the first vertex.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_BOUNDARY_EDGE; HE_BAD_VALUE unless width > 0;
- * HE_LOW_DEGREE for an interior end with two edges; HE_LOCKED_ELEMENT for what goes, or gets
- * another end or corner (marks.h). HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else
- * he_bevel_clear frees it. Costs the fans of both ends. */
+ * `out` may be NULL, else he_bevel_clear frees it. Costs the fans of both ends.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
+ * Returns HE_BAD_VALUE unless width > 0.
+ * Returns HE_LOW_DEGREE if an interior end has two edges.
+ * Returns HE_LOCKED_ELEMENT if an element is locked that would be deleted, or get another end or
+ * corner (marks.h).
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_edge_bevel(he_mesh *m, he_edge e, double width, he_bevel *out,
                                      he_error *err);
 void he_bevel_clear(he_bevel *bevel);

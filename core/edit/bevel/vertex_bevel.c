@@ -36,8 +36,8 @@ static he_status check(const he_mesh *m, he_vertex v, double width, he_error *er
     return check_locks(m, v, err);
 }
 
-/* The cut between h and the half-edge counter-clockwise of it, both of which still leave v: a new
- * edge in the face of h. Returns the half-edge that has no face yet. */
+/* Makes the new edge in the face of h, between the cut of h and that of the half-edge
+ * counter-clockwise of it; both still leave v. Returns its half-edge that has no face yet. */
 static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, double t, double s)
 {
     he_halfedge in = he_twin(following), out = he_edge_halfedge(he_new_edge(m), 0);
@@ -50,7 +50,7 @@ static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, 
     return out;
 }
 
-/* w, which may be v, to the cut of a half-edge that leaves v. */
+/* Moves w, which may be v, to the cut of a half-edge that leaves v. */
 static void move(he_mesh *m, he_vertex w, he_vertex v, he_halfedge h, double t)
 {
     he_vertex far = he_target(m, h);
@@ -77,8 +77,8 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
-        /* The edge after the last is the first, whose end has not moved yet either: v does so at
-         * last. */
+        /* The edge after the last one is the first, whose end has not moved yet either: it is v,
+         * which moves at the end. */
         he_halfedge following = he_turn_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);

@@ -1,4 +1,4 @@
-/* vertex_bevel.h - a corner of a solid cut off. */
+/* vertex_bevel.h - bevels a vertex: cuts a corner of a solid off. */
 #ifndef HE_EDIT_BEVEL_VERTEX_BEVEL_H
 #define HE_EDIT_BEVEL_VERTEX_BEVEL_H
 
@@ -17,13 +17,19 @@
  *
  * Every edge at v is cut at `width` from there, though never beyond 0.99 of its length, and
  * half-way where that is 0 (bevel.h): so the cuts do not pass the other ends. Edges and faces keep
- * their ids; each face has a corner more. Attributes of vertices and corners are taken along the
- * edges. The half-edge of the new face n leaves v, and half-edges 2e of the new edges run along it.
+ * their ids; each face has a corner more. Attributes of vertices and corners are interpolated along
+ * the edges. The half-edge of the new face n leaves v, and half-edges 2e of the new edges run along
+ * it.
  *
  * New vertices and edges are appended to `vertices` and `edges`, counter-clockwise from v's stored
- * half-edge on; they and `face` may be NULL. Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT;
- * HE_BAD_VALUE unless width > 0; HE_BOUNDARY_VERTEX; HE_LOW_DEGREE for d < 3; HE_LOCKED_ELEMENT for
- * v, or an edge or face about it. HE_NO_MEMORY, HE_IDS_EXHAUSTED. */
+ * half-edge on; they and `face` may be NULL.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_BAD_VALUE unless width > 0.
+ * Returns HE_BOUNDARY_VERTEX if the vertex is on the boundary.
+ * Returns HE_LOW_DEGREE if d < 3.
+ * Returns HE_LOCKED_ELEMENT if v, or an edge or face at it, is locked.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_vertex_bevel(he_mesh *m, he_vertex v, double width, he_ids *vertices,
                                        he_ids *edges, he_face *face, he_error *err);
 

@@ -13,8 +13,8 @@ static bool has_corners(const he_mesh *m, uint32_t v)
     return he_vertex_halfedge(m, (he_vertex){v}).i != HE_NONE;
 }
 
-/* Does the vertex `gone` say anything else than `into`? Where the rule is that new elements get the
- * default, those that hold it say nothing. */
+/* Has the vertex `gone` another value than `into`? If the rule is that new elements get the
+ * default, a default counts as no value. */
 static bool differs(const he_column *column, uint32_t gone, uint32_t into)
 {
     const unsigned char *value = he_column_value(column, gone);
@@ -55,7 +55,7 @@ static bool is_needed(const he_mesh *m, const he_column *column)
     return false;
 }
 
-/* Have the corners about vertex v its value? */
+/* Do the corners at vertex v have its value? */
 static bool says_so(const he_mesh *m, const he_column *corners, const he_column *column, uint32_t v)
 {
     he_halfedge first = he_vertex_halfedge(m, (he_vertex){v}), h = first;
@@ -138,7 +138,7 @@ static he_status keep_column(he_mesh *m, const he_column *column, const he_keep_
 static he_status keep_values(he_mesh *m, const he_keep_pairs *pairs, he_error *err)
 {
     he_status status = HE_OK;
-    /* What is added on the way is of corners, and passed over. */
+    /* Columns added in this loop are of corners, which it skips. */
     for (size_t slot = 0; slot < m->c.column_count && status == HE_OK; slot++) {
         const he_column *column = m->c.columns[slot];
         if (is_value(column) && count_differing(m, column, pairs) > 0) {

@@ -2,9 +2,9 @@
 
 #include "query/idmap.h"
 
-/* Up to this many ids are compared pairwise, which needs no memory. More get a bit for every id
- * from the lowest to the highest, unless those are as many times more: clearing them would cost
- * more than the list. */
+/* Up to SHORT_LIST ids are compared pairwise, which needs no memory. A longer list uses a bit set
+ * from the lowest id to the highest, unless that range is SPARSE_LIST times the list: clearing the
+ * bits would cost more than the list. */
 enum { SHORT_LIST = 32, SPARSE_LIST = 256 };
 
 static size_t short_repeat(const uint32_t *ids, size_t count)

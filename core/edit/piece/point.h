@@ -1,4 +1,4 @@
-/* point.h - places between vertices that cannot overflow. */
+/* point.h - points between vertices, computed without overflow. */
 #ifndef HE_EDIT_PIECE_POINT_H
 #define HE_EDIT_PIECE_POINT_H
 
@@ -11,8 +11,8 @@ static inline bool he_point_is_finite(he_vec3 p)
     return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
 }
 
-/* Linear from a (t = 0) to b (t = 1), never outside [a, b] by rounding, so finite when both are
- * and equal to a where a = b. */
+/* Interpolates from a (t = 0) to b (t = 1). The result is never outside [a, b] by rounding, so it
+ * is finite if both are, and a if a = b. */
 static inline double he_between(double a, double b, double t)
 {
     double low = a < b ? a : b, high = a < b ? b : a;
@@ -25,7 +25,7 @@ static inline he_vec3 he_point_between(he_vec3 a, he_vec3 b, double t)
     return (he_vec3){he_between(a.x, b.x, t), he_between(a.y, b.y, t), he_between(a.z, b.z, t)};
 }
 
-/* The mean of the corners of the loop of h: of a face, or of a hole. Finite. */
+/* Returns the mean of the corners of the loop of h, of a face or a hole. Always finite. */
 he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h);
 
 #endif

@@ -3,7 +3,7 @@
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving)
 {
     he_halfedge stored = he_vertex_halfedge(m, v);
-    /* A dead row's origin is HE_DEAD, so this also sees that the stored half-edge died. */
+    /* A dead row's origin is HE_DEAD, so this test also finds that the stored half-edge died. */
     bool leaves = stored.i < HE_DEAD && he_origin(m, stored).i == v.i;
     if (leaves && he_is_boundary_halfedge(m, stored)) {
         return;

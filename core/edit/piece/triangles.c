@@ -33,7 +33,7 @@ void he_triangles_need(const he_triangles *plan, bool keep, he_need *need)
     need->lineage += n - 3;
 }
 
-/* Cut a triangle off what is left of the loop by a diagonal along its third side. */
+/* Cuts a triangle off what is left of the loop by a diagonal along its third side. */
 static he_halfedge cut_off(he_mesh *m, he_triangles *plan, const uint32_t *corners, bool keep,
                            he_ids *edges)
 {

@@ -1,4 +1,4 @@
-/* triangles.h - making the triangles that fill a loop. */
+/* triangles.h - makes the triangles that fill a loop. */
 #ifndef HE_EDIT_PIECE_TRIANGLES_H
 #define HE_EDIT_PIECE_TRIANGLES_H
 
@@ -7,20 +7,20 @@
 
 typedef struct he_triangles {
     he_triangulation of;
-    uint32_t *side; /* COMMIT's: the half-edge that leaves each corner in what is left */
+    uint32_t *side; /* for COMMIT: the half-edge that leaves each corner in what is left */
 } he_triangles;
 
-/* CHECK: fails as he_triangulation_make, which avoids the edges there are; `work` is as there, NULL
- * for one loop alone. he_triangles_clear frees. */
+/* CHECK: fails as he_triangulation_make does, avoiding existing edges; `work` is its parameter,
+ * NULL for a single loop. he_triangles_clear frees. */
 HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
                                          he_triangulation_work *work, he_triangles *out,
                                          he_error *err);
 void he_triangles_clear(he_triangles *plan);
 
 /* COMMIT. With `keep` the loop is a face: the triangle of its stored half-edge keeps its id, the
- * others descend from it, and corners copy its corners. Without, the loop is a hole, all triangles
- * are new, and its vertices are left for he_ring_settle. Half-edge 2e of a new edge runs along
- * the triangle that was cut off. `edges` and `faces` have room, or are NULL. */
+ * others descend from it, and corners copy its corners. Without, the loop is a hole and all
+ * triangles are new; the caller must call he_ring_settle for its vertices. Half-edge 2e of a new
+ * edge runs along the triangle that was cut off. `edges` and `faces` have room, or are NULL. */
 void he_triangles_need(const he_triangles *plan, bool keep, he_need *need);
 void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edges, he_ids *faces);
 
