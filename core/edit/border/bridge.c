@@ -13,12 +13,12 @@ void he_bridge_clear(he_bridge *bridge)
 }
 
 /* Corner i of the first loop is the origin of a[i], corner j of the second the target of b[j]: the
- * second is walked backwards, since the two run in opposite directions along the strip. */
+ * second is listed backwards, since the two loops run in opposite directions along the strip. */
 typedef struct plan {
     const he_mesh *m;
     he_ids a, b;
-    he_ids rungs;     /* pairs: a corner of each loop */
-    he_idmap corners; /* the vertices: those of the first loop, then those of the second */
+    he_ids rungs;     /* pairs of a corner of each loop */
+    he_idmap corners; /* vertices of the first loop, then those of the second */
     bool repeats;     /* does a loop pass a vertex twice? */
     double scale;     /* a power of two that brings all coordinates within [-1, 1] */
 } plan;
@@ -110,7 +110,7 @@ static void find_scale(plan *p)
 
 /* --- the rungs --- */
 
-/* The square of the distance between two corners. */
+/* Returns the squared distance between two corners. */
 static double apart(const plan *p, uint32_t i, uint32_t j)
 {
     he_vec3 x = he_vec3_scale(he_position(p->m, corner_of_a(p, i)), p->scale);
@@ -131,9 +131,9 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-/* Is i of n less than half a loop from j of m? Each loop has at least three corners, so the side
- * that is behind can always go on, and no two rungs join the same corners: for that one side would
- * have to go round while the other stands still. */
+/* Is i of n less than half a loop ahead of j of m? Each loop has at least three corners, so the
+ * side that is behind can always go on, and no two rungs join one pair of corners: for that one
+ * side would have to go round while the other stands still. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;
@@ -153,7 +153,7 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-/* The rungs by pairing s; there is room. */
+/* Computes the rungs of pairing s; there is room. */
 static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
@@ -175,7 +175,7 @@ static he_status refuse_rung(const plan *p, uint32_t i, uint32_t j, he_error *er
                    u.i, v.i);
 }
 
-/* Where a loop passes a vertex twice two rungs may have the same ends. `first` and `next` chain the
+/* If a loop passes a vertex twice, two rungs may have equal ends. `first` and `next` chain the
  * rungs of each vertex of the first loop. */
 static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, he_error *err)
 {
@@ -235,8 +235,8 @@ static he_status check_rungs(const plan *p, he_error *err)
 
 /* --- the pairing --- */
 
-/* Pass over each pairing that has a rung where an edge is. Corners of loops that pass no vertex
- * twice are numbered as their vertices. */
+/* Marks each pairing that has a rung where an edge is, to be skipped. Corners of loops that pass no
+ * vertex twice have the numbers of their vertices. */
 static void pass_over_joined(const plan *p, uint64_t *passed)
 {
     uint32_t n = (uint32_t)p->a.count;
@@ -252,8 +252,8 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
     }
 }
 
-/* The pairing of least twist among those not passed over (NULL: among all); `count` when all are.
- */
+/* Returns the pairing of least twist that is not skipped (`passed` is NULL if none is); `count` if
+ * all are. */
 static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
 {
     uint32_t best = count;
@@ -293,7 +293,7 @@ static he_status try_pairings(plan *p, const double *twists, uint64_t *passed, h
 static he_status choose_rungs(plan *p, he_error *err)
 {
     size_t n = p->a.count, m = p->b.count;
-    /* Two half-edges around a hole would be two edges between the same vertices. */
+    /* A hole of two half-edges would mean two edges between two vertices. */
     assert(n >= 3 && m >= 3);
     he_status status = he_ids_reserve(&p->rungs, 2 * (n + m), err);
     if (status != HE_OK) {
@@ -317,7 +317,8 @@ static he_status choose_rungs(plan *p, he_error *err)
 
 /* --- writing --- */
 
-/* The face between the rungs from p_i to q_j and from p_k to q_l, of which at least one goes on. */
+/* Makes the face between the rungs from p_i to q_j and from p_k to q_l, which differ at one end at
+ * least. */
 static he_face close_face(he_mesh *m, const plan *p, size_t at, const he_ids *edges)
 {
     size_t count = p->rungs.count / 2, after = at + 1 == count ? 0 : at + 1;
@@ -358,7 +359,7 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    /* Each once: at a corner of many rungs it turns about all of them. */
+    /* Each vertex once: at one with many rungs the call walks around all of them. */
     for (size_t k = 0; k < p->corners.ids.count; k++) {
         he_vertex v = {p->corners.ids.ids[k]};
         he_ring_settle(m, v, he_vertex_halfedge(m, v));

@@ -1,4 +1,4 @@
-/* bridge.h - two holes joined by a strip of faces. */
+/* bridge.h - joins two holes by a strip of faces. */
 #ifndef HE_EDIT_BORDER_BRIDGE_H
 #define HE_EDIT_BORDER_BRIDGE_H
 
@@ -7,7 +7,7 @@
 /* What loop_bridge made, from the origin of `a` on along its loop. */
 typedef struct he_bridge {
     he_ids edges; /* rungs: half-edge 2e leaves the loop of a */
-    he_ids faces; /* the n-th between the n-th rung and the one after it */
+    he_ids faces; /* face n is between rung n and the one after it */
 } he_bridge;
 
 /* loop_bridge: V + 0; for loops of n and n half-edges E + n, F + n quadrilaterals, for loops of n
@@ -19,27 +19,32 @@ typedef struct he_bridge {
  *        |   a       .   |                     |       |       |    to the loop of b
  *        o------>o------>o  loop of a          o-------o-------o
  *
- * a and b are boundary half-edges that name their loops; where on them they are does not matter but
- * for the order of what is made. Loops are as the boundary links have them; at a bow-tie one may
- * pass a vertex more than once. The strip fills the gaps it passes there, so that fans become one;
- * the gap of a fan with itself exists only where there is no other, so none closes beside another.
+ * a and b are any boundary half-edges of the two loops; they only decide the order of the new
+ * elements. Loops follow the boundary links; at a bow-tie a loop may pass a vertex more than once.
+ * The strip fills the gaps between fans that it passes there, so that they become one fan; a gap of
+ * a fan with itself exists only if the vertex has no other fan, so no fan closes beside another.
  *
  * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
- * s chosen so that the squared distances of the pairs sum to the least, the lowest s where several
- * do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread. A
- * pairing by which an edge would be doubled is passed over for the one with the next least twist:
- * on loops of one length that pass no vertex twice until one does, on others HE_TWIST_TRIES times.
+ * s is chosen so that the squared distances of the pairs sum to the least, the lowest s where
+ * several do. On loops of more than HE_TWIST_PAIRS corners the sum is over so many, evenly spread.
+ * A pairing that would double an edge is skipped for the one with the next least twist: on loops of
+ * equal length that pass no vertex twice as long as there are any, on others HE_TWIST_TRIES times.
  *
- * Triangles start at the pair of a's origin, and the strip goes on by the shorter of the two rungs
- * that are next (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line
- * definitions into polygonal element mosaics", 1978), but never runs half a loop ahead on one side.
+ * Triangles start at the pair of a's origin, and each next rung is the shorter of two candidates
+ * (H. N. Christiansen and T. W. Sederberg, "Conversion of complex contour line definitions into
+ * polygonal element mosaics", 1978), but one side never gets half a loop ahead.
  *
- * Nothing old changes its id; what is new has no parents.
+ * Old elements keep their ids; new ones have no parents.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_NOT_BOUNDARY; HE_SAME_LOOP; HE_SHARED_VERTEX;
- * HE_DOUBLED_EDGE where an edge, or another rung, joins the ends of a rung already, by each pairing
- * that is tried; it names one by the pairing of least twist. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out`
- * may be NULL, else he_bridge_clear frees it. Costs the loops. */
+ * `out` may be NULL, else he_bridge_clear frees it. Costs the loops.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
+ * Returns HE_SAME_LOOP if a and b are on one loop.
+ * Returns HE_SHARED_VERTEX if the loops share a vertex.
+ * Returns HE_DOUBLED_EDGE if in each pairing tried an edge, or another rung, joins the ends of a
+ * rung already (the message names one in the pairing of least twist).
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *out,
                                       he_error *err);
 void he_bridge_clear(he_bridge *bridge);

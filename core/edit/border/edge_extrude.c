@@ -11,8 +11,8 @@ void he_walls_clear(he_walls *walls)
     he_ids_clear(&walls->faces);
 }
 
-/* Where chains pass a vertex: the places in the list of the edges that come in and go out along
- * the boundary, HE_NONE where a chain begins or ends. */
+/* A vertex of chains: the indices of the edges in the list that arrive and leave along the
+ * boundary, HE_NONE if a chain begins or ends there. */
 typedef struct joint {
     uint32_t in, out;
 } joint;
@@ -20,7 +20,7 @@ typedef struct joint {
 typedef struct plan {
     size_t count;
     he_ids chain; /* the half-edges on the open side of the edges */
-    he_ids ends;  /* their ends, rising */
+    he_ids ends;  /* their ends, in rising order */
     joint *joints;
 } plan;
 
@@ -36,7 +36,7 @@ static he_halfedge at(const plan *p, uint32_t i)
     return (he_halfedge){p->chain.ids[i]};
 }
 
-/* The place of a vertex that is among the ends. */
+/* Returns the index of a vertex that is among the ends. */
 static size_t place_of(const plan *p, he_vertex v)
 {
     size_t low = 0, high = p->ends.count - 1;
@@ -163,18 +163,19 @@ static he_status reserve(he_mesh *m, const plan *p, he_walls *made, he_error *er
 }
 
 /* The first new ids: the copy of end i is `vertex` + i and the edge to it `side` + i; the far edge
- * of place i in the chain is `far` + i. */
+ * of index i in the chain is `far` + i. */
 typedef struct fresh {
     uint32_t vertex, side, far;
 } fresh;
 
-/* Half-edge 2e of the edge from end i to its copy. */
+/* Returns half-edge 2e of the edge from end i to its copy. */
 static he_halfedge side_at(const fresh *new, size_t i)
 {
     return he_edge_halfedge((he_edge){new->side + (uint32_t)i}, 0);
 }
 
-/* The far half-edge inside the quad; its twin runs along the boundary like the old one did. */
+/* Returns the far half-edge inside the quad; its twin runs along the boundary as the old one
+ * did. */
 static he_halfedge far_at(const fresh *new, uint32_t i)
 {
     return he_edge_halfedge((he_edge){new->far + i}, 0);

@@ -1,4 +1,4 @@
-/* hole.h - holes closed. */
+/* hole.h - closes holes. */
 #ifndef HE_EDIT_BORDER_HOLE_H
 #define HE_EDIT_BORDER_HOLE_H
 
@@ -11,11 +11,11 @@ typedef enum he_fill {
 } he_fill;
 
 typedef struct he_filled {
-    he_vertex vertex;    /* of a fan, else HE_NONE */
+    he_vertex vertex;    /* the fan's new vertex, else HE_NONE */
     he_ids edges, faces; /* the new ones */
 } he_filled;
 
-/* hole_fill: the hole to the left of the boundary half-edge h, a loop of n, is closed.
+/* hole_fill: closes the hole to the left of the boundary half-edge h, a loop of n half-edges.
  *
  *        o-----o-----o            o-----o-----o          o-----o-----o          o-----o-----o
  *        |     |     |            |     |     |          |     |     |          |     |     |
@@ -26,14 +26,19 @@ typedef struct he_filled {
  *        o-----o-----o            o-----o-----o          o-----o-----o          o-----o-----o
  *                                    polygon                  fan                triangulate
  *
- * The loop is as the boundary links have it: at a bow-tie it may lead from one fan to another.
- * There it fills the gap between two fans, so that they become one; the gap of a fan with itself
- * exists only where there is no other, so no fan closes beside another. Nothing old changes its
- * id; faces and the vertex have no parents. A polygon's half-edge is h.
+ * The loop follows the boundary links: at a bow-tie it may lead from one fan to another. The new
+ * faces fill the gap between these fans, which become one; a gap of a fan with itself exists only
+ * if the vertex has no other fan, so no fan closes beside another. Old elements keep their ids; the
+ * new faces and the vertex have no parents. A polygon stores h.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_NOT_BOUNDARY; HE_REPEATED_CORNER when the
- * loop visits a vertex twice; for triangulate HE_DOUBLED_EDGE, as in triangulation.h.
- * HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_filled_clear frees it. */
+ * `out` may be NULL, else he_filled_clear frees it.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
+ * Returns HE_REPEATED_CORNER if the loop visits a vertex twice.
+ * Returns HE_DOUBLED_EDGE if HE_FILL_TRIANGULATE finds no triangulation without an existing edge
+ * (triangulation.h).
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out,
                                     he_error *err);
 void he_filled_clear(he_filled *filled);

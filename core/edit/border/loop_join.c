@@ -6,7 +6,7 @@
 #include "mesh/marks.h"
 #include "query/idmap.h"
 
-/* a[i] is sewn to b[i]: the first loop runs forwards, the second backwards. Vertex i of the first
+/* a[i] is joined to b[i]: the first loop runs forwards, the second backwards. Vertex i of the first
  * is the origin of a[i], of the second the target of b[i]. */
 typedef struct plan {
     he_mesh *m;
@@ -42,7 +42,7 @@ static he_vertex goes(const plan *p, uint32_t i)
     return (he_vertex){p->vertices.ids.ids[i]};
 }
 
-/* What vertex v will be. */
+/* Returns the vertex into which v is merged, or v. */
 static he_vertex becomes(const plan *p, he_vertex v)
 {
     uint32_t i = he_idmap_find(&p->vertices, v.i);
@@ -115,10 +115,10 @@ static he_status check_sides(const plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- what would become one --- */
+/* --- elements that would become one --- */
 
-/* Add the faces about a vertex, but for that of the loop's half-edge `own`; `again` refuses one
- * that is there. */
+/* Adds the faces at a vertex, except that of the loop's half-edge `own`; with `again` a face that
+ * is in the set already is refused. */
 static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
                               he_idmap *seen, he_error *err)
 {
@@ -154,7 +154,7 @@ static he_status check_faces(const plan *p, uint32_t i, he_error *err)
     return status;
 }
 
-/* Add what the neighbours of a vertex will be. */
+/* Adds the neighbours of a vertex, as they will be after the merge. */
 static he_status gather_neighbours(const plan *p, he_halfedge first, const he_halfedge skip[2],
                                    he_idmap *seen, he_error *err)
 {
@@ -179,7 +179,7 @@ static he_status gather_neighbours(const plan *p, he_halfedge first, const he_ha
     return HE_OK;
 }
 
-/* The edges of the second loop become one with those of the first, so they do not count. */
+/* The edges of the second loop are merged into those of the first, so they do not count. */
 static he_status check_neighbours(const plan *p, uint32_t i, he_error *err)
 {
     he_idmap seen = {.log2 = 0};
@@ -242,14 +242,14 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* Turning asks for links only, which stay as they are here. */
+        /* Turning uses links only, which do not change in this loop. */
         he_set_origin(m, h, to);
         h = he_turn_ccw(m, h);
     } while (h.i != first.i);
 }
 
-/* a[i] takes the place of the twin of b[i]. Where that follows, or is followed by, the twin of a
- * neighbour of b[i], its place is taken too. */
+/* a[i] takes the place of the twin of b[i]. If the twin of a neighbour of b[i] follows or precedes
+ * that twin, its place is taken too. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;
@@ -325,7 +325,7 @@ static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
     return status == HE_OK ? check_marks(p, err) : status;
 }
 
-/* What the vertices say goes to corners first, and back with a failure. */
+/* Values of the vertices move to corners first; a failure restores them. */
 static he_status write(plan *p, uint64_t *moved, he_error *err)
 {
     const uint32_t *ids = p->vertices.ids.ids;

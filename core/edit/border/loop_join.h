@@ -1,11 +1,11 @@
-/* loop_join.h - two loops sewn together, edge to edge; loop_split.h takes them apart again. */
+/* loop_join.h - joins two loops edge by edge; loop_split.h is the inverse. */
 #ifndef HE_EDIT_BORDER_LOOP_JOIN_H
 #define HE_EDIT_BORDER_LOOP_JOIN_H
 
 #include "mesh/mesh.h"
 
-/* loop_join: V - n, E - n for loops of n half-edges, F less one for each of the two that is a
- * face's. It connects two components, or adds a handle to one.
+/* loop_join: V - n, E - n for loops of n half-edges, F - 1 for each of the two that is the loop of
+ * a face. It connects two components, or adds a handle to one.
  *
  *         \     /                      \     /
  *          o<--o   face or hole         \   /
@@ -17,20 +17,26 @@
  *          o-->o   face or hole         /   \
  *         /     \                      /     \
  *
- * A loop that is a face's is taken away first, so that it is a hole. The vertices and edges of a
- * stay, those of b are merged into them. A vertex comes to lie half-way between the two.
- * What it says goes to its corners where the two differ (keep.h), and is counted in `moved`, which
- * may be NULL. Corner values follow their half-edges.
+ * If a loop is that of a face, the face is deleted first. The vertices and edges of a stay, those
+ * of b are merged into them. A vertex moves half-way to the one merged into it. Values in which the
+ * two differ move to their corners (keep.h) and are counted in `moved`, which may be NULL. Corner
+ * values follow their half-edges.
  *
  * No fan closes beside another: the ring about a joined vertex is the two rings one after the
  * other.
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT; HE_SAME_LOOP; HE_LOOP_LENGTH;
- * HE_REPEATED_CORNER when a loop passes a vertex twice, or a face has two corners that would become
- * one; HE_SHARED_VERTEX; HE_BOUNDARY_EDGE when neither of two edges would have a face left;
- * HE_DOUBLED_EDGE when two other edges would join the same vertices; HE_LOCKED_ELEMENT for what
- * goes, a vertex that would move, and edges and faces at the vertices of b, which get another
- * (marks.h). HE_NO_MEMORY. Costs what is about the vertices of both loops. */
+ * Costs the rings of the vertices of both loops.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_SAME_LOOP if a and b are on one loop.
+ * Returns HE_LOOP_LENGTH if the loops have different lengths.
+ * Returns HE_REPEATED_CORNER if a loop passes a vertex twice, or a face has two corners that would
+ * become one.
+ * Returns HE_SHARED_VERTEX if the loops share a vertex.
+ * Returns HE_BOUNDARY_EDGE if neither of two edges would have a face left.
+ * Returns HE_DOUBLED_EDGE if two other edges would join the same vertices.
+ * Returns HE_LOCKED_ELEMENT if an element that would be deleted, a vertex that would move, or an
+ * edge or face at a vertex of b, which would get another one, is locked (marks.h).
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved,
                                     he_error *err);
 

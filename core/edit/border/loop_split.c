@@ -3,7 +3,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The half-edge of e that leaves v, or HE_NONE. */
+/* Returns the half-edge of e that leaves v, or HE_NONE. */
 static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -13,7 +13,7 @@ static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
     return he_target(m, h).i == v.i ? he_twin(h) : (he_halfedge){HE_NONE};
 }
 
-/* cycle[0] is half-edge 2a, and each ends where the next begins. */
+/* Sorts the edges: cycle[0] is half-edge 2a, and each ends where the next begins. */
 static he_status find_cycle(const he_mesh *m, const he_edge edges[3], he_halfedge cycle[3],
                             he_error *err)
 {
@@ -47,8 +47,8 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
     return HE_OK;
 }
 
-/* Those that leave the origin of cycle[i] on the right, counter-clockwise, lie between the edge
- * that comes in and the one that goes out. */
+/* The half-edges that leave the origin of cycle[i] on its right are, counter-clockwise, between the
+ * edge that arrives and the one that leaves. */
 static he_halfedge first_on_right(const he_mesh *m, const he_halfedge cycle[3], unsigned i)
 {
     return he_turn_ccw(m, he_twin(cycle[(i + 2) % 3]));
@@ -100,7 +100,7 @@ static he_status check(const he_mesh *m, const he_edge edges[3], he_halfedge cyc
     return status == HE_OK ? check_locks(m, cycle, err) : status;
 }
 
-/* What lies to the right of the cycle at the origin of cycle[i] gets the vertex `to`. */
+/* Gives the vertex `to` to the elements on the right of the cycle at the origin of cycle[i]. */
 static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_vertex to)
 {
     for (he_halfedge h = first_on_right(m, cycle, i); h.i != cycle[i].i; h = he_turn_ccw(m, h)) {
@@ -108,7 +108,7 @@ static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_ve
     }
 }
 
-/* `outer` takes the place of the twin of cycle[i], which is to be the cap's. */
+/* `outer` takes the place of the twin of cycle[i], which will belong to the cap. */
 static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 {
     he_face f = he_face_of(m, twin);
@@ -123,7 +123,8 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    he_halfedge inner[3]; /* of the new edges: those that run as the cycle, along the new cap */
+    he_halfedge
+        inner[3]; /* the half-edges of the new edges along the new cap, which run as the cycle */
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
         made->vertices[i] = he_new_vertex(m);
@@ -138,7 +139,7 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_carry_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
-    /* Rings are walked while all their links are there. */
+    /* Rings are walked before any of their links is changed. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }

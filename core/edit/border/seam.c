@@ -11,11 +11,11 @@ void he_seam_clear(he_seam *seam)
 }
 
 typedef struct plan {
-    he_ids cuts;    /* the edges, rising: new edge i is cut from cuts[i] */
-    he_ids ends;    /* their ends, rising */
-    he_ids parts;   /* the half-edges at which parts begin that leave their vertex */
-    size_t moved;   /* half-edges that leave those, old and new */
-    uint64_t *once; /* of the edges: at one end nothing else parts its two sides */
+    he_ids cuts;    /* the edges in rising order: new edge i is cut from cuts[i] */
+    he_ids ends;    /* their ends, in rising order */
+    he_ids parts;   /* for each part that gets a new vertex, the half-edge at which it begins */
+    size_t moved;   /* half-edges of those parts that leave the vertex, old and new */
+    uint64_t *once; /* edges whose sides nothing else separates at one of their ends */
     bool marked;
     he_marks marks;
 } plan;
@@ -28,7 +28,7 @@ static void clear_plan(plan *p)
     he_mem_free(p->once);
 }
 
-/* The place of an edge among those cut, or their count. */
+/* Returns the index of an edge among those cut, or their count. */
 static size_t find_cut(const plan *p, he_edge e)
 {
     size_t low = 0, high = p->cuts.count;
@@ -65,7 +65,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_turn_ccw(m, h);
-        /* The side of the border that lies in this part may be the new one. */
+        /* In this part the side of the border may be the new one. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
         }
@@ -84,7 +84,7 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
     return status != HE_OK ? status : he_ids_add(&p->parts, first.i, err);
 }
 
-/* How many edges of the fan from `first` are cut? The lowest goes to *lowest. */
+/* Counts the cut edges of the fan from `first`; *lowest is the lowest of them. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;
@@ -189,7 +189,8 @@ static he_status plan_cut(const he_mesh *m, const uint32_t *edges, size_t count,
 
 enum { OPEN_LINKS = 8 + 2 * HE_SETTLE_LINKS, PART_LINKS = 4 + HE_SETTLE_LINKS };
 
-/* Half-edge 2e + 1 leaves its face to a new edge; between the two is a hole of two sides. */
+/* Moves half-edge 2e + 1 out of its face and puts a new edge there; between the two is a hole of
+ * two sides. */
 static he_edge open_edge(he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0), t = he_twin(h);
@@ -216,7 +217,7 @@ static he_edge open_edge(he_mesh *m, he_edge e)
     return made;
 }
 
-/* Give the fan that begins with `first` a vertex of its own, at the same place. */
+/* Gives the fan that begins with `first` a new vertex at the same position. */
 static he_vertex split_fan(he_mesh *m, he_halfedge first)
 {
     he_vertex v = he_origin(m, first), w = he_new_vertex(m);

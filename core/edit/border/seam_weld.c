@@ -1,4 +1,4 @@
-/* The closing half of seam.h. */
+/* edge_weld of seam.h. */
 #include "edit/border/seam.h"
 #include "edit/local/cut.h"
 #include "edit/piece/keep.h"
@@ -6,15 +6,15 @@
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
 
-/* An end of a, and the end of b that is merged into it; the same at a common end. `in` and `out`
- * are the boundary half-edges of a and b that enter and leave there: those between which the two
- * edges will be. */
+/* An end of a, and the end of b that is merged into it; the two are equal at a common end. `in` and
+ * `out` are the boundary half-edges of a and b that arrive and leave there; the two edges will be
+ * between them. */
 typedef struct pair {
     he_vertex stays, goes;
     he_halfedge in, out;
 } pair;
 
-/* The half-edge of a boundary edge that runs along the hole. */
+/* Returns the half-edge of a boundary edge that runs along the hole. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -30,8 +30,8 @@ static he_status require_boundary(const he_mesh *m, he_edge e, he_error *err)
     return status;
 }
 
-/* The two vertices become one: no face may have both, no vertex but the other end of a and b may be
- * a neighbour of both. */
+/* Checks that the two vertices can be merged: no face has both, and no vertex except the other end
+ * of a and b is a neighbour of both. */
 static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_edge b, he_error *err)
 {
     he_vertex v = end->stays, w = end->goes;
@@ -120,7 +120,7 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     return status;
 }
 
-/* Let everything about `goes` be about `stays`. */
+/* Moves everything at `goes` to `stays`. */
 static void merge(he_mesh *m, const pair *end, he_keep keep)
 {
     he_halfedge first = he_vertex_halfedge(m, end->goes), h = first;
