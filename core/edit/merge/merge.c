@@ -77,7 +77,8 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
     he_status status = check_faces(p, &marks, err);
     for (uint32_t i = 0; status == HE_OK && i < p->group.count; i++) {
         he_vertex v = {p->group.ids[i]};
-        /* Only one that stays is asked for its place: that looks at all it takes in. */
+        /* Only for a vertex that stays is it tested whether it moves, because that visits all that
+         * are merged into it. */
         if (goes_into_another(p, v) || moves(p, i)) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
@@ -111,8 +112,8 @@ static he_status reserve(he_merge_plan *p, he_error *err)
     return he_reserve(p->m, need, err);
 }
 
-/* Corners of a face move to the half-edges that take the place of theirs. Each is read before
- * anything is written that leads to it. */
+/* Moves the corners of a face to the half-edges that take the place of theirs. Each link is read
+ * before anything is written that leads to it. */
 static void relink_face(const he_merge_plan *p, he_face f)
 {
     he_mesh *m = p->m;
@@ -210,7 +211,7 @@ static void commit(const he_merge_plan *p)
     write_vertices(p);
 }
 
-/* What the vertices say goes to corners first, and back with a failure. */
+/* Values of the vertices move to corners first; a failure restores them. */
 static he_status write(he_merge_plan *p, uint64_t *moved, he_error *err)
 {
     const he_keep_pairs pairs = {p->how->gone, p->how->into, p->how->count};

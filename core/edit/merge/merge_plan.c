@@ -3,7 +3,7 @@
 #include "base/word_hash.h"
 #include "edit/piece/list.h"
 
-/* The same before h. */
+/* Returns the next half-edge of the loop before h whose ends stay apart. */
 static he_halfedge before(const he_merge_plan *p, he_halfedge h)
 {
     do {
@@ -12,7 +12,7 @@ static he_halfedge before(const he_merge_plan *p, he_halfedge h)
     return h;
 }
 
-/* The old half-edge whose face runs along h afterwards, HE_NONE at a boundary. */
+/* Returns the old half-edge whose face will run along h, HE_NONE at a boundary. */
 static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -22,7 +22,7 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* he_turn_ccw as it will be, for a half-edge with a face. */
+/* Returns what he_turn_ccw will be, for a half-edge with a face. */
 static he_halfedge turn(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
@@ -37,7 +37,7 @@ static uint32_t *new_list(size_t count, he_error *err)
     return list;
 }
 
-/* --- what takes part ------------------------------------------------------------------------ */
+/* --- elements that take part --------------------------------------------------------------- */
 
 he_status he_merge_find_group(he_merge_plan *p, he_error *err)
 {
@@ -94,7 +94,7 @@ he_status he_merge_find_rings(he_merge_plan *p, he_error *err)
     return status == HE_OK ? he_ids_sort(&p->faces, err) : status;
 }
 
-/* Corners a face keeps; all its edges become part of the plan when it goes. */
+/* Counts the corners that a face keeps; if it is deleted, all its edges become part of the plan. */
 static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -118,7 +118,7 @@ static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
     return status;
 }
 
-/* No corner of a face that stays may be there twice. */
+/* Checks that no corner of a face that stays occurs twice. */
 static he_status check_corners(const he_merge_plan *p, size_t i, he_ids *corners, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -173,7 +173,7 @@ static size_t slot_of(const he_merge_plan *p, uint32_t a, uint32_t b)
     return (size_t)(h >> 32) & (p->slot_count - 1);
 }
 
-/* Let edge i stay, or go into the one that is there. */
+/* Marks edge i as one that stays, or as merged into the one that has its ends. */
 static void enter(he_merge_plan *p, uint32_t i)
 {
     he_halfedge h = {2 * p->edges.ids[i]};
@@ -252,7 +252,7 @@ static void occupy_face(const he_merge_plan *p, size_t i)
 {
     he_halfedge first = he_face_halfedge(p->m, (he_face){p->faces.ids[i]});
     first = he_merge_shrinks(p, first) ? he_merge_after(p, first) : first;
-    /* Any half-edge of a face that is the same as another is one with a side of that. */
+    /* Any half-edge of a face that is equal to another is merged into a side of that. */
     uint32_t at = he_merge_index(&p->edges, he_edge_of(he_merge_heir(p, first)).i);
     if (at != HE_NONE && p->fates[at].occupant[he_merge_heir(p, first).i & 1] != HE_NONE) {
         he_halfedge other = {p->fates[at].occupant[he_merge_heir(p, first).i & 1]};
@@ -284,7 +284,7 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
         he_merge_fate *f = &p->fates[i];
         uint32_t e = p->edges.ids[i];
         for (unsigned side = 0; f->into == e && side < 2; side++) {
-            /* Beside a face that goes may lie one that the merge does not touch. */
+            /* A face beside a deleted one may not be touched by the merge otherwise. */
             he_halfedge h = he_edge_halfedge((he_edge){e}, side);
             if (!he_is_boundary_halfedge(m, h) &&
                 he_merge_index(&p->faces, he_face_of(m, h).i) == HE_NONE) {
@@ -328,7 +328,7 @@ static he_status find_rim(he_merge_plan *p, he_error *err)
     return status;
 }
 
-/* The half-edges that will leave rim vertex v, into `ring`. */
+/* Lists the half-edges that will leave rim vertex v. */
 static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -357,7 +357,7 @@ static bool is_boundary(const he_merge_plan *p, he_halfedge h)
     return occupant_of(p, h).i == HE_NONE;
 }
 
-/* Link the fans about rim vertex i, and choose what it stores. */
+/* Links the fans at rim vertex i, and chooses the half-edge it stores. */
 static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_error *err)
 {
     he_vertex v = {p->rim.ids[i]};
@@ -371,7 +371,8 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         if (is_boundary(p, h) || !is_boundary(p, he_twin(h))) {
             continue;
         }
-        /* A fan begins; what leaves the one before it follows what enters this one. */
+        /* A fan begins; the half-edge that leaves the one before follows the one that enters this
+         * fan. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

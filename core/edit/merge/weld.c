@@ -33,7 +33,7 @@ he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_
     return status;
 }
 
-/* Which vertices become part of which. */
+/* Finds which vertices are merged into which. */
 static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he_ids *to,
                             he_error *err)
 {

@@ -1,10 +1,11 @@
-/* weld.h - vertices welded: some that are named, or all that lie close together. */
+/* weld.h - welds vertices: some given ones, or all that are close together. */
 #ifndef HE_EDIT_MERGE_WELD_H
 #define HE_EDIT_MERGE_WELD_H
 
 #include "edit/merge/merge.h"
 
-/* vertex_weld: the vertices named become one, that with the lowest id; V, E and F by what goes.
+/* vertex_weld: merges the given vertices into the one with the lowest id; V, E and F fall by what
+ * is deleted.
  *
  *     o---o       o---o               o---o---o          o---o           o---o
  *     |   a       b   |               |   a   |          |  / \ f        |   |
@@ -12,24 +13,27 @@
  *     |   c       d   |     --->      |   c   |          |  \ / g  --->  |   |    sides are one
  *     o---o       o---o               o---o---o          o---o           o---o    edge (g too)
  *
- * What else becomes one or goes: merge.h. It lies at the mean of all of them, or with
- * HE_MERGE_INTO stays where it is. `into`, which may be NULL, is the one that stays; `moved`, which
- * may be NULL, counts the values that went from vertices to corners (keep.h).
+ * merge.h says which other elements are merged or deleted. The vertex moves to the mean of all of
+ * them, or with HE_MERGE_INTO stays where it is. `into`, which may be NULL, is the one that stays;
+ * `moved`, which may be NULL, counts the values that moved from vertices to corners (keep.h).
  *
- * Refused: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT; HE_REPEATED_CORNER,
- * HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN, HE_LOCKED_ELEMENT as merge.h has them.
- * HE_NO_MEMORY. */
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice.
+ * Returns HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN or
+ * HE_LOCKED_ELEMENT as he_merge_vertices does.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count,
                                       he_merge_place place, he_vertex *into, uint64_t *moved,
                                       he_error *err);
 
-/* weld: in rising order of their ids, each vertex joins the first that lies no farther away than
- * `tolerance` and has not itself joined another, or else stays for others to join. So what becomes
- * one lies within a ball about its lowest vertex, and vertices do not wander along chains. With a
- * tolerance of 0 those at equal positions become one.
+/* weld: in rising order of their ids, each vertex is merged into the first one that is no farther
+ * away than `tolerance` and was not itself merged, or else stays for others to be merged into. So
+ * all vertices that become one are within a ball around the lowest, and merging does not run along
+ * chains. With a tolerance of 0 vertices at equal positions are merged.
  *
- * The ids of those that took in others are appended to `into`, in rising order. Refused as by
- * vertex_weld, and HE_BAD_VALUE for a negative tolerance. Linear in the vertices: near.h. */
+ * The ids of the vertices into which others were merged are appended to `into`, in rising order.
+ * Linear in the vertices: near.h. Fails as vertex_weld does.
+ * Returns HE_BAD_VALUE if the tolerance is negative. */
 HE_NODISCARD he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place,
                                     he_ids *into, uint64_t *moved, he_error *err);
 
