@@ -7,11 +7,11 @@
 /* A corner in the plane. */
 typedef struct he_line_crossing {
     double along; /* the line */
-    uint32_t at;  /* its place in the loop */
+    uint32_t at;  /* its index in the loop */
 } he_line_crossing;
 
-/* What a part has corners of, and, times BESIDE, what it must have since a part beside it is on the
- * other side. */
+/* The sides on which a part has corners; and, times BESIDE, the sides it must have because a part
+ * beside it is on the other side. */
 enum { ABOVE = 1, BELOW = 2, BOTH = 3, BESIDE = 4 };
 
 static int side_at(const he_mesh *m, const he_sides *sides, const he_chords *c, uint32_t i)
@@ -19,7 +19,7 @@ static int side_at(const he_mesh *m, const he_sides *sides, const he_chords *c, 
     return he_side_of(sides, he_origin(m, (he_halfedge){c->corner.ids[i]}));
 }
 
-/* --- the corners in the plane, in their order along the line --- */
+/* --- sorting the corners in the plane along the line --- */
 
 static bool comes_before(const he_line_crossing *a, const he_line_crossing *b)
 {
@@ -62,7 +62,8 @@ static he_vec3 place(const he_mesh *m, const he_sides *sides, const he_chords *c
     return he_vec3_scale(he_position(m, v), sides->scale);
 }
 
-/* From the first corner towards the one furthest away: along the line, where they lie on one. */
+/* Sorts the corners by the direction from the first one to the one farthest away: along the line,
+ * if they are on one. */
 static void order_along_line(const he_mesh *m, const he_sides *sides, he_chords *c, size_t count)
 {
     he_vec3 first = place(m, sides, c, c->line[0].at), axis = {0, 0, 0};
@@ -114,7 +115,7 @@ static void join_along_line(const he_mesh *m, const he_sides *sides, he_chords *
     }
 }
 
-/* Cut off every run of corners on the side that the first corner outside the plane is not on. */
+/* Cuts off every run of corners on the other side than the first corner outside the plane. */
 static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     uint32_t first = 0, in_plane = HE_NONE, start = HE_NONE, end = HE_NONE;
@@ -141,10 +142,10 @@ static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords 
     }
 }
 
-/* --- looking at them as brackets around the loop --- */
+/* --- checking the chords as brackets around the loop --- */
 
-/* `open` holds what the part outside all chords has corners of; then, for each chord that has begun
- * and not ended, the places of its ends and what the part inside it has corners of. */
+/* `open` starts with the sides of the part outside all chords; then follow, for each chord that has
+ * begun and not ended, the indices of its ends and the sides of the part inside it. */
 enum { CHORD = 3 };
 
 static bool is_one_sided(uint32_t part)
@@ -153,8 +154,8 @@ static bool is_one_sided(uint32_t part)
     return (has == ABOVE || has == BELOW) && (has | must) != BOTH;
 }
 
-/* Chords end at i from the innermost outwards. False when the part inside one is not on one side.
- */
+/* Ends the chords at i from the innermost outwards. Returns false if the part inside one is not on
+ * one side. */
 static bool close_at(he_chords *c, uint32_t i)
 {
     he_ids *open = &c->open;
@@ -171,7 +172,7 @@ static bool close_at(he_chords *c, uint32_t i)
     return true;
 }
 
-/* False when the chord from i to `end` joins neighbours or crosses one that is open. */
+/* Returns false if the chord from i to `end` joins neighbours or crosses one that is open. */
 static bool open_at(he_chords *c, uint32_t i, uint32_t end)
 {
     he_ids *open = &c->open;
@@ -185,7 +186,8 @@ static bool open_at(he_chords *c, uint32_t i, uint32_t end)
     return true;
 }
 
-/* List the chords in the order in which they end. False when they are not what chords.h says. */
+/* Lists the chords in the order in which they end. Returns false if they are not as chords.h
+ * says. */
 static bool list_pairs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     c->pairs.count = 0;

@@ -4,11 +4,11 @@
 
 #include <float.h>
 
-/* Of the mesh's size, and of the coordinates along the normal. */
+/* Relative to the mesh's size, and to the coordinates along the normal. */
 static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
 
-/* Beyond this exponent a power of two is no double any more; coordinates that small need no more.
- */
+/* A power of two with a larger exponent is no double; coordinates that would need one are scaled
+ * less. */
 enum { MOST_EXPONENT = 1000 };
 
 static he_status check(he_vec3 point, he_vec3 normal, const double *tolerance, he_error *err)
@@ -37,7 +37,7 @@ static he_vec3 unit_of(he_vec3 normal)
     return (he_vec3){n.x / length, n.y / length, n.z / length};
 }
 
-/* An isolated vertex only has a side, so it has no part in the size of things. */
+/* Isolated vertices are not cut, so they do not count for the size. */
 static bool is_cut(const he_mesh *m, uint32_t v)
 {
     return m->c.vertex_halfedge[v] < HE_DEAD;
@@ -56,13 +56,14 @@ static double find_scale(const he_mesh *m, he_vec3 point)
     return ldexp(1, -exponent < MOST_EXPONENT ? -exponent : MOST_EXPONENT);
 }
 
-/* The sum of the terms of a dot product, each without its sign: what its rounding goes by. */
+/* Returns the sum of the absolute values of a dot product's terms, which bounds its rounding
+ * error. */
 static double weigh(he_vec3 n, he_vec3 p)
 {
     return fabs(n.x * p.x) + fabs(n.y * p.y) + fabs(n.z * p.z);
 }
 
-/* The distance of a vertex that may be farther from the plane than those that are cut. */
+/* Returns the distance of a vertex that may be farther from the plane than those that are cut. */
 static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
 {
     he_vec3 near = he_vec3_scale(p, scale);
@@ -77,7 +78,7 @@ static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
     return fmax(fmin(far, DBL_MAX), -DBL_MAX);
 }
 
-/* Fill in the distances, and the default tolerance, in their unit. */
+/* Computes the distances, and the default tolerance in their unit. */
 static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
                          double *tolerance, he_error *err)
 {

@@ -13,20 +13,20 @@ void he_cut_parts_clear(he_cut_parts *parts)
     he_ids_clear(&parts->caps);
 }
 
-/* One call. */
+/* The state of one call. */
 typedef struct cutter {
     he_mesh *m;
     he_sides sides;
     he_vec3 point, normal;
     const double *tolerance;
-    int away;        /* the side that goes: 1 above, -1 below */
-    uint64_t *going; /* faces */
-    he_ids faces;    /* the same */
-    he_ids rim;      /* half-edges of theirs whose twins are of faces that stay */
+    int away;        /* the side that is deleted: 1 above, -1 below */
+    uint64_t *going; /* faces to delete, as bits */
+    he_ids faces;    /* faces to delete, as a list */
+    he_ids rim;      /* their half-edges whose twins are of faces that stay */
     he_cut_parts made;
 } cutter;
 
-/* Corners are on one side of the plane or in it. */
+/* All corners are on one side of the plane or in it. */
 static int side_of_face(const cutter *c, he_face f)
 {
     he_halfedge first = he_face_halfedge(c->m, f), h = first;
@@ -118,7 +118,7 @@ static he_status cap_loops(cutter *c, he_error *err)
         he_filled filled = {.vertex = {HE_NONE}};
         status = he_watch_at(c->m->watch, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
-            continue; /* on a loop that is capped */
+            continue; /* it is on a loop that has its cap already */
         }
         status = check_loop(c, h, err);
         if (status == HE_OK) {
@@ -153,10 +153,10 @@ static he_status erase(cutter *c, he_error *err)
 
 static he_status cut(cutter *c, bool cap, he_error *err)
 {
-    /* Each tells of its own way as if it were all there is, so it gets its part of the span. */
+    /* Each step reports progress from 0 to 1, so it gets a span of its own. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
-        const char *phase; /* NULL: names its own */
+        const char *phase; /* NULL: the step names its own phases */
         double to;
         bool wanted;
     } parts[] = {
@@ -189,7 +189,7 @@ he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal, const double *
     cutter c = {.m = m, .point = point, .normal = normal, .tolerance = tolerance};
     he_bracket bracket;
     c.away = keep == HE_CUT_ABOVE ? -1 : 1;
-    /* Measured before the split, whose vertices are in the plane then. */
+    /* Measured before the split, whose new vertices then count as in the plane. */
     he_status status = he_sides_find(m, point, normal, tolerance, &c.sides, err);
     if (status == HE_OK) {
         status = he_edit_begin(m, &bracket, err);

@@ -1,4 +1,4 @@
-/* plane_cut.h - what lies on one side of a plane, taken away. */
+/* plane_cut.h - cuts off what is on one side of a plane. */
 #ifndef HE_EDIT_PLANE_PLANE_CUT_H
 #define HE_EDIT_PLANE_PLANE_CUT_H
 
@@ -9,13 +9,13 @@ typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
 
 typedef struct he_cut_parts {
     uint32_t edges_split, faces_split; /* as by plane_split */
-    uint32_t faces_deleted;            /* the parts on the other side among them */
-    he_ids caps;                       /* the new faces, by the half-edges they began with */
+    uint32_t faces_deleted;            /* parts on the other side are counted too */
+    he_ids caps; /* the new faces, in the order of the half-edges they began with */
 } he_cut_parts;
 
 /* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h), with `tolerance` or,
- * where that is NULL, the default of plane.h; then the faces of the other side go, with edges and
- * vertices that have no face left (erase.h), and isolated vertices on that side.
+ * where that is NULL, the default of plane.h; then the faces of the other side are deleted, with
+ * edges and vertices that have no face left (erase.h), and isolated vertices on that side.
  *
  *         o-----------o             o-----------o              o-----------o
  *        /           /|            /           /|             /           /|
@@ -25,17 +25,19 @@ typedef struct he_cut_parts {
  *       |           |/                a hole                     capped
  *       o-----------o
  *
- * Every face is on one side, so that what the two sides keep makes up the whole: one in the plane
- * is below it when it faces up, as the top of what is below does, else above it.
+ * Every face counts to one side, so the results for both sides together make the whole: a face in
+ * the plane counts as below if it faces up, like the top of a solid below, else as above.
  *
- * With `cap` each loop of the cut becomes one polygon, also where the section has several loops,
- * one in another: their signed areas, and the volume, are right as they are.
+ * With `cap` each loop of the cut becomes one polygon, even if the section has several loops, one
+ * inside another: their signed areas, and the volume, are then still right.
  *
- * Refused, all or nothing: as plane_split (HE_NOT_FINITE, HE_BAD_VALUE, HE_DOUBLED_EDGE);
- * HE_LOCKED_ELEMENT for what would go (splitting is allowed); with `cap` HE_OPEN_LOOP, naming a
- * vertex, when a loop leaves the plane along an older hole, and HE_REPEATED_CORNER when it passes a
- * vertex twice. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else he_cut_parts_clear frees
- * it. */
+ * All or nothing: a refusal changes nothing. `out` may be NULL, else he_cut_parts_clear frees it.
+ * Returns HE_NOT_FINITE, HE_BAD_VALUE or HE_DOUBLED_EDGE as he_plane_split does.
+ * Returns HE_LOCKED_ELEMENT if an element that would be deleted is locked (splitting is allowed).
+ * Returns HE_OPEN_LOOP with `cap`, naming a vertex, if a loop leaves the plane along an older hole.
+ * Returns HE_REPEATED_CORNER with `cap` if a loop passes a vertex twice.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal,
                                     const double *tolerance, he_cut_side keep, bool cap,
                                     he_cut_parts *out, he_error *err);

@@ -13,11 +13,11 @@ void he_plane_parts_clear(he_plane_parts *parts)
     *parts = (he_plane_parts){.faces_split = 0};
 }
 
-/* One call. */
+/* The state of one call. */
 typedef struct splitter {
     he_mesh *m;
     he_sides sides;
-    uint64_t *chosen; /* faces, or NULL for all */
+    uint64_t *chosen; /* faces to split, or NULL for all */
     he_chords chords;
     he_plane_parts made;
 } splitter;
@@ -107,8 +107,8 @@ static uint32_t steps_between(const he_mesh *m, he_halfedge from, he_halfedge to
     return n;
 }
 
-/* The chord from corner a to corner b. Inner chords came before it, so that what is left between a
- * and b is one part: all chords of a face together walk over each of its corners once. */
+/* Cuts the chord from corner a to corner b. Inner chords are cut before it, so the rest between a
+ * and b is one part: all chords of a face together visit each of its corners once. */
 static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
 {
     he_mesh *m = s->m;
@@ -178,7 +178,8 @@ he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double
     if (status != HE_OK) {
         goto out;
     }
-    /* Faces see the vertices on their sides, and the diagonals of those before them. */
+    /* Faces are split after edges and in order, so that they have the vertices on their sides and
+     * know the diagonals of the faces before. */
     status = he_watch_phase(m->watch, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);

@@ -1,4 +1,4 @@
-/* plane_split.h - faces split along a plane, as paper is by a fold line. */
+/* plane_split.h - splits faces along a plane. */
 #ifndef HE_EDIT_PLANE_PLANE_SPLIT_H
 #define HE_EDIT_PLANE_PLANE_SPLIT_H
 
@@ -8,13 +8,13 @@ typedef struct he_plane_parts {
     he_ids vertices;      /* new, one for each edge that was split */
     he_ids edges;         /* the diagonals */
     he_ids faces;         /* new, one for each diagonal */
-    uint32_t faces_split; /* those that were there */
+    uint32_t faces_split; /* old faces that were split */
 } he_plane_parts;
 
 /* plane_split: V + k, E + k + d, F + d for k edges that the plane crosses and d diagonals, one in a
  * convex face. Each edge whose ends are on different sides gets a vertex where it meets the plane
  * (see edge_bisect), then each face with corners on both sides is cut along it (see face_split; by
- * several diagonals where it is concave, see chords.h). Nothing is removed and nothing moves.
+ * several diagonals where it is concave, see chords.h). Nothing is deleted and nothing moves.
  *
  *        o-------o-------o              o---w---o-------o
  *        |   .   |       |              |  /|   |       |
@@ -36,10 +36,14 @@ typedef struct he_plane_parts {
  *
  * `tolerance` is a distance, or NULL for the default of plane.h. A NULL list stands for all faces.
  *
- * Refused, all or nothing: as he_sides_find; HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT,
- * HE_REPEATED_ELEMENT for the list; HE_DOUBLED_EDGE when a diagonal would join two vertices that
- * an edge joins elsewhere, or that another diagonal does. HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may
- * be NULL, else he_plane_parts_clear frees it. */
+ * All or nothing: a refusal changes nothing. `out` may be NULL, else he_plane_parts_clear frees it.
+ * Returns HE_NOT_FINITE or HE_BAD_VALUE as he_sides_find does.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
+ * is not live or is listed twice.
+ * Returns HE_DOUBLED_EDGE if a diagonal would join two vertices that another edge or diagonal
+ * joins.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal,
                                       const double *tolerance, const uint32_t *faces, size_t count,
                                       he_plane_parts *out, he_error *err);
