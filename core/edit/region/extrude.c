@@ -8,8 +8,8 @@ typedef struct pull {
     double distance;
 } pull;
 
-/* The direction of the sum of vector areas. They are taken relative to the largest, so that none
- * overflows; where all but cancel out, what is left is rounding. */
+/* Finds the direction of the sum of vector areas. They are scaled by the largest, so that none
+ * overflows; if they nearly cancel out, the rest is rounding noise and there is no direction. */
 static bool find_direction(const he_mesh *m, const he_region *r, he_vec3 *out)
 {
     const double noise = 1e-12;

@@ -1,11 +1,11 @@
-/* extrude.h - faces pulled out of the surface. */
+/* extrude.h - extrudes faces out of the surface. */
 #ifndef HE_EDIT_REGION_EXTRUDE_H
 #define HE_EDIT_REGION_EXTRUDE_H
 
 #include "edit/region/region.h"
 
 /* face_extrude: every listed face, or with `region` every set of them connected across edges, is
- * drawn off its surroundings (see region.h) and moved.
+ * detached from its surroundings by a ring of quads (see region.h) and moved.
  *
  *                                                 o-------o
  *        o-------o-------o                       /|  f   /|
@@ -14,16 +14,20 @@
  *     o-------o-------o                   /    |/      |/ /
  *                                        o-----o-------o-o
  *
- * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r,
- * E + 2r, F + r. The listed faces keep their ids and are on top; vertices and edges inside a region
- * go along. A face on the boundary leaves its boundary edges where they were.
+ * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r, E
+ * + 2r, F + r. The listed faces keep their ids and are on top; vertices and edges inside a region
+ * move with them. Boundary edges of a face stay where they were.
  *
- * It moves by the vector `by`, or when that is NULL by `distance`, which may be negative, along its
- * normal: of a region the direction of the sum of its faces' vector areas.
+ * A face or region moves by the vector `by`, or if that is NULL by `distance`, which may be
+ * negative, along its normal: for a region the direction of the sum of its faces' vector areas.
  *
- * Refused, all or nothing: what he_region_draw refuses; HE_NO_NORMAL with a distance, naming a face
- * where that direction is zero; HE_NOT_FINITE for a place that is not. HE_NO_MEMORY,
- * HE_IDS_EXHAUSTED. `out` may be NULL, else he_region_parts_clear frees it. */
+ * All or nothing: a refusal changes nothing. `out` may be NULL, else he_region_parts_clear frees
+ * it.
+ * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
+ * Returns HE_NO_NORMAL with a distance, naming a face, if that direction is zero.
+ * Returns HE_NOT_FINITE if a position is not finite.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_extrude(he_mesh *m, const uint32_t *faces, size_t count, bool region,
                                        const he_vec3 *by, double distance, he_region_parts *out,
                                        he_error *err);

@@ -7,14 +7,14 @@ typedef struct inward {
     double factor, distance;
 } inward;
 
-/* How each rim corner moves, and the corners of one face while it is looked at. */
+/* How each rim corner moves, and buffers for the corners of one face. */
 typedef struct motion {
-    he_vec3 *path;   /* at time 1 */
+    he_vec3 *path;   /* the displacement at time 1 */
     he_vec3 *at;     /* corners of the face */
-    he_vec3 *moves;  /* theirs */
+    he_vec3 *moves;  /* their displacements */
     he_vec3 *of;     /* one for each face: its mean, or its normal */
-    double end;      /* the first time at which something happens */
-    uint64_t budget; /* steps that are left */
+    double end;      /* the first time at which something collides */
+    uint64_t budget; /* steps left */
 } motion;
 
 static void motion_clear(motion *p)
@@ -48,9 +48,9 @@ static uint32_t index_of(const he_mesh *m, const he_region *r, uint32_t h)
     return he_idmap_find(&r->faces, he_face_of(m, (he_halfedge){h}).i);
 }
 
-/* --- where corners go --- */
+/* --- displacements --- */
 
-/* Each towards the mean of the means of its faces. */
+/* Moves each corner towards the mean of the means of its faces. */
 static void aim_at_means(const he_mesh *m, const he_region *r, double factor, motion *p)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -69,7 +69,7 @@ static void aim_at_means(const he_mesh *m, const he_region *r, double factor, mo
     }
 }
 
-/* The way a corner goes while both sides move inwards by 1. */
+/* Returns the displacement of a corner while both sides move inwards by 1. */
 static he_vec3 miter(he_vec3 a, he_vec3 b)
 {
     const double sharpest = 0.125;
@@ -80,7 +80,8 @@ static he_vec3 miter(he_vec3 a, he_vec3 b)
     return he_vec3_scale(sum, 1 / fmax(0.5 * he_vec3_dot(sum, sum), sharpest));
 }
 
-/* Into its face, at a right angle to a rim half-edge; zero where that has no length. */
+/* Returns the unit vector into the face, at a right angle to a rim half-edge; zero if that has no
+ * length. */
 static he_vec3 inwards(const he_mesh *m, const he_region *r, const motion *p, uint32_t rim)
 {
     he_halfedge h = {rim};
@@ -103,7 +104,7 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
                            "face %u has no area: give a factor", r->faces.ids.ids[index]);
         }
     }
-    /* The half-edge that comes to a corner is that which leaves the one before it. */
+    /* The half-edge that arrives at a corner is the one that leaves the corner before. */
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
@@ -112,7 +113,7 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
     return HE_OK;
 }
 
-/* --- how long they may --- */
+/* --- when the motion must end --- */
 
 static void happens(motion *p, double time)
 {
@@ -121,8 +122,8 @@ static void happens(motion *p, double time)
     }
 }
 
-/* The smallest positive root of c0 + c1 t + c2 t^2 with c0 > 0, infinite without one. A root that
- * is a double one but for rounding counts. */
+/* Returns the smallest positive root of c0 + c1 t + c2 t^2 with c0 > 0, infinity if there is none.
+ * A double root counts even if rounding has removed it. */
 static double first_root(double c0, double c1, double c2)
 {
     const double noise = 1e-9;
@@ -146,7 +147,8 @@ static corner corner_of(const motion *p, size_t i)
     return (corner){p->at[i], p->moves[i]};
 }
 
-/* Twice the area of a, b, c as it looks along the normal, at time 0, and by its change. */
+/* Returns twice the area of a, b, c, projected along the normal, at time 0, and the coefficients of
+ * its change. */
 static double turn(corner a, corner b, corner c, he_vec3 normal, double *c1, double *c2)
 {
     he_vec3 x = he_vec3_sub(b.at, a.at), y = he_vec3_sub(c.at, b.at);
@@ -163,7 +165,7 @@ static void watch_side(motion *p, corner a, corner b)
     happens(p, length / he_vec3_dot(he_vec3_sub(a.moves, b.moves), along));
 }
 
-/* When does corner c come upon the side a-b from inside, between its ends? */
+/* Finds when corner c hits the side a-b from inside, between its ends. */
 static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
 {
     double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
@@ -206,7 +208,7 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(c0, c1, c2));
             continue;
         }
-        /* b is reflex: against every side it is not an end of. */
+        /* b is reflex, so it is tested against every side of which it is not an end. */
         if (p->budget < n) {
             return he_fail(err, HE_LIMIT, HE_FACE, f.i,
                            "face %u has too many reflex corners and sides to be inset", f.i);
@@ -247,11 +249,11 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
     return status;
 }
 
-/* --- what is interpolated there --- */
+/* --- interpolated values --- */
 
-/* How far along `a` and `b`, from the corner between them, the point of the triangle lies that is
- * nearest to `way`, but for rounding; *x and *y are 0 or more, and 1 at most together. Returns the
- * square of what is missing. */
+/* Finds the point of the triangle nearest to `way`, up to rounding, in coordinates along `a` and
+ * `b` from the corner between them; *x and *y are at least 0 and together at most 1. Returns the
+ * squared distance. */
 static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
 {
     double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
@@ -277,7 +279,7 @@ static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, dou
     return he_vec3_dot(missing, missing);
 }
 
-/* Try the two triangles at the origin of h in its face. */
+/* Tries the two triangles at the origin of h in its face. */
 static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
                         he_region_mix *out, double *least)
 {

@@ -1,14 +1,14 @@
-/* inset.h - faces made smaller within themselves. */
+/* inset.h - insets faces: makes them smaller inside a ring of quads. */
 #ifndef HE_EDIT_REGION_INSET_H
 #define HE_EDIT_REGION_INSET_H
 
 #include "edit/region/region.h"
 
-/* The work of looking where an inset ends, a corner against a side each. */
+/* The most work for finding where an inset must end; a corner against a side counts one. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
 /* face_inset: every listed face, or with `region` every set of them connected across edges, is
- * drawn off its surroundings (see region.h), and its rim moves inwards.
+ * detached from its surroundings by a ring of quads (see region.h), and its rim moves inwards.
  *
  *        o---------------o            o---------------o
  *        |               |            | \           / |
@@ -18,27 +18,33 @@ enum { HE_INSET_STEPS = 1 << 22 };
  *        |               |            | /           \ |
  *        o---------------o            o---------------o
  *
- * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r,
- * E + 2r, F + r. The listed faces keep their ids and are the inner ones; what is inside a region
- * stays where it is.
+ * For one face of n corners V + n, E + 2n, F + n; for a region with a rim of r half-edges V + r, E
+ * + 2r, F + r. The listed faces keep their ids and are the inner ones; vertices inside a region
+ * stay where they are.
  *
- * New vertices have copied values of those they descend from. Interpolated ones are those at their
- * place in the region, as it is made up of triangles, in each face from the mean of its corners to
- * two neighbours: of those about the rim corner the one that comes nearest to the place.
+ * New vertices copy the values of those they descend from. Interpolated attributes are those at the
+ * new position in the region, whose faces are divided into triangles of the mean of their corners
+ * and two neighbouring corners: the triangle at the rim corner that is nearest to the position is
+ * used.
  *
  * With a `factor` above 0 and below 1 each rim corner goes this part of the way to the mean of its
  * face's corners, or of those means of the region's faces about it. With factor 0 the sides of the
- * rim move in parallel by `distance`, within the planes of their faces; at a corner so sharp that
- * it would go further than four times that, it goes less far.
+ * rim move in parallel by `distance`, within the planes of their faces; a corner so sharp that it
+ * would move more than four times that moves less.
  *
- * CLAMPED. All corners move in proportion, and no further than to 99 % of the way to where first,
- * within one face of the region, a side would lose its length, a corner turn over, or a reflex
- * corner come upon another side. A face that is not planar is looked at along its normal.
+ * CLAMPED. All corners move in proportion, and at most 99 % of the way to the point at which first,
+ * within one face of the region, a side would have no length, a corner would flip, or a reflex
+ * corner would hit another side. A face that is not planar is projected along its normal.
  *
- * Refused, all or nothing: what he_region_draw refuses; HE_BAD_VALUE unless 0 < factor < 1, or
- * distance > 0; HE_NO_NORMAL with a distance, naming a face on the rim without area; HE_LIMIT for
- * faces with too many reflex corners and sides; HE_NOT_FINITE. HE_NO_MEMORY, HE_IDS_EXHAUSTED.
- * `out` may be NULL, else he_region_parts_clear frees it. */
+ * All or nothing: a refusal changes nothing. `out` may be NULL, else he_region_parts_clear frees
+ * it.
+ * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
+ * Returns HE_BAD_VALUE unless 0 < factor < 1, or distance > 0.
+ * Returns HE_NO_NORMAL with a distance, naming a face, if a face on the rim has no area.
+ * Returns HE_LIMIT if faces have too many reflex corners and sides.
+ * Returns HE_NOT_FINITE if a position is not finite.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region,
                                      double factor, double distance, he_region_parts *out,
                                      he_error *err);

@@ -5,7 +5,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Links of one rim half-edge: its own, those it had neighbours in, the face's and the vertex's. */
+/* Links written for one rim half-edge: its own, its old neighbours', the face's and the
+ * vertex's. */
 enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
@@ -29,7 +30,7 @@ static bool is_inside(const he_region *r, he_face f)
     return f.i != HE_NONE && he_idmap_find(&r->faces, f.i) != HE_NONE;
 }
 
-/* Add the listed faces that are connected with those in the region. */
+/* Adds the listed faces that are connected with those in the region. */
 static he_status spread(const he_mesh *m, he_region *r, const he_idmap *listed, he_error *err)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -86,7 +87,7 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     return HE_OK;
 }
 
-/* The half-edges that leave the rim between its two sides there. */
+/* Finds the half-edges that leave a rim corner between its two sides. */
 static he_status find_inner(const he_mesh *m, he_region *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -123,7 +124,7 @@ static he_status check_locks(const he_mesh *m, const he_region *r, he_error *err
     return status;
 }
 
-/* Corners of the region that are not on the rim. */
+/* Lists the corners of the region that are not on the rim. */
 static he_status find_inside(const he_mesh *m, const he_region *r, he_idmap *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -176,7 +177,7 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 
 /* --- COMMIT --- */
 
-/* Rows of rim half-edge i, counted from the first new ones. */
+/* The new rows of rim half-edge i, counted from the first new ones. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -210,8 +211,8 @@ static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const h
     }
 }
 
-/* The new half-edge takes the place of rim half-edge i in its face. Neighbours that are on the rim
- * too put themselves there when it is their turn, so only links to what stays are read. */
+/* The new half-edge takes the place of rim half-edge i in its face. Neighbours on the rim are
+ * replaced in their own turn, so only links to half-edges that stay are read. */
 static void replace_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]}, t = above(n, i);
@@ -242,7 +243,7 @@ static void carry_corners(he_mesh *m, const he_region *r, const fresh *n, size_t
     he_carry_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
 }
 
-/* The quad: along the rim, up at b, back above, down at a. */
+/* Links the quad: along the rim, up at b, back above, down at a. */
 static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]};
@@ -258,8 +259,8 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
     he_set_face_halfedge(m, q, h);
 }
 
-/* The values of the new vertices that are mixed from corners of the same face as that of `last`,
- * whose row holds the mean meanwhile. */
+/* Computes the values of the new vertices that are mixed from corners of the same face as that of
+ * `last`, whose row holds the mean meanwhile. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {
@@ -325,7 +326,8 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_r
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         he_vertex v = he_origin(m, h);
-        /* A boundary half-edge it stores still leaves it; another may have gone along. */
+        /* A stored boundary half-edge still leaves v; any other may have moved to the new
+         * vertex. */
         if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
             he_set_vertex_halfedge(m, v, h);
         }
@@ -363,8 +365,8 @@ static he_status add_parts(const he_mesh *m, const he_region *r, he_region_parts
     return status;
 }
 
-/* What the new vertices are made of, and room for the corners of a face. `*out` stays NULL where
- * there is nothing to mix. */
+/* Computes how the values of the new vertices are mixed, and makes room for the corners of a face.
+ * `*out` stays NULL if nothing is mixed. */
 static he_status mix(const he_mesh *m, const he_region *r, he_region_place place, const he_vec3 *to,
                      he_region_mix **out, he_ids *corners, he_error *err)
 {
@@ -384,7 +386,7 @@ static he_status mix(const he_mesh *m, const he_region *r, he_region_place place
     return status == HE_OK ? place.mix(m, r, to, *out, err) : status;
 }
 
-/* `r` holds the faces and is cleared. */
+/* `r` has the faces and is cleared. */
 static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_region_parts *out,
                           he_error *err)
 {
@@ -442,7 +444,7 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
     return status;
 }
 
-/* Regions one after another, from the first listed face that is in none yet. */
+/* Handles the regions one after another, each from the first listed face that is in none yet. */
 static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_region_place place,
                           he_region_parts *out, he_error *err)
 {

@@ -1,9 +1,9 @@
-/* region.h - faces drawn off their surroundings along their rim, which face_extrude and face_inset
- * share: they differ in where the new vertices go.
+/* region.h - detaches faces from their surroundings by a ring of quads along their rim, for
+ * face_extrude and face_inset, which differ in where the new vertices are.
  *
- * A region is a set of faces connected across edges. Its rim are the half-edges inside it beside
- * which it ends, at other faces or at a hole. Each rim corner gets a new vertex, which takes the
- * region's faces over, and each rim half-edge a quad between old and new:
+ * A region is a set of faces connected across edges. Its rim are its half-edges beside which are
+ * other faces or a hole. Each rim corner gets a new vertex, to which the region's faces move, and
+ * each rim half-edge a quad between old and new:
  *
  *        o-------o-------o               o-------o-------o
  *        |       |       |               | \     |     / |
@@ -15,9 +15,9 @@
  *                                        |               |
  *
  * V + r, E + 2r, F + r for a rim of r half-edges, of one loop or of several. The faces keep their
- * ids, the edges between them too; what was beside the rim keeps the old vertices and edges. For
- * rim half-edge i, from a to b, in the order of the region's faces and of each face's corners from
- * its stored half-edge on:
+ * ids, the edges between them too; the surroundings keep the old vertices and edges. For rim
+ * half-edge i, from a to b, in the order of the region's faces and of each face's corners from its
+ * stored half-edge on:
  *
  *     new vertex i      above a; descends from a and has its values by rule
  *     new edge 2i       its half-edge 2e runs above the rim half-edge, inside the region; descends
@@ -27,14 +27,14 @@
  *
  * Corner values follow the corners of the region's faces; a quad has copies of those beside it.
  *
- * Two fans of a bow-tie at the rim, and the rings about what was outside, stay as they are: at an
- * old vertex two quads take the place of the region's faces, and at a new one they close the fan.
- * So no edge is doubled and no fan closes beside another.
+ * The fans of a bow-tie at the rim stay as they are: at an old vertex two quads take the place of
+ * the region's faces, and at a new one they close the fan. So no edge is doubled and no fan closes
+ * beside another.
  *
- * Refused: HE_NO_RIM naming a face, for a whole closed component; HE_RIM_MEETS_ITSELF naming a
- * vertex which the rim of one region passes twice; HE_LOCKED_ELEMENT for a face with a corner on
- * the rim, for an edge between two faces of the region with an end there, and for a vertex inside
- * that moves. */
+ * Returns HE_NO_RIM naming a face, if a region is a whole closed component.
+ * Returns HE_RIM_MEETS_ITSELF naming a vertex, if the rim of one region passes it twice.
+ * Returns HE_LOCKED_ELEMENT if a face with a corner on the rim, an edge between two faces of the
+ * region with an end on the rim, or a vertex inside that moves is locked. */
 #ifndef HE_EDIT_REGION_REGION_H
 #define HE_EDIT_REGION_REGION_H
 
@@ -48,18 +48,19 @@ typedef struct he_region {
     he_ids inner, inner_at; /* other half-edges inside that leave the rim, and their corner */
 } he_region;
 
-/* What the interpolated values of a new vertex are made of: `mean` of the mean of the corners of
- * the face of `in`, which leaves the vertex below it, `side` of `beside`, and else of that vertex.
- */
+/* How the interpolated values of a new vertex are computed: `mean` times the mean of the corners of
+ * the face of `in`, which leaves the vertex below it, `side` times the value of `beside`, and the
+ * rest from that vertex. */
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
-    double mean, side; /* 0 or more, and 1 at most together */
+    double mean, side; /* at least 0, and together at most 1 */
 } he_region_mix;
 
-/* Where the new vertices go: fill `to`, one for each corner of the rim. `*shift` is what the
- * vertices inside the region move by, when `*shifts` is set. May refuse. `mix` is for each what it
- * is made of, after `to`; without it all have the values of those below them. */
+/* Computes where the new vertices are: fills `to`, one position for each corner of the rim.
+ * `*shift` is what the vertices inside the region move by, if `*shifts` is set. May refuse. `mix`,
+ * if not NULL, is called after `to` is filled and says how the values of each are computed;
+ * otherwise each has the values of the vertex below it. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);
@@ -68,17 +69,22 @@ typedef struct he_region_place {
                      he_region_mix *out, he_error *err);
 } he_region_place;
 
-/* What was made, in order; {0} at first. */
+/* The new elements, in order; {0} at first. */
 typedef struct he_region_parts {
     he_ids vertices, edges, faces;
 } he_region_parts;
 
 void he_region_parts_clear(he_region_parts *parts);
 
-/* Draw off the listed faces, each by itself, or with `joined` those that are connected across edges
- * as one region. All or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, the
- * refusals above and of `place`, HE_NO_MEMORY, HE_IDS_EXHAUSTED. `out` may be NULL, else
- * he_region_parts_clear frees it. Costs what lies about the corners of the faces. */
+/* Detaches the listed faces, each by itself, or with `joined` those that are connected across edges
+ * as one region. All or nothing. `out` may be NULL, else he_region_parts_clear frees it. Costs the
+ * elements at the corners of the faces.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice.
+ * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF or HE_LOCKED_ELEMENT as said above.
+ * Returns the error of `place` if that refuses.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_region_draw(he_mesh *m, const uint32_t *faces, size_t count, bool joined,
                                       he_region_place place, he_region_parts *out, he_error *err);
 
