@@ -80,6 +80,16 @@ printf '\nconst void *planted(st_mesh *mesh)\n{\n    return st_read_begin(mesh, 
 expect 'a handler that obtains its mesh itself is found' 'a handler is given its mesh' words
 cp "$OLDPWD/api/read/elements.c" api/read/elements.c
 
+plain() { sh .ci/lint-words core/mesh/walk.h; }
+expect 'comments that name what they are about pass' '' plain
+for words in '/* The same for the other end. */' '/* Of both ends. */' '/* For callers. */' \
+    '// Likewise for faces' '/*\n * Of both ends. */'; do
+    # shellcheck disable=SC2059 # the words have a line feed
+    printf "\n$words\n" >>core/mesh/walk.h
+    expect "a comment that begins '$words' is found" 'names what it is about' plain
+    cp "$OLDPWD/core/mesh/walk.h" core/mesh/walk.h
+done
+
 for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c

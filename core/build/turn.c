@@ -15,8 +15,8 @@ typedef struct turning {
     const he_soup *soup;
     const he_corners *corners;
     uint32_t lanes;
-    /* For each lane a row with one word for each vertex: first how many corners it has there, then
-     * where the next one goes. */
+    /* One row for each lane, with one word for each vertex: first how many corners it has there,
+     * then where the next one goes. */
     uint32_t *places;
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *turn, *first;

@@ -12,7 +12,7 @@ enum { ST_BASE_BYTES = 16 << 20 };
  * mesh again. */
 enum { ST_QUEUE_MESSAGES = 1024, ST_QUEUE_BYTES = 1 << 20 };
 
-/* For how many microseconds a queue without listeners goes on collecting, so that a listener that
+/* Microseconds for which a queue without listeners goes on collecting, so that a listener that
  * was cut off finds what it missed. */
 enum { ST_QUEUE_LINGER = 30 * 1000 * 1000 };
 

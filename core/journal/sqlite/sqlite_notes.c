@@ -89,7 +89,7 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                  (int64_t)job->status, (uint64_t)job->shown, job->headers[ST_JOB_TYPE],
                  job->headers[ST_JOB_DISPOSITION], job->headers[ST_JOB_TAG],
                  job->headers[ST_JOB_WARNINGS], job->body, job->length, (uint64_t)st_job_sum(job));
-    /* For each new job, up to two expired ones are deleted. */
+    /* Each new job deletes up to two expired ones. */
     return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_JOBS_TRIM, "d", now - ST_JOB_SECONDS)
                                   : outcome;
 }

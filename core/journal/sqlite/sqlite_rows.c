@@ -268,7 +268,7 @@ static st_sql add_entry(st_sqlite *self, st_queued *entry)
     return outcome;
 }
 
-/* For each new key, up to two expired ones are deleted. The keys of one mesh are counted only at
+/* Each new key deletes up to two expired ones. The keys of one mesh are counted only at
  * about one of CUT_EVERY new keys, by chance. */
 enum { CUT_EVERY = 64, CUT_MOST = 16 * CUT_EVERY };
 
