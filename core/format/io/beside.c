@@ -29,7 +29,7 @@ static he_beside_file *find_exact(he_beside *beside, const char *name, size_t le
     return NULL;
 }
 
-/* NULL where several have this name in folders of their own, too. */
+/* Returns NULL also if several files in different folders have this name. */
 static he_beside_file *find_base(he_beside *beside, const char *name, size_t length)
 {
     size_t base = base_of(name, length);
@@ -71,7 +71,7 @@ static int digit(char c)
                                   : -1;
 }
 
-/* False where it is longer than a name can be. What is no escape stays as it is. */
+/* Decodes percent escapes; anything else stays as it is. Returns false if the name is too long. */
 static bool unescape(const char *uri, size_t length, char name[HE_BESIDE_NAME], size_t *used)
 {
     *used = 0;

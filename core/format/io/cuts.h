@@ -1,7 +1,7 @@
-/* cuts.h - the triangles of all faces, for formats that have no others.
+/* cuts.h - the triangles of all faces, for formats that only have triangles.
  *
- * A polygon is cut as triangulation.h says, with diagonals that avoid the edges there are where
- * they can: an edge that is doubled would have more than two faces when the file is read again. */
+ * A polygon is cut as triangulation.h says, with diagonals that avoid existing edges if possible: a
+ * doubled edge would have more than two faces when the file is read again. */
 #ifndef HE_FORMAT_IO_CUTS_H
 #define HE_FORMAT_IO_CUTS_H
 
@@ -10,28 +10,29 @@
 /* {0} is empty. */
 typedef struct he_cuts {
     const he_mesh *mesh;
-    he_ids corners;            /* three vertices a triangle, of all faces that are none */
-    uint64_t polygons, turned; /* faces: cut; with triangles turned over */
-    uint64_t steps;            /* that cutting them took */
+    he_ids corners;            /* three vertices for each triangle of faces that are no triangles */
+    uint64_t polygons, turned; /* faces that were cut; faces with flipped triangles */
+    uint64_t steps;            /* steps of cutting them */
 } he_cuts;
 
-/* Borrows the mesh, which must not change meanwhile. `watch` may be NULL. HE_NO_MEMORY,
- * HE_CANCELLED. */
+/* Cuts all faces. Borrows the mesh, which must not change meanwhile. `watch` may be NULL.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_cuts_make(const he_mesh *mesh, he_watch *watch, he_cuts *out,
                                     he_error *err);
 void he_cuts_clear(he_cuts *cuts);
-/* Triangles in all: the corners of faces, less two a face. */
+/* Returns the number of triangles in all. */
 uint64_t he_cuts_count(const he_cuts *cuts);
 
-/* A walk over the triangles, those of one face after another; {0} begins it. */
+/* A walk over the triangles, face by face; {0} begins it. */
 typedef struct he_cut_walk {
-    uint32_t face; /* next, or the one that has begun */
-    uint32_t left; /* triangles of it that are to come */
+    uint32_t face; /* the next face, or the one being visited */
+    uint32_t left; /* its triangles still to come */
     bool is_cut;   /* it is no triangle */
-    size_t corner; /* next of cuts */
+    size_t corner; /* next corner of cuts */
 } he_cut_walk;
 
-/* The ids of its vertices; false after the last. */
+/* Gets the vertices of the next triangle. Returns false after the last. */
 bool he_cuts_next(const he_cuts *cuts, he_cut_walk *walk, uint32_t vertices[3]);
 
 #endif

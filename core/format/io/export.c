@@ -164,7 +164,7 @@ char *he_export_row(const he_column *column, size_t row, char *to)
     return to;
 }
 
-/* Nobody who does not know the seed can choose many values of hashes that lie together. */
+/* Without the seed nobody can choose many values whose hashes are close together. */
 static uint64_t hash(uint64_t h, const void *bytes, size_t length)
 {
     const unsigned char *p = bytes;
@@ -199,7 +199,7 @@ static bool say_the_same(const table *t, uint32_t h, uint32_t k)
     return same;
 }
 
-/* The slot of what half-edge h says, or the free one where it belongs. */
+/* Returns the slot of the values of half-edge h, or the free one where they belong. */
 static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
 {
     uint64_t sum = (uint64_t)(uintptr_t)t->slots * 0x94D049BB133111EB;

@@ -47,7 +47,7 @@ static const struct {
 #undef SIGNATURE
 };
 
-/* Markup may have a mark of UTF-8 and blanks before it, and any letter case. */
+/* Markup may begin with a UTF-8 byte order mark and blanks, in any letter case. */
 static const struct {
     const char *text, *name;
 } markups[] = {

@@ -1,21 +1,21 @@
-/* places.h - where in the input each vertex or face was, so that what is found out later (a third
- * face on an edge, an index beyond the last vertex) can still name the line.
+/* places.h - the place in the input of each vertex or face, so that errors found later (a third
+ * face on an edge, an index beyond the last vertex) can name the line.
  *
- * Elements mostly follow one another at equal steps (a line each, or so many bytes): only where
- * they do not is anything stored. */
+ * Elements mostly follow one another at equal steps (a line each, or so many bytes): a run of them
+ * is stored once. */
 #ifndef HE_FORMAT_IO_PLACES_H
 #define HE_FORMAT_IO_PLACES_H
 
 #include "base/mem.h"
 
 typedef struct he_place_run {
-    uint64_t at; /* of element `first` */
+    uint64_t at; /* place of element `first` */
     uint32_t first;
 } he_place_run;
 
 typedef struct he_places {
     he_place unit;
-    uint32_t step; /* from one element to the next inside a run */
+    uint32_t step; /* distance from one element to the next inside a run */
     he_place_run *runs;
     size_t count, capacity;
 } he_places;
@@ -24,7 +24,8 @@ void he_places_init(he_places *places, he_place unit, uint32_t step);
 void he_places_clear(he_places *places);
 HE_NODISCARD he_status he_places_begin_run(he_places *places, uint32_t element, uint64_t at,
                                            he_error *err);
-/* Elements are added in order. HE_NO_MEMORY. */
+/* Adds an element; elements come in order.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD static inline he_status he_places_add(he_places *places, uint32_t element, uint64_t at,
                                                    he_error *err)
 {
@@ -36,7 +37,7 @@ HE_NODISCARD static inline he_status he_places_add(he_places *places, uint32_t e
     }
     return he_places_begin_run(places, element, at, err);
 }
-/* The place of an element that was added. */
+/* Returns the place of an element that was added. */
 uint64_t he_places_find(const he_places *places, uint32_t element);
 
 #endif

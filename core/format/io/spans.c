@@ -31,7 +31,7 @@ he_status he_spans_set(he_spans *spans, size_t face, uint32_t value, he_error *e
     return status;
 }
 
-/* Latin-1 as UTF-8; `to` has room for twice the bytes. */
+/* Converts Latin-1 to UTF-8; `to` has room for twice the bytes. */
 static size_t widen(const char *from, size_t size, char *to)
 {
     size_t length = 0;
@@ -47,7 +47,7 @@ static size_t widen(const char *from, size_t size, char *to)
     return length;
 }
 
-/* Copy [p, end) with each continuation as one blank and no blanks at the end. */
+/* Copies [p, end) with each continuation as one blank and without blanks at the end. */
 static size_t join(const char *p, const char *end, char *to)
 {
     size_t length = 0;
@@ -73,7 +73,7 @@ he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, siz
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
         }
     }
-    /* the default row is 0, so 0 must be the empty name, even after a failed attempt */
+    /* the default row is 0, so label 0 must be the empty name, even after a failed attempt */
     if (he_labels_count(spans->labels) == 0) {
         status = he_labels_add(spans->labels, "", 0, &value, err);
     }
@@ -88,7 +88,7 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char
 {
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
-    char *name = he_mem_alloc(3 * room); /* the bytes, then the same in UTF-8 */
+    char *name = he_mem_alloc(3 * room); /* room for the bytes, and for them in UTF-8 */
     if (name == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
     }
@@ -139,7 +139,7 @@ he_status he_spans_merge(he_spans *spans, size_t faces, he_column *column, const
         status = he_column_extend(column, faces - column->rows, err);
     }
     for (size_t f = 0; f < faces && status == HE_OK;) {
-        if (k < own->count && f >= own->ids[k]) { /* pass over the faces that have theirs */
+        if (k < own->count && f >= own->ids[k]) { /* skip the faces that have names of their own */
             f = own->ids[k + 1] > f ? own->ids[k + 1] : f;
             k += 2;
             continue;

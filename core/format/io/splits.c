@@ -8,7 +8,7 @@ void he_splits_clear(he_splits *splits)
     *splits = (he_splits){0};
 }
 
-/* From numbers of what is said to those of vertices, which take their place in `first`. */
+/* Turns the numbers of combinations of values into those of vertices; writes `first` anew. */
 static he_status number_vertices(const he_mesh *m, const uint32_t *numbers, he_distinct *distinct,
                                  he_splits *out, he_error *err)
 {

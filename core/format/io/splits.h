@@ -1,12 +1,12 @@
-/* splits.h - vertices as other programs have them, who know of no corners: one for each thing that
- * the corners about a vertex say.
+/* splits.h - splits vertices for formats without corners: one vertex for each combination of values
+ * of the corners at a vertex.
  *
- *     --o--        v       the corners left of v say 3, those right of it 8: v is written with 3,
- *     3 | 8     3 | | 8    and a copy of it behind all vertices with 8. Faces name the one that
- *       |        v   v'    says what their corner says.
+ *     --o--        v       the corners left of v have 3, those right of it 8: v is written with 3,
+ *     3 | 8     3 | | 8    and a copy of it, after all vertices, with 8. Faces name the one that
+ *       |        v   v'    has the value of their corner.
  *
- * Numbers 0 to V - 1 are those of the live vertices, in the order of ids; each says what its first
- * corner says, in the order of faces. */
+ * Numbers 0 to V - 1 are those of the live vertices, in the order of ids; each has the values of
+ * its first corner, in the order of faces. */
 #ifndef HE_FORMAT_IO_SPLITS_H
 #define HE_FORMAT_IO_SPLITS_H
 
@@ -14,12 +14,14 @@
 
 /* {0} is empty: no columns, no copies. */
 typedef struct he_splits {
-    uint32_t *number; /* of the vertex that stands for each half-edge with a face */
-    uint32_t *own;    /* of each vertex the half-edge that it says the same as; HE_NONE */
-    he_ids copies;    /* of each copy a half-edge whose origin is the vertex */
+    uint32_t *number; /* vertex that stands for each half-edge with a face */
+    uint32_t *own;    /* for each vertex the half-edge whose values it has; HE_NONE */
+    he_ids copies;    /* for each copy a half-edge whose origin is the vertex */
 } he_splits;
 
-/* `numbers` are those of he_export_numbers; `watch` may be NULL. HE_NO_MEMORY, HE_CANCELLED. */
+/* Splits the vertices. `numbers` are those of he_export_numbers; `watch` may be NULL.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_splits_make(const he_mesh *mesh, const uint32_t *numbers,
                                       const he_column *const *columns, size_t count,
                                       he_watch *watch, he_splits *out, he_error *err);

@@ -10,7 +10,7 @@ void he_weld_clear(he_weld *weld)
     *weld = (he_weld){0};
 }
 
-/* Slots are in the order of the hash, so that growing moves each to about twice its place. */
+/* Slots are in the order of the hash, so that growing moves each entry to about twice its index. */
 static size_t first_slot(const he_weld *weld, uint32_t h)
 {
     return h >> (32 - weld->bits);

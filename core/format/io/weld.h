@@ -1,16 +1,16 @@
-/* weld.h - points at equal positions made one vertex, for formats that repeat the position of a
- * corner in each of its faces.
+/* weld.h - merges points at equal positions into one vertex, for formats that repeat the position
+ * of a corner in each of its faces.
  *
- * Equal means equal numbers: bit by bit, but for -0, which is 0. A hash table of the positions in a
- * soup; vertices are numbered as they first appear. Which slots they take depends on an address, so
- * that no file can be made in which all of them collide. */
+ * Positions are equal if they are bit by bit, except that -0 equals 0. A hash table contains the
+ * positions of a soup; vertices are numbered in the order in which they first appear. The hash
+ * depends on an address, so no file can be made in which all positions collide. */
 #ifndef HE_FORMAT_IO_WELD_H
 #define HE_FORMAT_IO_WELD_H
 
 #include "build/build.h"
 
 typedef struct he_weld_slot {
-    uint32_t hash, vertex; /* number + 1; 0 where the slot is free */
+    uint32_t hash, vertex; /* hash, and number + 1 of a vertex; 0 in a free slot */
 } he_weld_slot;
 
 /* {0} is empty. */
@@ -21,10 +21,13 @@ typedef struct he_weld {
 } he_weld;
 
 void he_weld_clear(he_weld *weld);
-/* This position will be asked for soon: a hint to memory. */
+/* Prefetches the slot of a position that will be looked up soon. */
 void he_weld_expect(const he_weld *weld, he_vec3 position);
-/* The vertex of the soup at `position`, added when there is none. All vertices of the soup are to
- * come through here. HE_NOT_FINITE, HE_LIMIT, HE_NO_MEMORY. */
+/* Finds the vertex of the soup at `position`, or adds one. All vertices of the soup must be added
+ * by this function.
+ * Returns HE_NOT_FINITE if a coordinate is not finite.
+ * Returns HE_LIMIT if a limit of the soup would be exceeded.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_weld_vertex(he_weld *weld, he_soup *soup, he_vec3 position,
                                       uint32_t *vertex, he_error *err);
 

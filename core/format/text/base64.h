@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Room that any text of this length decodes into. */
+/* Returns the room that any text of this length needs when decoded. */
 size_t he_base64_room(size_t length);
-/* Decode; `to` has that room. False where the text is not of the encoding. */
+/* Decodes a text to `to`, which has that room. Returns false if it is no base 64. */
 bool he_base64_decode(const char *text, size_t length, unsigned char *to, size_t *decoded);
 
 #endif

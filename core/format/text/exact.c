@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A non-negative integer, least significant word first, no leading zero words. The longest here
- * are 801 digits times a power of two, or 5^1146 times 54 bits: under 4096 bits. */
+/* A non-negative integer, least significant word first, without leading zero words. The longest
+ * needed are 801 digits times a power of two, or 5^1146 times 54 bits: under 4096 bits. */
 enum { BIG_WORDS = 66 };
 
 typedef struct big {
@@ -15,7 +15,8 @@ typedef struct big {
     uint64_t words[BIG_WORDS];
 } big;
 
-/* 768 digits decide between any two doubles; further ones matter only as being zero or not. */
+/* 768 digits decide between any two doubles; of further ones it only matters whether all are
+ * zero. */
 enum { KEPT_DIGITS = 800 };
 
 static void multiply_add(big *n, uint64_t factor, uint64_t add)
@@ -65,7 +66,7 @@ static int compare(const big *a, const big *b)
     return 0;
 }
 
-/* Digits into an integer; `*exponent` is corrected for those that were cut off. */
+/* Reads digits into an integer; `*exponent` is corrected for those that were cut off. */
 static void read_digits(big *n, const char *digits, const char *end, int64_t *exponent)
 {
     size_t kept = 0, dropped = 0;
@@ -90,7 +91,7 @@ static void read_digits(big *n, const char *digits, const char *end, int64_t *ex
     }
 }
 
-/* Compare digits * 10^exponent with the middle between the doubles `bits` and `bits` + 1. */
+/* Compares digits * 10^exponent with the middle between the doubles `bits` and `bits` + 1. */
 static int compare_with_middle(const big *digits, int64_t exponent, uint64_t bits)
 {
     uint64_t mantissa = bits & (((uint64_t)1 << 52) - 1);

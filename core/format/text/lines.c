@@ -26,13 +26,13 @@ const char *he_continuation(const char *p, const char *end)
         p++;
     }
     if (p == end) {
-        return p; /* the file ends here: nothing follows */
+        return p; /* the file ends here */
     }
     return *p == '\n' ? p + 1 : NULL;
 }
 
-/* Does a line that ends at the line feed `feed` go on? A comment does not; `first`: the line is not
- * itself a continuation, so it may be one. */
+/* Does a line that ends at the line feed `feed` continue? A comment does not; `first` says that the
+ * line is not itself a continuation, so it may be one. */
 static bool goes_on(const char *begin, const char *feed, bool first)
 {
     const char *p = feed;
@@ -49,7 +49,7 @@ static bool goes_on(const char *begin, const char *feed, bool first)
     return !first || *p != '#';
 }
 
-/* Does text begin here with the mark of UTF-16? */
+/* Does the text begin with the byte order mark of UTF-16? */
 static bool is_wide(const char *p, size_t n)
 {
     return n >= 2 && ((p[0] == '\xFF' && p[1] == '\xFE') || (p[0] == '\xFE' && p[1] == '\xFF'));
@@ -101,7 +101,7 @@ static he_status keep(he_lines *lines, const char *begin, const char *end, he_er
     return HE_OK;
 }
 
-/* One line end, at `feed`, was found; the line's last part is [begin, feed]. */
+/* Handles a line end at `feed`; the line's last part is [begin, feed]. */
 static he_status end_line(he_lines *lines, const char *begin, const char *feed, he_error *err)
 {
     he_status status = HE_OK;
@@ -132,7 +132,7 @@ static he_status feed_text(he_lines *lines, const char *p, const char *end, he_e
     while (p < end) {
         const char *feed = memchr(p, '\n', (size_t)(end - p));
         if (feed == NULL) {
-            /* line 1 is kept for its encoding to be seen */
+            /* line 1 is kept to recognise its encoding */
             lines->in_comment =
                 lines->in_comment || (lines->length == 0 && lines->number > 1 && *p == '#');
             return lines->in_comment ? HE_OK : keep(lines, p, end, err);
@@ -146,7 +146,7 @@ static he_status feed_text(he_lines *lines, const char *p, const char *end, he_e
     return HE_OK;
 }
 
-/* Where lines end in carriage returns alone, as on old Macs, these become line feeds. */
+/* If lines end in carriage returns alone, as on old Macs, these are turned into line feeds. */
 static he_status feed_returns(he_lines *lines, const char *p, const char *end, he_error *err)
 {
     char part[1024];
@@ -161,7 +161,7 @@ static he_status feed_returns(he_lines *lines, const char *p, const char *end, h
     return status;
 }
 
-/* What is held has come before it was known how lines end. */
+/* Handles the bytes that came before it was known how lines end. */
 static he_status feed_held(he_lines *lines, he_error *err)
 {
     char *held = lines->rest;
@@ -176,7 +176,7 @@ static he_status feed_held(he_lines *lines, he_error *err)
     return status;
 }
 
-/* A carriage return ends a line where no line feed follows it. */
+/* A carriage return ends lines if no line feed follows it. */
 static void see_ends(he_lines *lines, const char *p, const char *end)
 {
     for (; p < end && lines->ends == HE_ENDS_UNKNOWN; p++) {
@@ -205,7 +205,7 @@ static he_status feed_any(he_lines *lines, const char *p, const char *end, he_er
     return feed_returns(lines, p, end, err);
 }
 
-/* No text has a NUL. In UTF-16 one of the first two bytes is, or it is marked. */
+/* No text has a NUL. UTF-16 has one in its first two bytes, or a byte order mark. */
 static he_status refuse_nul(const he_lines *lines, he_error *err)
 {
     bool first = lines->number == 1 && lines->joined == 0;

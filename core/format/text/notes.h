@@ -1,9 +1,8 @@
-/* notes.h - what a reader or writer has to say besides success: content it passed over, or could
- * not carry.
+/* notes.h - warnings of a reader or writer: content that it ignored, or could not write.
  *
- * Notes of one code and subject are counted, not repeated; of the first HE_NOTE_SPOTS things the
- * places are kept. There is room for HE_NOTES of them and
- * no memory to run out of; `more` counts what found no room. */
+ * Notes of one code and subject are counted, not repeated; the places of the first HE_NOTE_SPOTS
+ * occurrences are kept. There is room for HE_NOTES of them, and no memory is allocated; `more`
+ * counts what found no room. */
 #ifndef HE_FORMAT_TEXT_NOTES_H
 #define HE_FORMAT_TEXT_NOTES_H
 
@@ -18,11 +17,11 @@ typedef struct he_note {
     const char *text;              /* one sentence without the subject, static */
     char subject[HE_NOTE_SUBJECT]; /* what it is about: printable ASCII, may be "" */
     uint64_t count;
-    he_place place; /* of the first one */
+    he_place place; /* place of the first occurrence */
     uint64_t at;
 } he_note;
 
-/* Where one of the things was that a note counts. */
+/* The place of one occurrence that a note counts. */
 typedef struct he_note_spot {
     size_t note; /* its index */
     uint64_t at;
@@ -32,19 +31,20 @@ typedef struct he_notes {
     he_note items[HE_NOTES];
     size_t count;
     uint64_t more;
-    he_note_spot spots[HE_NOTE_SPOTS]; /* of all notes together, the first ones */
+    he_note_spot spots[HE_NOTE_SPOTS]; /* of all notes together, the first occurrences */
     size_t spot_count;
 } he_notes;
 
-/* `subject` (may be NULL) is cut to fit and made printable. */
+/* Adds an occurrence. `subject` (may be NULL) is cut to fit and made printable. */
 void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
                   size_t length, he_place place, uint64_t at);
-/* What has no place and is counted at once; nothing when `count` is 0. */
+/* Adds `count` occurrences without a place; nothing if `count` is 0. */
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
-/* "ignored: unknown keyword 'xyz', 3 times, first on line 7" */
+/* Writes a text such as "ignored: unknown keyword 'xyz', 3 times, first on line 7". */
 size_t he_note_text(const he_note *note, char *text, size_t size);
 
-/* Copy bytes of an input for a message: at most size - 1, other than printable ASCII as '?'. */
+/* Copies bytes of an input for a message: at most size - 1; other bytes than printable ASCII become
+ * '?'. */
 void he_quote(const char *begin, const char *end, char *text, size_t size);
 
 #endif

@@ -1,15 +1,15 @@
-/* number.h - numbers as text, the same in every locale.
+/* number.h - prints and parses numbers, equally in every locale.
  *
- * Doubles are printed as the shortest decimal that reads back to the same bits, and the closest
- * one among those: R. Giulietti, "The Schubfach way to render doubles" (2020). They are read
- * exactly, ties to even: D. Lemire, "Number parsing at a gigabyte per second" (2021), the method
- * known as Eisel-Lemire, with big integers where its 128 bits do not decide.
+ * Doubles are printed as the shortest decimal that reads back to the same bits, and the closest one
+ * among those: R. Giulietti, "The Schubfach way to render doubles" (2020). They are read exactly,
+ * ties to even: D. Lemire, "Number parsing at a gigabyte per second" (2021), the method known as
+ * Eisel-Lemire, with big integers where its 128 bits do not decide.
  *
- * The text is JSON, and what ECMAScript prints but for the plus sign of an exponent:
+ * The text is JSON, and equal to what ECMAScript prints except for the plus sign of an exponent:
  *     0  -0  1  0.1  123456789  1e21  1.5e300  0.000001  1e-7  5e-324
  *
- * The parsers take the bytes [begin, end), read nothing beyond, skip no blanks, and say in `*used`
- * how many bytes the number has. They carry no he_error: only the caller knows the place. */
+ * The parsers take the bytes [begin, end), read nothing beyond, skip no blanks, and set `*used` to
+ * the bytes of the number. They take no he_error: only the caller knows the place. */
 #ifndef HE_FORMAT_TEXT_NUMBER_H
 #define HE_FORMAT_TEXT_NUMBER_H
 
@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Room that every printer here is content with. */
+/* Room for any number that is printed here. */
 enum { HE_NUMBER_TEXT = 32 };
 
 /* Write a finite value, without a NUL, and return the length. he_float_print gives the shortest
@@ -34,14 +34,16 @@ size_t he_i64_print(int64_t value, char *text);
  * in any letter case and the "1.#" forms of old C libraries are recognised as not finite. */
 typedef enum he_grammar { HE_JSON_NUMBER, HE_FILE_NUMBER } he_grammar;
 
-/* HE_SYNTAX: no number here. HE_NOT_FINITE: a number too large for a double, or one of the words.
- * HE_OK and HE_NOT_FINITE set `*used`; only HE_OK sets `*value`. Digits too small to matter round
- * to a subnormal or zero. Linear in the digits. */
+/* Parses a number in linear time. HE_OK and HE_NOT_FINITE set `*used`; only HE_OK sets `*value`. A
+ * number too small for a normal double rounds to a subnormal or zero.
+ * Returns HE_SYNTAX if there is no number.
+ * Returns HE_NOT_FINITE if it is too large for a double, or one of the words above. */
 HE_NODISCARD he_status he_double_parse(const char *begin, const char *end, he_grammar grammar,
                                        double *value, size_t *used);
 
-/* Decimal digits, with a minus sign in the signed one. HE_SYNTAX: no digit here. HE_BAD_VALUE: the
- * digits, `*used` bytes of them, do not fit. */
+/* Parse decimal digits, with a minus sign in the signed one.
+ * Returns HE_SYNTAX if there is no digit.
+ * Returns HE_BAD_VALUE if the digits, `*used` bytes of them, do not fit. */
 HE_NODISCARD he_status he_u64_parse(const char *begin, const char *end, uint64_t *value,
                                     size_t *used);
 HE_NODISCARD he_status he_i64_parse(const char *begin, const char *end, int64_t *value,

@@ -13,14 +13,15 @@ static bool is_digit(char c)
     return (unsigned char)(c - '0') < 10;
 }
 
-/* Eight digits at once, in the bytes of a word. The sums carry no bit from byte to byte. */
+/* Are the eight bytes of a word digits? The sums carry no bit from byte to byte. */
 static bool are_eight_digits(uint64_t word)
 {
     return ((word & 0xF0F0F0F0F0F0F0F0) |
             ((word + 0x0606060606060606) & 0xF0F0F0F0F0F0F0F0) >> 4) == 0x3333333333333333;
 }
 
-/* First pairs, then fours, then the eight; needs little-endian order, as column.h does. */
+/* Converts eight digits: first pairs, then fours, then all. Needs little-endian order, as column.h
+ * does. */
 static uint32_t eight_digits(uint64_t word)
 {
     word -= 0x3030303030303030;
@@ -30,9 +31,9 @@ static uint32_t eight_digits(uint64_t word)
     return (uint32_t)((first + second) >> 32);
 }
 
-/* The digits at the start of a word, fewer than eight: their number, 0 where there are none or
- * more. Adding makes the top bit of the first byte that is no digit; what it carries goes beyond.
- */
+/* Converts the digits at the start of a word, fewer than eight. Returns their number, 0 if there
+ * are none or eight. The addition sets the top bit of the first byte that is no digit; carries only
+ * affect later bytes. */
 static size_t few_digits(uint64_t word, uint64_t *value)
 {
     uint64_t digits = word ^ 0x3030303030303030;
@@ -44,7 +45,7 @@ static size_t few_digits(uint64_t word, uint64_t *value)
     return count;
 }
 
-/* Read digits onto *value, which may wrap; the caller counts them. */
+/* Reads digits onto *value, which may wrap; the caller counts them. */
 static const char *read_digits(const char *p, const char *end, uint64_t *value)
 {
     uint64_t v = *value;
@@ -65,8 +66,8 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
     return p;
 }
 
-/* Eisel-Lemire: the bits of the double nearest to w * 10^q, w > 0; *decided is false when 128 bits
- * of the power leave it open. */
+/* Eisel-Lemire: returns the bits of the double nearest to w * 10^q, w > 0; *decided is false if 128
+ * bits of the power do not decide. */
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
@@ -77,7 +78,7 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
         return INFINITY_BITS;
     }
     he_power power = he_power_of_five((int)q);
-    if (q < 0 && q >= -27) { /* the method wants the inverses of exact powers from above */
+    if (q < 0 && q >= -27) { /* the method needs the inverses of exact powers rounded up */
         power.low++;
         power.high += power.low == 0;
     }
@@ -85,14 +86,14 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     w <<= zeros;
     he_u128 product = (he_u128)w * power.high;
     uint64_t high = (uint64_t)(product >> 64), low = (uint64_t)product;
-    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding one are set: look further */
+    if ((high & 0x1FF) == 0x1FF) { /* all bits below the rounding bit are set: use the next word */
         uint64_t more = (uint64_t)((he_u128)w * power.low >> 64);
         low += more;
         high += low < more;
         *decided = low != UINT64_MAX || (q >= -27 && q <= 55);
     }
     unsigned top = (unsigned)(high >> 63);
-    uint64_t mantissa = high >> (top + 9); /* 53 bits and one to round by */
+    uint64_t mantissa = high >> (top + 9); /* 53 bits and one for rounding */
     int exponent = he_floor_log2_of_ten((int)q) + 63 + (int)top - zeros + 1023;
     if (exponent <= 0) {
         if (exponent <= -63) {
@@ -100,10 +101,10 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
         }
         mantissa >>= 1 - exponent;
         mantissa += mantissa & 1;
-        /* a carry into bit 52 makes the exponent 1 by itself */
+        /* a carry into bit 52 makes the exponent 1 */
         return mantissa >> 1;
     }
-    /* Exactly in the middle, which only happens where 5^q fits: to even, so down from 01. */
+    /* Exactly in the middle, which is only possible if 5^q fits: round to even, so down from 01. */
     if (low <= 1 && q >= -4 && q <= 23 && (mantissa & 3) == 1 && mantissa << (top + 9) == high) {
         mantissa &= ~(uint64_t)1;
     }
@@ -119,7 +120,7 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     return (uint64_t)exponent << 52 | (mantissa & (((uint64_t)1 << 52) - 1));
 }
 
-/* More than 19 digits, leading zeros included: value = digits of [p, end) * 10^exponent. */
+/* Handles more than 19 digits, leading zeros included: value = digits of [p, end) * 10^exponent. */
 static uint64_t nearest_to_many(const char *begin, const char *end, int64_t exponent)
 {
     const char *p = begin;
@@ -155,7 +156,7 @@ static uint64_t nearest_to_many(const char *begin, const char *end, int64_t expo
     return he_exact_round(first, end, exponent, bits);
 }
 
-/* What C libraries print for what is not finite; 0 when it is none of these. */
+/* Returns the length of a word that C libraries print for what is not finite; 0 if it is none. */
 static size_t word_length(const char *p, const char *end)
 {
     static const char *const words[] = {"infinity", "inf", "nan"};
@@ -171,8 +172,8 @@ static size_t word_length(const char *p, const char *end)
     return 0;
 }
 
-/* The end of an exponent at `p`, NULL when it has no digits. It saturates where any number of
- * digits a mantissa can have in memory no longer matters. */
+/* Returns the end of an exponent at `p`, NULL if it has no digits. The exponent saturates at a size
+ * that no mantissa in memory can make up for. */
 static const char *read_exponent(const char *p, const char *end, int64_t *exponent)
 {
     const int64_t large = INT64_C(1) << 60;
@@ -247,7 +248,7 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
 
     double result;
     if (digits <= 19 && w >> 53 == 0 && exponent >= -22 && exponent <= 22) {
-        /* both are exact, so one operation rounds once */
+        /* both are exact, so the single operation rounds once */
         result = (double)w;
         result = exponent < 0 ? result / tens[-exponent] : result * tens[exponent];
     } else {
@@ -274,7 +275,7 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
 
 he_status he_u64_parse(const char *begin, const char *end, uint64_t *value, size_t *used)
 {
-    if (end - begin >= 8) { /* as most indices have */
+    if (end - begin >= 8) { /* most indices are this short */
         uint64_t word;
         memcpy(&word, begin, 8);
         size_t count = few_digits(word, value);

@@ -33,7 +33,7 @@ static size_t digit_count(uint64_t value)
         1000000000000000000,
         10000000000000000000u,
     };
-    /* 1233 / 4096 is a little over log10(2) */
+    /* 1233 / 4096 is slightly more than log10(2) */
     unsigned guess = (64u - (unsigned)__builtin_clzll(value | 1)) * 1233u >> 12;
     return guess + (value >= tens[guess]);
 }
@@ -47,7 +47,7 @@ static void write_eight(uint32_t value, char *text)
     memcpy(text + 6, pairs + low % 100 * 2, 2);
 }
 
-/* Exactly `count` digits, which must be enough. */
+/* Writes exactly `count` digits, which must be enough. */
 static void write_digits(uint64_t value, size_t count, char *text)
 {
     while (count >= 8) {
@@ -104,7 +104,7 @@ typedef struct decimal {
     int exponent;
 } decimal;
 
-/* The top of a 64 by 128 bit product, its last bit set when anything was cut off, so that
+/* Returns the top of a 64 by 128 bit product, its last bit set if anything was cut off, so that
  * comparing with even numbers stays exact (Schubfach, section 9.6). */
 static uint64_t scale(he_power g, uint64_t value)
 {
@@ -113,15 +113,16 @@ static uint64_t scale(he_power g, uint64_t value)
     return (uint64_t)(high >> 64) | ((uint64_t)high > 1);
 }
 
-/* The shortest decimal inside the rounding interval of c * 2^q, c > 0, and of several the closest.
- * `narrow`: the next lower number is only half as far away as the next higher one. The names are
- * the paper's: four times the value and the interval's ends, in units of 10^k, are vb, vbl, vbr. */
+/* Finds the shortest decimal inside the rounding interval of c * 2^q, c > 0, and of several the
+ * closest. `narrow`: the next lower number is only half as far away as the next higher one. The
+ * names are the paper's: four times the value and the interval's ends, in units of 10^k, are vb,
+ * vbl, vbr. */
 static decimal shortest(uint64_t c, int q, int narrow)
 {
     int k = narrow ? (q * 1262611 - 524031) >> 22 : (q * 1262611) >> 22; /* log10, floor */
     int h = q + he_floor_log2_of_ten(-k) + 1;
     he_power g = he_power_of_five(-k);
-    if (-k < 0 || -k > 55) { /* not exact: the paper wants it from above */
+    if (-k < 0 || -k > 55) { /* not exact: the paper rounds it up */
         g.low++;
         g.high += g.low == 0;
     }

@@ -1,9 +1,9 @@
 /* power.h - the leading 128 bits of the powers of five, for number_print.c and number_parse.c.
  *
  * 10^k and 5^k have the same leading bits, so one table serves both. Every 27th power is kept with
- * 192 bits; a product with an exact 5^0 .. 5^26 gives those between. That the 128 bits are the
- * floor of the true value for every k is not proved but checked, for all of them, by
- * tests/unit/test_number.c against big integers. */
+ * 192 bits; a product with an exact 5^0 .. 5^26 gives those between. tests/unit/test_number.c
+ * compares all of them with big integers, which shows that the 128 bits are the floor of the true
+ * value for every k. */
 #ifndef HE_FORMAT_TEXT_POWER_H
 #define HE_FORMAT_TEXT_POWER_H
 
