@@ -8,14 +8,14 @@
 typedef struct library {
     he_import *into;
     he_lines lines;
-    he_labels *names; /* of the table's rows and of those that came */
-    he_ids slots;     /* of each name its slot in the table, HE_NONE where there was no room */
-    char *name;       /* of the material at hand, "" while there is none */
+    he_labels *names; /* names in the table already, and of the materials read */
+    he_ids slots;     /* for each name its slot in the table, HE_NONE if there was no room */
+    char *name;       /* name of the present material, "" if there is none */
     size_t length, room;
     he_look look;
-    bool has_opacity;    /* from d, which counts more than Tr */
+    bool has_opacity;    /* it came from d, which takes precedence over Tr */
     uint64_t understood; /* lines with a keyword of a library */
-    uint64_t first;      /* line that has another, 0 for none */
+    uint64_t first;      /* the first line with another keyword, 0 for none */
 } library;
 
 static void note(library *l, const char *code, const char *text, const char *subject, size_t length)
@@ -23,7 +23,7 @@ static void note(library *l, const char *code, const char *text, const char *sub
     he_notes_add(&l->into->notes, code, text, subject, length, HE_PLACE_NONE, 0);
 }
 
-/* The name's number; *fresh where it came for the first time. */
+/* Finds the name's number; *fresh says whether the name is new. */
 static he_status number_name(library *l, const char *name, size_t length, uint32_t *number,
                              bool *fresh, he_error *err)
 {
@@ -70,7 +70,7 @@ static he_status add_row(library *l, uint32_t number, bool fresh, he_error *err)
     return status;
 }
 
-/* The material at hand is complete. */
+/* The present material is complete. */
 static he_status end_material(library *l, he_error *err)
 {
     uint32_t number = 0;
@@ -127,7 +127,7 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
     return status;
 }
 
-/* One number, or three; a colour that is given by a spectrum or in other terms is noted. */
+/* Reads one number, or three; a colour given by a spectrum or in other terms is noted. */
 static he_status read_color(library *l, const he_line *line, const char *keyword, const char *p,
                             double *out, he_error *err)
 {
@@ -205,8 +205,8 @@ static bool is_texture(const char *p, size_t length)
            is_any(p, length, words);
 }
 
-/* Options come before the name of the file, which may have blanks: what follows the last option
- * and its numbers cannot be told apart from it, so all of the line is told. */
+/* Options come before the name of the file, which may contain blanks, so the name cannot be
+ * separated from the last option: the note has the whole line. */
 static void note_texture(library *l, const he_line *line, const char *keyword)
 {
     const char *end = line->end;
@@ -221,7 +221,7 @@ static void note_texture(library *l, const he_line *line, const char *keyword)
     note(l, "ignored_texture", "not held: the texture", keyword, (size_t)(end - keyword));
 }
 
-/* What the format has beyond what a table holds. */
+/* Keywords of the format that a material cannot store. */
 static const char *const passed_over[] = {"Ka",  "Ks",    "Ns",     "Ni",        "Tf", "Ps", "Pc",
                                           "Pcr", "aniso", "anisor", "sharpness", "Km", "Tm", NULL};
 
@@ -272,7 +272,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     return he_line_locate(read_keyword(l, line, p, length, err), line, err);
 }
 
-/* Names that the table has already. */
+/* Lists the names that the table has already. */
 static he_status list_names(library *l, he_error *err)
 {
     const he_materials *table = &l->into->soup.materials;

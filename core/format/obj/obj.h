@@ -1,8 +1,8 @@
-/* obj.h - Wavefront OBJ, the row's parts for format.c.
+/* obj.h - Wavefront OBJ, the functions of its row in format.c.
  *
  * Read                      as
  *   v x y z                   a vertex
- *   v x y z w                 the same; a weight w other than 1 is noted and left out
+ *   v x y z w                 a vertex; a weight w other than 1 is noted and ignored
  *   v x y z r g b [a]         with the vertex attribute "color" (colors.h)
  *   vt u [v [w]]              half-edge attribute "uv", v upward: two doubles, or three if a corner
  *                             has a w other than 0
@@ -15,12 +15,12 @@
  *   mtllib                    attribute "mtllib" of the mesh, which keeps the name; materials of
  *                             a library that came with the file (mtl.h), else a note. Nothing is
  *                             ever opened
- *   l, p, curves, others      noted and left out, as are lines that begin with $; any other that
+ *   l, p, curves, others      noted and ignored, as are lines that begin with $; any other that
  *                             does not begin with a word is HE_SYNTAX
  *
- * HE_BAD_INDEX: an index that is 0, or names nothing when the file has ended. Corners without a
- * texture coordinate or normal, where others have one, get zeros and a note. A file in which no
- * line was understood is HE_SYNTAX, a file of comments an empty mesh.
+ * Reading returns HE_BAD_INDEX if an index is 0, or too large when the file has ended. Returns
+ * HE_SYNTAX if no line was understood; a file of comments is an empty mesh. If some corners have a
+ * texture coordinate or normal, those without one get zeros and a note.
  *
  * Written: v, with three numbers of a colour where there is one, vt, vn (bit-equal values of
  * corners once), then faces, with o, g, usemtl and s where they change, and before all of it mtllib

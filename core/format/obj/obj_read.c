@@ -16,12 +16,12 @@ typedef struct obj {
     he_pool uv, normal;
     he_colors colors;
     he_spans object, group, material, smoothing;
-    he_labels *libraries; /* what lines of mtllib say, NULL while there is none */
-    he_ids library_lines; /* of each the first */
-    uint32_t highest;     /* vertex named by a corner */
-    uint64_t last_line;   /* that was read */
+    he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
+    he_ids library_lines; /* the first line of each */
+    uint32_t highest;     /* highest vertex named by a corner */
+    uint64_t last_line;   /* last line read */
     uint64_t understood;  /* lines with a keyword of the format */
-    uint64_t unknown;     /* the first line with another, 0 for none */
+    uint64_t unknown;     /* the first line with another keyword, 0 for none */
 } obj;
 
 static void note(obj *o, const char *code, const char *text, const char *subject, size_t length,
@@ -30,7 +30,8 @@ static void note(obj *o, const char *code, const char *text, const char *subject
     he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
 }
 
-/* The numbers of a line; the first `most` are kept, the first `finite` of them must be finite. */
+/* Reads the numbers of a line; the first `most` are stored, and the first `finite` of them must be
+ * finite. */
 static he_status read_numbers(obj *o, const he_line *line, const char *p, double *values,
                               size_t most, size_t finite, size_t *count, he_error *err)
 {
@@ -76,7 +77,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     }
     if (count == 5 || count > 7) {
         note_extra(o, line);
-        count = 3; /* nobody knows what they are */
+        count = 3; /* more numbers have no known meaning */
     }
     size_t vertex = soup->vertex_count;
     status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
@@ -112,8 +113,9 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
     return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
 }
 
-/* An index as the file has it, to one that counts from 0. `count` elements came so far; whether a
- * positive index is too large is only known at the end. HE_BAD_INDEX leaves `*p` behind it. */
+/* Turns an index of the file into one that counts from 0. `count` elements were read so far;
+ * whether a positive index is too large is only known at the end. On HE_BAD_INDEX `*p` is after the
+ * number. */
 static he_status read_index(const he_line *line, const char **p, const char *what, size_t count,
                             uint32_t *index, he_error *err)
 {
@@ -143,8 +145,8 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
                         text, count);
 }
 
-/* Such values are no part of the shape, so that a wrong number costs the corner no more than its
- * value. 0 is no number at all. */
+/* A wrong number of a texture coordinate or normal costs the corner only that value, because it is
+ * no part of the shape. 0 means no number. */
 static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
     he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
@@ -175,7 +177,7 @@ static he_status read_value(obj *o, const he_line *line, const char **p, he_pool
     return status;
 }
 
-/* v, v/vt, v//vn, v/vt/vn; a slash with nothing behind it is passed over. */
+/* Reads v, v/vt, v//vn or v/vt/vn; a slash with nothing after it is ignored. */
 static he_status read_corner(obj *o, const he_line *line, const char **p, he_error *err)
 {
     he_soup *soup = &o->into->soup;
@@ -253,7 +255,7 @@ static bool is_word(const char *p, const char *end)
     return true;
 }
 
-/* What the format has beyond polygons, and the tags of OpenSubdiv. */
+/* Keywords for shapes that are no polygons, and the tags of OpenSubdiv. */
 static const char *const passed_over[] = {
     "l",      "p",        "vp",    "deg",   "bmat",   "step",     "cstype",     "curv",
     "curv2",  "surf",     "parm",  "trim",  "hole",   "scrv",     "sp",         "end",
@@ -342,7 +344,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
-    if (*p == '$') { /* a comment, as some programs have it */
+    if (*p == '$') { /* some programs write comments so */
         note(o, "ignored_keyword", "ignored: lines that begin with", p, 1, line);
         return HE_OK;
     }
@@ -405,7 +407,7 @@ static uint64_t line_of(const obj *o, size_t corner)
     return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
 }
 
-/* Take numbers of values from corners that did not come. */
+/* Removes the numbers of values that do not exist from the corners. */
 static void check_values(obj *o, he_pool *pool)
 {
     for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
@@ -414,7 +416,7 @@ static void check_values(obj *o, he_pool *pool)
     }
 }
 
-/* Indices are checked when all elements have come. */
+/* Indices are checked after all elements have been read. */
 static he_status check_indices(obj *o, he_error *err)
 {
     const he_soup *soup = &o->into->soup;
@@ -455,7 +457,7 @@ static void note_partial(obj *o, size_t with, size_t all, const char *code, cons
     }
 }
 
-/* A library that came with the file: HE_OK where there is none, with a note. */
+/* Reads a library that came with the file. Returns HE_OK with a note if there is none. */
 static he_status open_library(obj *o, const char *name, size_t length, uint64_t line, he_error *err)
 {
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
@@ -481,7 +483,7 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
     return status;
 }
 
-/* A line names one library whose name may have blanks, or several. */
+/* A line names one library, whose name may contain blanks, or several. */
 static he_status open_libraries(obj *o, he_error *err)
 {
     he_status status = HE_OK;
@@ -498,7 +500,7 @@ static he_status open_libraries(obj *o, he_error *err)
     return status;
 }
 
-/* An attribute of the mesh says by which names its libraries are called. */
+/* Stores the names of the libraries as an attribute of the mesh. */
 static he_status keep_libraries(obj *o, he_error *err)
 {
     size_t count = o->library_lines.count;
@@ -582,7 +584,7 @@ static he_status obj_finish(void *state, he_error *err)
 
 const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close, false};
 
-/* The first line that is neither blank nor a comment, which $ begins too, begins with a keyword. */
+/* The first line that is neither blank nor a comment (also with $) must begin with a keyword. */
 bool he_obj_sniff(const char *bytes, size_t n)
 {
     static const char *const keywords[] = {"v", "vt", "vn", "f",  "g",      "o",

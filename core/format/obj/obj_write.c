@@ -7,10 +7,10 @@
 
 #include <string.h>
 
-/* What is written, in this order. */
+/* The parts of the document, in order. */
 typedef enum part { HEADER, LIBRARIES, VERTICES, UVS, NORMALS, FACES, END } part;
 
-/* The lines that say something about the faces after them. */
+/* The lines that apply to the faces after them. */
 enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
 
 static const struct {
@@ -22,19 +22,19 @@ typedef struct values {
     const he_column *column;
     const char *keyword;
     bool of_corners;
-    he_distinct distinct; /* of corners */
+    he_distinct distinct; /* for corners */
 } values;
 
 typedef struct obj_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* of vertices */
+    uint32_t *numbers; /* for vertices */
     const he_column *color;
     values uv, normal;
     const he_column *spans[SPANS];
-    uint32_t said[SPANS]; /* what the last line of each kind said; HE_NONE: no name yet */
+    uint32_t said[SPANS]; /* value of the last line of each kind; HE_NONE: none yet */
     part part;
-    uint32_t row;      /* next vertex, value or face */
-    uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
+    uint32_t row;      /* the next vertex, value or face */
+    uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
     he_obj_name name;
     const char *libraries[HE_COLUMN_COMPONENTS];
     size_t library_count;
@@ -65,7 +65,7 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, c
     return HE_OK;
 }
 
-/* A vertex without a face has no corner that names its value. */
+/* Counts the vertices without a face: no corner names their value. */
 static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 {
     uint64_t count = 0;
@@ -88,7 +88,7 @@ static void note_unnamed(const obj_writer *w, he_notes *notes)
                        count_unnamed(&w->normal, w->mesh));
 }
 
-/* Returns the attribute that the names come from, or NULL. */
+/* Returns the attribute that has the names, or NULL. */
 static const he_column *find_libraries(obj_writer *w, he_notes *notes)
 {
     w->library_count = he_mtl_names(w->mesh, w->libraries);
@@ -222,7 +222,7 @@ static uint32_t row_count(const obj_writer *w, const values *v)
     return v->of_corners ? (uint32_t)v->distinct.first.count : w->mesh->c.vertices.issued;
 }
 
-/* Write the lines of a part; `v` is NULL for vertices. */
+/* Writes the lines of a part; `v` is NULL for vertices. */
 static char *write_rows(obj_writer *w, const values *v, char *p, const char *end)
 {
     uint32_t count = row_count(w, v);
@@ -239,7 +239,7 @@ static char *write_rows(obj_writer *w, const values *v, char *p, const char *end
     return p;
 }
 
-/* The line for the first attribute in which the face differs from what was said last. */
+/* Writes the line for the first attribute in which the face differs from the last lines. */
 static char *write_span(obj_writer *w, uint32_t face, char *p)
 {
     for (size_t i = 0; i < SPANS; i++) {

@@ -1,23 +1,25 @@
-/* off.h - Object File Format, the row's parts for format.c.
+/* off.h - Object File Format, the functions of its row in format.c.
  *
  *     [ST][C][N]OFF        in any order; may be missing: then the counts come first
  *     V F E                on the same line or a later one; E is ignored and may be missing
  *     x y z [normal] [colour] [s t]        a line for each vertex
  *     n v1 ... vn [colour]                 a line for each face
  *
- * Comments run from # to the end of the line, anywhere. A face may go on on the next line, and a
- * vertex whose position does. A vertex that ends with its position, or its normal, is read without
- * the rest, with a note, in files where none goes on. Colours have 3 or 4 numbers; they become the
- * attribute "color" of vertices and faces: integers count from 0 to 255 where all of a kind are
- * written so (colors.h). They are written as four fractions. Normals and texture coordinates become
- * the vertex attributes "normal" and "uv", v upward. A single number in place of a colour (an index
- * into a colour map) and numbers the header does not announce are noted and left out.
+ * Comments run from # to the end of the line, anywhere. A face may continue on the next line, and
+ * so may a vertex after its position. A vertex that ends with its position, or its normal, is read
+ * without the rest, with a note, if no vertex of the file continues on a next line. Colours have 3
+ * or 4 numbers; they become the attribute "color" of vertices and faces: integers count from 0 to
+ * 255 if all of a kind are integers (colors.h). They are written as four fractions. Normals and
+ * texture coordinates become the vertex attributes "normal" and "uv", v upward. A single number in
+ * place of a colour (an index into a colour map) and numbers the header does not announce are noted
+ * and ignored.
  *
- * Behind "OFF BINARY", which may have the prefixes, the body is that of off_binary.h, with a note.
+ * After "OFF BINARY", which may have the prefixes, the body is that of off_binary.h, with a note.
  *
- * HE_SYNTAX: fewer vertices or faces than announced, or anything after the last face: a count
- * that lies would lose faces. HE_BAD_INDEX: a corner below 0 or not below V. HE_BAD_VALUE: a
- * count that no mesh can have. HE_UNSUPPORTED: 4OFF and nOFF. */
+ * Reading returns HE_SYNTAX if there are fewer vertices or faces than announced, or anything after
+ * the last face, because a wrong count would lose faces. Returns HE_BAD_INDEX if a corner is below
+ * 0 or not below V. Returns HE_BAD_VALUE if no mesh can have such a count. Returns HE_UNSUPPORTED
+ * for 4OFF and nOFF. */
 #ifndef HE_FORMAT_OFF_OFF_H
 #define HE_FORMAT_OFF_OFF_H
 

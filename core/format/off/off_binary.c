@@ -27,13 +27,13 @@ static uint32_t word_at(const unsigned char *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* Where the part that was just taken begins. */
+/* Returns where the part that was just read begins. */
 static uint64_t begin_of(const he_off_binary *b, size_t size)
 {
     return b->offset - size;
 }
 
-/* 0, with a note, in place of what is not finite. */
+/* Returns the value, or 0 with a note if it is not finite. */
 static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t at)
 {
     uint32_t bits = word_at(p);
@@ -68,7 +68,7 @@ static void begin_faces(he_off_binary *b)
     b->part = b->faces > 0 ? HE_OFF_DEGREE : HE_OFF_END;
 }
 
-/* Nothing depends on the number of edges, which is often wrong. */
+/* The number of edges is ignored, because it is often wrong. */
 static he_status take_counts(he_off_binary *b, const unsigned char *p, he_error *err)
 {
     he_import *into = b->values->into;
@@ -226,7 +226,8 @@ static size_t size_of(const he_off_binary *b)
     return WORD;
 }
 
-/* A few bytes behind the last face are passed over; as many as a face has are a count that lies. */
+/* Handles bytes after the last face: a few are ignored, as many as a face has mean a wrong
+ * count. */
 static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
 {
     if (b->trailing == 0) {

@@ -1,16 +1,16 @@
 /* off_binary.h - the body of an OFF file whose header says BINARY.
  *
- *     V F E                          32 bits each, as all that follows; the high byte comes first
+ *     V F E                          32 bits each, as everything below; big-endian
  *     x y z [normal] [r g b a] [s t] floats, for each vertex
  *     n v1 ... vn c [c numbers]      for each face: whole numbers, then floats of a colour
  *
- * A colour of a face has c = 3 or 4 numbers; 0 is none, and others are noted and left out. */
+ * A colour of a face has c = 3 or 4 numbers; c = 0 means none, and others are noted and ignored. */
 #ifndef HE_FORMAT_OFF_OFF_BINARY_H
 #define HE_FORMAT_OFF_OFF_BINARY_H
 
 #include "format/off/off_values.h"
 
-/* Bytes of the longest thing that is read whole, a vertex. */
+/* Bytes of a vertex, the longest part that must be complete to be read. */
 enum { HE_OFF_LONGEST = 4 * (3 + 3 + 4 + 2) };
 
 typedef enum he_off_part {
@@ -25,21 +25,24 @@ typedef enum he_off_part {
 
 typedef struct he_off_binary {
     he_off_values *values;
-    unsigned has;     /* of he_off_values.h */
+    unsigned has;     /* the flags of he_off_values.h */
     he_off_part part; /* what comes next */
-    uint64_t offset;  /* of the next byte */
+    uint64_t offset;  /* offset of the next byte */
     uint64_t vertices, faces;
-    uint32_t left, color_count; /* of the face: corners that come yet; numbers of its colour */
+    uint32_t left, color_count; /* corners of the face still to come; numbers of its colour */
     double color[4];
     unsigned char held[HE_OFF_LONGEST];
     size_t held_count;
     uint64_t trailing;
 } he_off_binary;
 
-/* `offset` bytes were read before, those of the header. */
+/* `offset` is the length of the header, which was read before. */
 void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned has,
                         uint64_t offset);
-/* HE_SYNTAX, HE_BAD_VALUE, HE_BAD_INDEX and HE_NOT_FINITE with the byte; HE_LIMIT, HE_NO_MEMORY. */
+/* Reads more of the body; an error names the byte.
+ * Returns HE_SYNTAX, HE_BAD_VALUE, HE_BAD_INDEX or HE_NOT_FINITE if the bytes are not valid.
+ * Returns HE_LIMIT if a limit of the import would be exceeded.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_off_binary_feed(he_off_binary *binary, const unsigned char *bytes,
                                           size_t n, he_error *err);
 HE_NODISCARD he_status he_off_binary_finish(he_off_binary *binary, he_error *err);

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the next token is. read_line goes from one to the next. */
+/* The meaning of the next token. read_line goes from one section to the next. */
 typedef enum section {
     HEADER,
     VERTEX_COUNT,
@@ -18,7 +18,7 @@ typedef enum section {
     DONE
 } section;
 
-/* More numbers than a vertex can have: 3 + 3 + 4 + 2. */
+/* Room for more numbers than a vertex can have: 3 + 3 + 4 + 2. */
 enum { VERTEX_NUMBERS = 16 };
 
 typedef struct off {
@@ -26,18 +26,19 @@ typedef struct off {
     he_lines lines;
     section section;
     unsigned has;
-    uint64_t vertices, faces;       /* announced */
-    double numbers[VERTEX_NUMBERS]; /* of the vertex, or of the face's colour, being read */
-    size_t number_count;            /* may exceed those kept */
-    uint64_t number_line;           /* of the first of them */
-    bool spread;                    /* some vertex goes on on the next line */
-    uint64_t lacking;  /* the line of the first that ends before its last number, or 0 */
+    uint64_t vertices, faces;       /* announced by the header */
+    double numbers[VERTEX_NUMBERS]; /* numbers of the present vertex, or of the present face's
+                                       colour */
+    size_t number_count;            /* may exceed those stored */
+    uint64_t number_line;           /* line of the first of them */
+    bool spread;                    /* some vertex continues on the next line */
+    uint64_t lacking;  /* line of the first vertex that ends before its last number, or 0 */
     uint32_t integers; /* bit i: the i-th was written as an integer */
     bool open;         /* the last face still lacks `missing` corners */
     uint64_t missing;
     he_off_values values;
     bool is_binary;
-    he_off_binary binary; /* what follows the header then */
+    he_off_binary binary; /* used after a header of BINARY */
     uint64_t header_bytes;
 } off;
 
@@ -46,8 +47,7 @@ static void note(off *o, const char *code, const char *text, const he_line *line
     he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
 }
 
-/* The flags of a header like STCNOFF; -1 when it is none, -2 for the kinds with other dimensions.
- */
+/* Returns the flags of a header like STCNOFF; -1 if it is none, -2 if it has other dimensions. */
 static int header_flags(const char *p, const char *end)
 {
     if (end - p == 3 && memcmp(p, "off", 3) == 0) {
@@ -155,8 +155,8 @@ static bool is_last_token(const he_line *line, const char *p)
     return he_at_end(he_skip_blanks(he_token_end(p, line->end), line->end), line->end);
 }
 
-/* The number of edges is often wrong, and nothing depends on it. It may be missing: then the line
- * after the counts is that of a vertex, which has more than one number. */
+/* The number of edges is often wrong, so it is ignored. It may be missing: then the line after the
+ * counts is that of a vertex, which has more than one number. */
 static he_status read_edge_count(off *o, const he_line *line, const char **p, bool same_line,
                                  he_error *err)
 {
@@ -175,7 +175,7 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     return status;
 }
 
-/* Colours tell 1 from 1.0, so the text is looked at. */
+/* 1 and 1.0 are different colours, so the text decides. */
 static bool is_integer(const char *begin, const char *end, double value)
 {
     for (const char *p = begin; p < end; p++) {
@@ -186,7 +186,7 @@ static bool is_integer(const char *begin, const char *end, double value)
     return value <= UINT32_MAX;
 }
 
-/* The colour that is the numbers [first, first + count). */
+/* Adds the colour that is the numbers [first, first + count). */
 static he_status add_color(off *o, he_colors *colors, size_t element, size_t first, size_t count,
                            he_error *err)
 {
@@ -201,12 +201,12 @@ static void forget_numbers(off *o)
     o->integers = 0;
 }
 
-/* What the numbers of a vertex are, besides its position: how many of each, behind each other. */
+/* How many numbers of a vertex belong to each value after its position, in this order. */
 typedef struct parts {
     size_t normal, color, uv;
 } parts;
 
-/* As the header says, or without the last of what it says. */
+/* Divides the numbers as the header says, or without the last values that it announces. */
 static bool divide(const off *o, size_t count, parts *out)
 {
     parts p = {(o->has & HE_OFF_NORMALS) != 0 ? 3 : 0, 0, (o->has & HE_OFF_UV) != 0 ? 2 : 0};
@@ -240,8 +240,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
                             ((o->has & HE_OFF_UV) != 0 && p.uv == 0));
     o->spread |= spread;
     o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
-    /* On several lines, what is too much is the next vertex; and where some go on on the next line
-     * none may end before its last number, or nothing would tell the two apart. */
+    /* If vertices continue on the next line, surplus numbers are the next vertex; and then none may
+     * end before its last number, because the two could not be distinguished. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
                             count);
@@ -272,7 +272,7 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     return he_line_locate(status, line, err);
 }
 
-/* Numbers up to the end of the line; the first `finite` of the vertex must be finite. */
+/* Reads numbers up to the end of the line; the first `finite` of the vertex must be finite. */
 static he_status read_numbers(off *o, const he_line *line, const char **p, size_t finite,
                               bool colors, he_error *err)
 {
@@ -320,12 +320,12 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
     he_status status = read_numbers(o, line, p, 3, (o->has & HE_OFF_COLORS) != 0, err);
     size_t enough = o->number_line == line->number ? 3 : needed;
     if (status != HE_OK || o->number_count < enough) {
-        return status; /* the vertex goes on on the next line */
+        return status; /* the vertex continues on the next line */
     }
     return end_vertex(o, line, err);
 }
 
-/* What follows the corners, up to the end of the line. */
+/* Reads the colour that follows the corners, up to the end of the line. */
 static he_status read_face_color(off *o, const he_line *line, const char **p, he_error *err)
 {
     he_status status = read_numbers(o, line, p, 0, true, err);
@@ -361,8 +361,8 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
     return he_soup_add_corner(&o->into->soup, (uint32_t)value, err);
 }
 
-/* The numbers of a line as most are, whole and with one blank between them; 0 where any are not, or
- * more than `room`. */
+/* Reads the numbers of an ordinary line: integers with one blank between them. Returns 0 if the
+ * line is not so, or has more than `room`. */
 static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, size_t room)
 {
     size_t count = 0;
@@ -381,8 +381,8 @@ static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, s
     return count;
 }
 
-/* A face that is a plain line of its own. False, and nothing done, where there is more to say of
- * it: then it is read number by number. */
+/* Reads a face that is an ordinary line of its own. Returns false, and does nothing, for any other
+ * face, which is then read number by number. */
 static bool read_plain_face(off *o, const he_line *line, const char **p, he_status *status,
                             he_error *err)
 {
@@ -448,7 +448,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     he_soup *soup = &o->into->soup;
     const char *begin = he_skip_blanks(line->begin, line->end), *p = begin;
     he_status status = HE_OK;
-    bool counts = false; /* the first two are on this line */
+    bool counts = false; /* true if the first two counts are on this line */
     while (status == HE_OK && !he_at_end(p, line->end)) {
         switch (o->section) {
         case HEADER:
@@ -503,8 +503,8 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-/* Vertices that were read without a part may go on on the next line: then all that follows is out
- * of step, and the refusal is of something else. */
+/* If vertices were read without a value, their numbers may have been on the next line: then all
+ * that follows is misread, and the error is about the wrong thing. */
 static he_status explain(const off *o, he_status status, he_error *err)
 {
     if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
@@ -569,7 +569,7 @@ static he_status finish(off *o, he_error *err)
         return status;
     }
     if (o->is_binary) {
-        if (o->binary.values == NULL) { /* nothing ends the line of the header */
+        if (o->binary.values == NULL) { /* the line of the header has no end */
             begin_binary(o);
         }
         return he_off_binary_finish(&o->binary, err);
@@ -605,7 +605,7 @@ static he_status off_finish(void *state, he_error *err)
 
 const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
 
-/* The first token is a header; without one nothing tells the format. */
+/* The first token must be a header; without one the format cannot be recognised. */
 bool he_off_sniff(const char *bytes, size_t n)
 {
     const char *p = bytes, *end = bytes + n;

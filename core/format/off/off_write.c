@@ -5,16 +5,16 @@
 
 #include <string.h>
 
-/* What is written, in this order. */
+/* The parts of the document, in order. */
 typedef enum part { HEADER, VERTICES, FACES, END } part;
 
 typedef struct off_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* of vertices */
+    uint32_t *numbers; /* numbers of vertices */
     const he_column *normal, *color, *uv, *face_color;
     part part;
-    uint32_t row;      /* next vertex or face */
-    uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
+    uint32_t row;      /* the next vertex or face */
+    uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
 } off_writer;
 
 static void off_close(void *state)
@@ -66,8 +66,8 @@ static char *write_header(const off_writer *w, char *p)
     return p;
 }
 
-/* Four numbers, which readers expect of vertices. They tell colours of 0 to 1 from those of 0 to
- * 255 by the point: each number gets one. */
+/* Writes four numbers, which readers expect of vertices. Readers distinguish colours of 0 to 1 from
+ * those of 0 to 255 by the decimal point, so each number has one. */
 static char *write_color(const he_column *column, size_t row, char *p)
 {
     for (uint32_t i = 0; i < 4; i++) {

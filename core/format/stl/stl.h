@@ -1,4 +1,4 @@
-/* stl.h - STL, triangles as stereolithography takes them, the row's parts for format.c.
+/* stl.h - STL, triangles for stereolithography: the functions of its row in format.c.
  *
  *     solid NAME                         binary, little-endian:
  *       facet normal x y z                 80 bytes of anything
@@ -10,24 +10,25 @@
  *       endfacet
  *     endsolid NAME
  *
- * READING. The format has no vertices: corners at equal positions are one (weld.h), and a note says
- * how many were. Vertices are numbered as they first appear. Normals are passed over: the corners
- * give them. A file that begins with "solid" is text unless it has a NUL near its beginning.
+ * READING. The format has no vertices: corners at equal positions become one (weld.h), and a note
+ * says how many did. Vertices are numbered in the order of their first corners. Normals are
+ * ignored, because the corners define them. A file that begins with "solid" is text unless it has a
+ * NUL near its beginning.
  *
- * In ascii letter case does not matter, nor where lines end, but after solid, endsolid and the
- * normal. There may be several solids; their names become the face attribute "object". Words that
- * do not belong are noted and passed over to the end of their line.
+ * In ASCII letter case does not matter, nor do line ends, except after solid, endsolid and the
+ * normal. There may be several solids; their names become the face attribute "object". Unknown
+ * words are noted and skipped to the end of their line.
  *
- * In binary up to 49 bytes may follow the last facet; they are noted, as are attribute bytes other
- * than 0.
+ * In binary up to 49 bytes may follow the last facet; they are noted, and so are attribute bytes
+ * other than 0.
  *
- * HE_SYNTAX: a facet that does not have three corners; a file that ends inside one; fewer or more
- * facets than announced. HE_BAD_VALUE: a number of facets that no mesh can have. A facet with two
- * equal corners is left for he_build to refuse.
+ * Reading returns HE_SYNTAX if a facet has not three corners, the file ends inside one, or there
+ * are fewer or more facets than announced. Returns HE_BAD_VALUE if no mesh can have that number of
+ * facets. A facet with two equal corners is left for he_build to refuse.
  *
  * WRITING. Polygons are cut into triangles as geometry/triangulation.h chooses them, in the order
- * of the faces. Notes say how many were, how many vertices are not in any face, how many lie where
- * another one does and will be one with it, and in binary how many positions were rounded to
+ * of the faces. Notes say how many were cut, how many vertices are in no face, how many are at the
+ * position of another and will become one with it, and in binary how many positions were rounded to
  * floats. */
 #ifndef HE_FORMAT_STL_STL_H
 #define HE_FORMAT_STL_STL_H

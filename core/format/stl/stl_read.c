@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Bytes that tell text from binary, and the sizes of binary. */
+/* Bytes looked at to distinguish text from binary, and the sizes of binary parts. */
 enum { HEAD = 512, COUNT_AT = 80, HEADER = 84, FACET = 50, FIRST_CORNER = 12, AHEAD = 6 };
 
 typedef enum kind { UNKNOWN, TEXT, BINARY } kind;
@@ -16,7 +16,7 @@ typedef struct stl {
     he_import *into;
     kind kind;
     he_weld weld;
-    uint32_t corners[3]; /* of the facet that is being read */
+    uint32_t corners[3]; /* corners of the facet being read */
     unsigned char head[HEAD];
     size_t head_count;
 
@@ -24,15 +24,16 @@ typedef struct stl {
     he_lines lines;
     he_spans object;
     bool in_facet, in_solid, begun;
-    unsigned corner_count, numbers; /* of the facet; of the corner that come yet */
+    unsigned corner_count,
+        numbers; /* corners of the facet so far; numbers of the corner still to come */
     double number[3];
     uint64_t facet_line;
-    uint64_t unknown; /* the first line with a word that does not belong, 0 for none */
+    uint64_t unknown; /* the first line with an unknown word, 0 for none */
 
     /* binary */
-    uint64_t offset; /* of the next byte */
+    uint64_t offset; /* offset of the next byte */
     uint64_t count, left;
-    unsigned char held[HEADER]; /* a header or facet that is not whole */
+    unsigned char held[HEADER]; /* an incomplete header or facet */
     size_t held_count, trailing;
     bool has_header;
 } stl;
@@ -90,7 +91,7 @@ static he_status begin_solid(stl *o, const he_line *line, const char *p, he_erro
     return he_spans_set_name(&o->object, o->into->soup.face_count, line, p, &o->into->notes, err);
 }
 
-/* Behind the normal: at the end of the line, or before "outer". */
+/* Skips the normal: to the end of the line, or to "outer". */
 static const char *skip_normal(const he_line *line, const char *p)
 {
     p = he_skip_blanks(p, line->end);
@@ -229,7 +230,7 @@ static he_vec3 position_at(const unsigned char *p)
     return (he_vec3){float_at(p), float_at(p + 4), float_at(p + 8)};
 }
 
-/* Where a corner's position is looked up is random: ask memory for it some facets before. */
+/* Looking up a corner's position is a random access, so it is prefetched some facets ahead. */
 static void expect_facet(const stl *o, const unsigned char *bytes)
 {
     for (unsigned i = 0; i < 3; i++) {
@@ -255,7 +256,8 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
     return at_place(status, HE_PLACE_BYTE, at, err);
 }
 
-/* Bytes behind the last facet: a few are padding, a facet's length of them is a count that lies. */
+/* Handles bytes after the last facet: a few are padding, a facet's length of them means a wrong
+ * count. */
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
@@ -321,9 +323,9 @@ static he_status finish_binary(const stl *o, he_error *err)
     return HE_OK;
 }
 
-/* --- the row's parts --- */
+/* --- the functions of the row --- */
 
-/* Does text begin here with "solid"? */
+/* Does the text begin with "solid"? */
 static bool begins_solid(const char *p, const char *end)
 {
     if (end - p >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0) {
@@ -369,7 +371,7 @@ static he_status decide(stl *o, he_error *err)
     bool text =
         begins_solid(head, head + o->head_count) && memchr(head, '\0', o->head_count) == NULL;
     o->kind = text ? TEXT : BINARY;
-    /* a facet in text mostly has seven lines */
+    /* in text a facet mostly has seven lines */
     he_places_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
     he_places_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
     return feed_known(o, o->head, o->head_count, err);
@@ -414,7 +416,8 @@ static he_status stl_finish(void *state, he_error *err)
 
 const he_reading he_stl_reading = {stl_open, stl_feed, stl_finish, stl_close, false};
 
-/* Binary has no mark: a byte that no text has, and a first facet of numbers. */
+/* Binary has no magic number: it is recognised by a byte that no text has, and a first facet of
+ * numbers. */
 bool he_stl_sniff(const char *bytes, size_t n)
 {
     if (begins_solid(bytes, bytes + n)) {

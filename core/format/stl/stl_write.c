@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What is written, in this order. */
+/* The parts of the document, in order. */
 typedef enum part { HEADER, FACETS, END } part;
 
 enum { HEADER_BYTES = 80 };
@@ -28,7 +28,7 @@ static void stl_close(void *state)
     he_mem_free(w);
 }
 
-/* --- what is known before the first byte --- */
+/* --- notes, before the first byte is written --- */
 
 static void note_cuts(const he_cuts *cuts, he_notes *notes)
 {
@@ -38,11 +38,11 @@ static void note_cuts(const he_cuts *cuts, he_notes *notes)
                        cuts->turned);
 }
 
-/* What a reader makes of the file: vertices by position, and three a facet. */
+/* The mesh that a reader will make of the file: vertices by position, and three for each facet. */
 typedef struct again {
     he_soup soup;
     he_weld weld;
-    uint32_t *vertex; /* of the soup, for each of the mesh */
+    uint32_t *vertex; /* vertex of the soup for each vertex of the mesh */
     uint64_t isolated, used;
 } again;
 
@@ -71,8 +71,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
     return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
 }
 
-/* Builds the facets as a reader would and counts the defects: vertices in one place have become
- * one, and two faces may have been cut along the same diagonal. */
+/* Builds the facets as a reader would and counts the defects: vertices at one position become one,
+ * and two faces may have been cut along one diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
     he_cut_walk walk = {0};
@@ -87,7 +87,7 @@ static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he
     return status == HE_OK ? he_build_try(&a->soup, defects, err) : status;
 }
 
-/* Says in what the mesh that is read again will differ. */
+/* Notes how the mesh will differ when it is read again. */
 static he_status note_differences(const stl_writer *w, again *a, he_notes *notes, he_error *err)
 {
     uint64_t defects = 0;
@@ -165,7 +165,8 @@ static he_vec3 scaled(he_vec3 p, double factor)
     return (he_vec3){p.x * factor, p.y * factor, p.z * factor};
 }
 
-/* Unit, or zero where there is no area. Scaled, so that nothing overflows or vanishes. */
+/* Returns a unit vector, or zero if there is no area. Scaled, so that nothing overflows or
+ * underflows. */
 static he_vec3 normal_of(const he_vec3 *p)
 {
     he_vec3 quarter[3] = {scaled(p[0], 0.25), scaled(p[1], 0.25), scaled(p[2], 0.25)};
@@ -179,7 +180,7 @@ static he_vec3 normal_of(const he_vec3 *p)
     he_vec3 n = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
     double length = sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
     length = length == 0 ? 1 : length;
-    return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 is 0 */
+    return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 becomes 0 */
 }
 
 /* Positions keep all digits, a normal those of a float. */
@@ -243,7 +244,7 @@ static char *write_header(const stl_writer *w, char *p)
     const he_content *c = &w->mesh->c;
     uint32_t corners = 2 * c->edges.live - c->boundary_halfedges;
     char *end = p + HEADER_BYTES;
-    p = he_export_text("binary STL", p); /* never "solid" */
+    p = he_export_text("binary STL", p); /* must not begin with "solid" */
     memset(p, 0, (size_t)(end - p));
     return put_word(corners - 2 * c->faces.live, end);
 }
