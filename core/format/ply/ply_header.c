@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* More rows than a file has bytes; keeps products with a row's length in 64 bits. */
+/* More rows than a file has bytes; keeps products with a row's length within 64 bits. */
 #define MOST_ROWS ((uint64_t)1 << 48)
 
 static const struct {
@@ -40,7 +40,7 @@ void he_ply_header_clear(he_ply_header *header)
     *header = (he_ply_header){0};
 }
 
-/* A word of the header. Unlike in the text of other formats, '#' begins no comment. */
+/* A word of the header. Unlike in the text of other formats, '#' begins no comment here. */
 typedef struct word {
     const char *begin, *end;
 } word;
@@ -223,7 +223,7 @@ static he_status read_property(he_ply_header *h, const he_line *line, const char
 
 static he_status end_header(he_ply_header *h, const he_line *line, const char *p, he_error *err)
 {
-    he_status status = require_end(line, p, err); /* it may be the first row */
+    he_status status = require_end(line, p, err); /* the next line may be the first row */
     if (status != HE_OK) {
         return status;
     }
@@ -254,7 +254,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
 {
     const char *p = line->begin;
     word w = next_word(line, &p);
-    if (w.begin == w.end || *w.begin == '#') { /* lines.h keeps no long line that begins so */
+    if (w.begin == w.end || *w.begin == '#') { /* lines.h keeps no long line that begins with '#' */
         return HE_OK;
     }
     if (!h->begun) {

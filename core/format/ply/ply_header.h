@@ -1,4 +1,4 @@
-/* ply_header.h - what the header of a PLY file announces. */
+/* ply_header.h - parses the header of a PLY file. */
 #ifndef HE_FORMAT_PLY_PLY_HEADER_H
 #define HE_FORMAT_PLY_PLY_HEADER_H
 
@@ -6,7 +6,7 @@
 #include "format/text/notes.h"
 #include "mesh/column.h"
 
-/* In all: what is done for each of them, whatever the bytes, stays small. */
+/* Limits of the whole header, so that the work for each element and property stays small. */
 enum { HE_PLY_ELEMENTS = 64, HE_PLY_PROPERTIES = 1024 };
 
 typedef enum he_ply_encoding {
@@ -29,24 +29,24 @@ typedef enum he_ply_type {
 } he_ply_type;
 
 size_t he_ply_type_bytes(he_ply_type type);
-/* "char" ... "double" */
+/* Returns "char" ... "double". */
 const char *he_ply_type_name(he_ply_type type);
-/* The type of an attribute that holds all its values. */
+/* Returns the type of an attribute that can hold all values of this one. */
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
-    char name[HE_NOTE_SUBJECT]; /* made printable, and cut when longer */
+    char name[HE_NOTE_SUBJECT]; /* made printable, and cut if longer */
     bool nameable;              /* an attribute can have this name */
     bool list;
-    he_ply_type count, type; /* `count` of a list */
+    he_ply_type count, type; /* `count` is the type of a list's length */
     uint64_t line;
 } he_ply_property;
 
 typedef struct he_ply_element {
     char name[HE_NOTE_SUBJECT];
     uint64_t rows;
-    size_t first, properties; /* its part of the header's */
-    bool lists;               /* has any: rows differ in length */
+    size_t first, properties; /* its part of the header's properties */
+    bool lists;               /* it has lists, so rows differ in length */
     size_t stride;            /* bytes of a row without lists */
     uint64_t line;
 } he_ply_element;
@@ -54,7 +54,7 @@ typedef struct he_ply_element {
 /* {0} is empty. */
 typedef struct he_ply_header {
     bool begun, ended;
-    char corners[HE_NOTE_SUBJECT]; /* the words of a comment that begins "hedge corners" */
+    char corners[HE_NOTE_SUBJECT]; /* the rest of a comment that begins with "hedge corners" */
     he_ply_encoding encoding;
     he_ply_element *elements;
     size_t count, capacity;
@@ -63,12 +63,13 @@ typedef struct he_ply_header {
 } he_ply_header;
 
 void he_ply_header_clear(he_ply_header *header);
-/* The next line; not after the end. HE_SYNTAX, HE_BAD_VALUE, HE_UNSUPPORTED, HE_LIMIT,
- * HE_NO_MEMORY.
- */
+/* Reads the next line; must not be called after the end.
+ * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if the line is not valid.
+ * Returns HE_LIMIT if there are too many elements or properties.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_header_read(he_ply_header *header, const he_line *line,
                                           he_error *err);
-/* The property of this name, `properties` when there is none. */
+/* Returns the property of this name, `properties` if there is none. */
 size_t he_ply_find(const he_ply_header *header, const he_ply_element *element, const char *name);
 
 #endif

@@ -30,7 +30,7 @@ static bool same_place(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* The rows that are no copies; 0 where the others are none of them. */
+/* Counts the rows that are no copies; 0 if the other rows are no valid copies. */
 static size_t count_vertices(const he_soup *soup, const he_column *column)
 {
     size_t vertices = 0;

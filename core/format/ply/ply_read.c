@@ -7,24 +7,24 @@
 #include <math.h>
 #include <string.h>
 
-/* A line of the header; longer ones are of no PLY file. */
+/* Most bytes of a header line; no PLY file has longer ones. */
 enum { HEADER_LINE = 1 << 16 };
 
 typedef struct ply {
     he_import *into;
-    he_lines lines; /* of the header, and of the rows in ascii */
+    he_lines lines; /* for the header, and for rows in ASCII */
     he_ply_header header;
     he_ply_rows rows;
     bool big;
 
     /* in binary */
-    uint64_t offset; /* of the next byte */
+    uint64_t offset; /* offset of the next byte */
     unsigned char *held;
-    size_t held_count; /* bytes of a row or value that is not whole */
+    size_t held_count; /* bytes of an incomplete row or value */
     uint64_t row_at;   /* where a row with lists begins */
     bool in_row, in_list, trailing;
-    size_t property;    /* the next of the row */
-    uint64_t list_left; /* values */
+    size_t property;    /* the next property of the row */
+    uint64_t list_left; /* values of the list still to come */
 } ply;
 
 static void note(ply *o, const char *code, const char *text, uint64_t at)
@@ -41,7 +41,7 @@ static he_status too_short(const ply *o, const he_line *line, he_error *err)
                         o->rows.element->name);
 }
 
-/* A whole number up to the end of its token. */
+/* Reads a whole number up to the end of its token. */
 static he_status read_whole(const he_line *line, const char **p, const char *what, int64_t *value,
                             he_error *err)
 {
@@ -52,13 +52,14 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
         return he_token_fail(err, HE_SYNTAX, line, *p, what);
     }
     if (status != HE_OK) {
-        *value = **p == '-' ? INT64_MIN : INT64_MAX; /* refused for what it is to be */
+        *value = **p == '-' ? INT64_MIN
+                            : INT64_MAX; /* the caller refuses it, depending on what it is for */
     }
     *p += plus + used;
     return HE_OK;
 }
 
-/* What is not finite is refused in a position and otherwise seen by who takes it. */
+/* A value that is not finite is refused in a position; the caller handles it anywhere else. */
 static he_status read_value(ply *o, const he_line *line, const char **p, size_t k, he_error *err)
 {
     double value = 0;
@@ -238,8 +239,8 @@ static double value_of(const unsigned char *p, he_ply_type type, bool big)
     return (double)whole_of(p, type, big);
 }
 
-/* The next `size` bytes, if they have come: in the input or, when a piece ended inside them, among
- * those held. If not, what there is of them is held. */
+/* Takes the next `size` bytes, if they have come: from the input or, if a piece ended inside them,
+ * from those held. If not, the part that has come is held. */
 static bool take(ply *o, const unsigned char **p, const unsigned char *end, size_t size,
                  const unsigned char **bytes)
 {
@@ -261,7 +262,7 @@ static bool take(ply *o, const unsigned char **p, const unsigned char *end, size
     return true;
 }
 
-/* A row without lists. */
+/* Adds a row without lists. */
 static he_status take_row(ply *o, const unsigned char *bytes, he_error *err)
 {
     const he_ply_element *e = o->rows.element;
@@ -277,7 +278,7 @@ static he_status take_row(ply *o, const unsigned char *bytes, he_error *err)
     return status == HE_OK ? he_ply_rows_end(&o->rows, err) : status;
 }
 
-/* Rows that nobody wants and that have one length. */
+/* Skips unwanted rows of fixed length. */
 static void skip_rows(ply *o, const unsigned char **p, const unsigned char *end)
 {
     const unsigned char *bytes;
@@ -309,7 +310,7 @@ static he_status take_rows(ply *o, const unsigned char **p, const unsigned char 
     return status;
 }
 
-/* Values of a list, as many as have come. */
+/* Adds as many values of a list as have come. */
 static he_status take_items(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
@@ -341,7 +342,7 @@ static he_status take_items(ply *o, const unsigned char **p, const unsigned char
     return HE_OK;
 }
 
-/* One property of a row with lists, or as much of it as has come. */
+/* Adds one property of a row with lists, or as much of it as has come. */
 static he_status take_property(ply *o, const unsigned char **p, const unsigned char *end,
                                he_error *err)
 {
@@ -372,11 +373,11 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
     return status;
 }
 
-/* Few enough for each to be read here, whatever count a byte can hold. */
+/* Rows of up to this many corners are read here; a byte can count more. */
 enum { PLAIN_CORNERS = 16 };
 
-/* Is a row nothing but a list of corners, with a byte to count them and 32 bits each, as nearly
- * every file has it? */
+/* Is a row only a list of corners, with a byte for the length and 32 bits for each, as in nearly
+ * every file? */
 static bool is_plain(const ply *o)
 {
     const he_ply_element *e = o->rows.element;
@@ -386,7 +387,7 @@ static bool is_plain(const ply *o)
            (property->type == HE_PLY_INT32 || property->type == HE_PLY_UINT32);
 }
 
-/* Whole rows of that kind, up to one that is out of the ordinary or not all there. */
+/* Adds such rows, up to one that is unusual or incomplete. */
 static he_status take_plain(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
@@ -461,7 +462,7 @@ static he_status take_bytes(ply *o, const unsigned char *p, const unsigned char 
     return status;
 }
 
-/* --- the row's parts --- */
+/* --- the functions of the row --- */
 
 static void ply_close(void *state)
 {
@@ -486,7 +487,7 @@ static he_status ply_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-/* The header is given out line by line: where it ends, bytes that are not text may begin. */
+/* The header is read line by line, because binary data may begin after it. */
 static he_status ply_feed(void *state, const void *bytes, size_t n, he_error *err)
 {
     ply *o = state;

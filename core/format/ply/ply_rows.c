@@ -16,7 +16,7 @@ static he_status at_place(const he_ply_rows *rows, he_status status, he_error *e
     return status;
 }
 
-/* --- where properties go --- */
+/* --- mapping properties to attributes --- */
 
 static void note_ignored(const he_ply_rows *rows, const he_ply_property *property)
 {
@@ -35,7 +35,7 @@ static bool has_column(const he_soup *soup, he_kind domain, const char *name)
     return false;
 }
 
-/* The type that holds all values of the members found; colours are fractions. */
+/* Returns the type that holds all values of the members found; colours are fractions. */
 static he_type type_of_group(const he_ply_property *properties, const size_t *found, size_t count,
                              bool color)
 {
@@ -48,7 +48,7 @@ static he_type type_of_group(const he_ply_property *properties, const size_t *fo
     return type;
 }
 
-/* The first of an attribute's groups that an element has all needed members of is it. */
+/* Maps an attribute's group. Of several, the first is used whose needed members the element has. */
 static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind domain,
                            const he_ply_group *group, he_error *err)
 {
@@ -76,7 +76,7 @@ static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind d
     return status;
 }
 
-/* What no group has taken. */
+/* Maps the properties that are in no group. */
 static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind domain, he_error *err)
 {
     he_soup *soup = &rows->into->soup;
@@ -150,8 +150,8 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
     return HE_OK;
 }
 
-/* Two numbers a corner, which are its texture coordinate. A file of ours has them at its vertices
- * too, where they are exact. */
+/* Maps lists of two numbers a corner, which are texture coordinates. A file written by hedge has
+ * them at its vertices too, where they are exact. */
 static he_status map_uvs(he_ply_rows *rows, const he_ply_element *e, he_error *err)
 {
     he_soup *soup = &rows->into->soup;
@@ -250,7 +250,7 @@ void he_ply_rows_next(he_ply_rows *rows)
 
 /* --- rows --- */
 
-/* The first two elements tell how far apart they mostly are. */
+/* The first two elements show the usual distance between elements. */
 static he_status add_place(const he_ply_rows *rows, he_places *places, size_t element,
                            he_error *err)
 {
@@ -260,7 +260,7 @@ static he_status add_place(const he_ply_rows *rows, he_places *places, size_t el
     return he_places_add(places, (uint32_t)element, rows->at, err);
 }
 
-/* Rows up to `end`. */
+/* Extends a column to rows up to `end`. */
 static he_status extend(const he_ply_rows *rows, he_column *column, size_t end, he_error *err)
 {
     if (column->rows >= end) {
@@ -292,7 +292,7 @@ he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
     return at_place(rows, status, err);
 }
 
-/* Up to here the type has every whole number. */
+/* Up to these numbers the type has every whole number. */
 static const double FLOAT_WHOLE = 1 << 24, DOUBLE_WHOLE = 9007199254740992;
 
 static bool is_whole(double value, double low, double high)
@@ -483,7 +483,7 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
            he_type_bytes(rows->uv->type));
 }
 
-/* The texture coordinates of the face that has ended go to its corners. */
+/* Gives the texture coordinates of the face that has ended to its corners. */
 static he_status end_uvs(he_ply_rows *rows, he_error *err)
 {
     const he_soup *soup = &rows->into->soup;

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* What is written, in this order. */
+/* The parts of the document, in order. */
 typedef enum part { HEADER, VERTICES, COPIES, FACES, END } part;
 
 /* Room for one value, or one line of the header. */
@@ -16,32 +16,33 @@ enum { VALUE_ROOM = 160 };
 /* One number of a row. */
 typedef struct output {
     const char *name;
-    const he_column *column; /* NULL: the position, or where `own` the number of the vertex */
+    const he_column *column; /* NULL: the position, or with `own` the number of the vertex */
     uint32_t component;
     he_ply_type type;
-    bool color; /* a byte of it */
+    bool color; /* a byte of a colour */
     bool own;
 } output;
 
 typedef struct ply_writer {
     const he_mesh *mesh;
-    uint32_t *numbers;                       /* of vertices */
-    he_splits splits;                        /* where corners say more than their vertices can */
-    const he_column *corners[HE_PLY_GROUPS]; /* that are written with vertices */
+    uint32_t *numbers; /* numbers of vertices */
+    he_splits splits;  /* for corners whose values differ at one vertex */
+    const he_column
+        *corners[HE_PLY_GROUPS]; /* attributes of corners that are written with vertices */
     size_t corner_count;
-    const he_column *texcoord; /* of them that which faces have as a list */
+    const he_column *texcoord; /* one of them that faces also have as a list */
     he_ply_encoding encoding;
-    output *outputs; /* of vertices, then of faces */
+    output *outputs; /* those of vertices, then those of faces */
     size_t vertex_outputs, count;
-    he_ply_type degree; /* of the count of a face's corners, */
-    he_ply_type list;   /* and of twice as many */
+    he_ply_type degree; /* type of the count of a face's corners, */
+    he_ply_type list;   /* and of twice that count */
     part part;
-    size_t line;       /* next output in the header */
-    uint32_t row;      /* next vertex, copy or face */
-    size_t output;     /* next of the row */
-    bool in_list;      /* the row's texture coordinates have begun */
-    bool in_face;      /* the row's corners have begun */
-    uint32_t halfedge; /* next corner of the face that is being written, or HE_NONE */
+    size_t line;       /* the next output in the header */
+    uint32_t row;      /* the next vertex, copy or face */
+    size_t output;     /* the next output of the row */
+    bool in_list;      /* the texture coordinates of the row have begun */
+    bool in_face;      /* the corners of the row have begun */
+    uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
 } ply_writer;
 
 static void ply_close(void *state)
@@ -53,7 +54,7 @@ static void ply_close(void *state)
     he_mem_free(w);
 }
 
-/* --- choosing what is written --- */
+/* --- choosing the outputs --- */
 
 static bool positions_are_floats(const he_mesh *mesh)
 {
@@ -65,7 +66,7 @@ static bool positions_are_floats(const he_mesh *mesh)
     return true;
 }
 
-/* Returns a type that holds the length of each face's list, with so many numbers a
+/* Returns a type that holds the length of each face's list, with so many numbers for each
  * corner. */
 static he_ply_type type_of_degree(const he_mesh *mesh, uint32_t numbers)
 {
@@ -111,7 +112,7 @@ static const he_column *find_group(const ply_writer *w, const he_ply_group *grou
                                          group->most, notes);
 }
 
-/* What corners say comes before what vertices do. */
+/* An attribute of corners takes precedence over one of vertices. */
 static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, he_notes *notes)
 {
     const he_column *column = NULL;
@@ -150,7 +151,7 @@ static bool is_taken(const ply_writer *w, size_t first, const char *name)
     return false;
 }
 
-/* A property's name is a word. */
+/* A property's name must be one word. */
 static bool is_word(const char *name)
 {
     for (const char *p = name; *p != '\0'; p++) {
@@ -257,7 +258,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     return HE_OK;
 }
 
-/* --- writing it --- */
+/* --- writing them --- */
 
 static char *put_whole(uint32_t value, size_t bytes, bool big, char *p)
 {
@@ -297,7 +298,7 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
     return p + he_u32_print(value, p);
 }
 
-/* `row` is of the vertex or face; `corner` says what those of corners say. */
+/* `row` is the vertex or face; attributes of corners are read at `corner`. */
 static char *write_output(const ply_writer *w, const output *o, uint32_t row, uint32_t corner,
                           bool first, char *p)
 {
@@ -460,7 +461,8 @@ static char *begin_list(ply_writer *w, uint32_t numbers, he_ply_type type, char 
     return write_whole(w, numbers * degree, type, !w->in_list, p);
 }
 
-/* The list that has begun, corner by corner; behind the corners that of texture coordinates. */
+/* Writes the list that has begun, corner by corner; after the corners that of texture
+ * coordinates. */
 static char *write_list(ply_writer *w, char *p)
 {
     const he_content *c = &w->mesh->c;
