@@ -137,7 +137,7 @@ static void put_extras(text *t, const he_glb_parts *g)
     put_text(t, columns > 0 ? "]}}" : "}}");
 }
 
-/* The primitive of all faces, as the reader of this program takes it. */
+/* Writes the primitive of all faces, for the reader of hedge. */
 static void put_whole(text *t, const he_glb_parts *g)
 {
     size_t triangles;
@@ -173,7 +173,7 @@ static bool same_mesh(const he_glb_group *a, const he_glb_group *b)
            a->label[HE_GLB_GROUP] == b->label[HE_GLB_GROUP];
 }
 
-/* Does group i begin a mesh? */
+/* Is group i the first of its mesh? */
 static bool begins_mesh(const he_glb_parts *g, size_t i)
 {
     return i == 0 || !same_mesh(&g->groups.list[i], &g->groups.list[i - 1]);
@@ -188,8 +188,8 @@ static size_t count_meshes(const he_glb_parts *g)
     return count == 0 ? 1 : count;
 }
 
-/* A node has the name of its object, a mesh that of its group; where one of them is not named, both
- * have the other's name. */
+/* A node has the name of its object, a mesh that of its group; if one of them has no name, both
+ * have the other's. */
 static const char *name_of_node(const he_glb_parts *g, const he_glb_group *group)
 {
     const char *object = he_glb_name(&g->groups, group, HE_GLB_OBJECT);
@@ -217,7 +217,8 @@ static void put_nodes(text *t, const he_glb_parts *g)
     put_text(t, mesh > 0 ? "]" : "{\"mesh\":0}]");
 }
 
-/* One mesh of one primitive where nothing is told apart: its extras are those of all. */
+/* Writes one mesh of one primitive, if there is only one group; the extras of all faces are its
+ * own. */
 static void put_one_mesh(text *t, const he_glb_parts *g)
 {
     put_text(t, ",\"meshes\":[{");
@@ -280,7 +281,7 @@ static void put_color(text *t, const char *name, const double *numbers, size_t c
     put_text(t, "]");
 }
 
-/* A power of two that no number of the emission is above: the factors are exact then. */
+/* Returns a power of two that no number of the emission exceeds: the factors are then exact. */
 static double strength_of(const he_look *look)
 {
     double strength = 1;
@@ -311,7 +312,7 @@ static void put_row(text *t, const he_material *row, bool *strong)
     put_text(t, look->two_sided ? ",\"doubleSided\":true}" : "}");
 }
 
-/* Rows of the table, then names that are not in it. */
+/* Writes the rows of the table, then names without a row. */
 static void put_materials(text *t, const he_glb_parts *g, bool *strong)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -334,7 +335,7 @@ static void put_materials(text *t, const he_glb_parts *g, bool *strong)
     put_text(t, any ? "]" : "");
 }
 
-/* The names of materials, so that a reader sees whether another program gave them others. */
+/* Writes the names of materials, so that a reader notices if another program changed them. */
 static void put_names(text *t, const he_glb_parts *g)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -356,7 +357,8 @@ static void put_names(text *t, const he_glb_parts *g)
     put_text(t, "]");
 }
 
-/* Files with several groups of faces say how to make one mesh of them again: see gltf_whole.h. */
+/* Files with several groups of faces describe how to make one mesh of them again: see
+ * gltf_whole.h. */
 static void put_root_extras(text *t, const he_glb_parts *g)
 {
     size_t order;
@@ -394,7 +396,7 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
-/* Each group has an accessor for its range of the triangles. */
+/* Writes an accessor for each group's range of the triangles. */
 static void put_group_accessors(text *t, const he_glb_parts *g)
 {
     size_t triangles;

@@ -33,12 +33,12 @@ static const he_column *find_names(const he_mesh *m, const char *name)
     return named ? column : NULL;
 }
 
-/* --- which groups there are --- */
+/* --- finding the groups --- */
 
 typedef struct finding {
     const he_mesh *mesh;
     he_glb_groups *groups;
-    uint32_t *of;    /* the group of each face */
+    uint32_t *of;    /* group of each face */
     uint32_t *slots; /* a group + 1, or 0 */
 } finding;
 
@@ -53,7 +53,7 @@ static uint32_t label_of(const he_column *column, uint32_t face)
     return label;
 }
 
-/* False where there are too many. */
+/* Returns false if there are too many. */
 static bool find_group(finding *f, uint32_t face, uint32_t *out)
 {
     he_glb_groups *g = f->groups;
@@ -100,7 +100,8 @@ static bool find_groups(finding *f)
 /* --- their order --- */
 
 typedef struct placed {
-    uint32_t object, mesh, group; /* first groups with the same object; and group; itself */
+    uint32_t object, mesh, group; /* first group with the same object; first with the same object
+                                     and group; the group itself */
 } placed;
 
 static int compare(const void *left, const void *right)
@@ -115,7 +116,7 @@ static int compare(const void *left, const void *right)
     return a->group < b->group ? -1 : a->group > b->group;
 }
 
-/* Groups of an object and group come together, each where its first face is. Sets rank[i]. */
+/* Puts the groups of an object and group together, each where its first face is. Sets rank[i]. */
 static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
 {
     placed *places = he_mem_array(NULL, g->count, sizeof *places);
@@ -152,7 +153,7 @@ static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
     return HE_OK;
 }
 
-/* Faces by groups, and where in the cuts their triangles are. */
+/* Sorts the faces by groups, and finds where in the cuts their triangles are. */
 static he_status order_faces(finding *f, const uint32_t *rank, he_error *err)
 {
     const he_mesh *m = f->mesh;

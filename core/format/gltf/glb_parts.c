@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The largest index of 16 bits begins a strip anew. */
+/* The largest 16-bit index is excluded: it restarts a strip. */
 enum { SHORT_VERTICES = UINT16_MAX };
-/* Of attributes under one semantic. */
+/* Most attributes with one semantic. */
 enum { MOST_NUMBERS = 8 };
 
 uint64_t he_glb_part_bytes(const he_glb_part *part)
@@ -39,7 +39,7 @@ static uint64_t corner_count(const he_mesh *m)
     return 2 * (uint64_t)m->c.edges.live - m->c.boundary_halfedges;
 }
 
-/* --- attributes that glTF has a place for --- */
+/* --- attributes with a semantic of glTF --- */
 
 static bool all_below(const he_column *column, double end)
 {
@@ -53,7 +53,7 @@ static bool all_below(const he_column *column, double end)
     return true;
 }
 
-/* Is the column the attribute of this number of a semantic, 0 without a digit? */
+/* Is the column the attribute of this number of a semantic? Number 0 has no digit in its name. */
 static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsigned number)
 {
     char name[HE_COLUMN_NAME];
@@ -62,7 +62,7 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
            column->components <= s->most;
 }
 
-/* The type of a column under a semantic, or 0. */
+/* Returns the type of a column under a semantic, or 0. */
 static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf_semantic *s)
 {
     uint64_t lost;
@@ -76,15 +76,15 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* The type as the attribute of this number, or 0. */
+/* Returns its type as the attribute of this number, or 0. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {
     return column->labels == NULL && is_numbered(column, s, number) ? type_of(m, column, s) : 0;
 }
 
-/* The column that is written as the attribute of this number, NULL where there is none. What
- * corners say comes before what vertices do. */
+/* Returns the column that is written as the attribute of this number, NULL if there is none. One of
+ * corners takes precedence over one of vertices. */
 static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
 {
     static const he_kind domains[] = {HE_HALFEDGE, HE_VERTEX};
@@ -100,7 +100,7 @@ static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, 
     return NULL;
 }
 
-/* How many numbers of a semantic can be written: without a gap, and with their partners. */
+/* Returns how many numbers of a semantic can be written: without a gap, and with their partners. */
 static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
 {
     const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
@@ -127,8 +127,9 @@ static bool has_corner_namesake(const he_mesh *m, const he_column *column)
     return he_mesh_find_column(m, HE_HALFEDGE, column->name) != NULL;
 }
 
-/* What is beyond the numbers of its semantic has a name of its own, as _uv1, and so the same name
- * when it is read back; joints, which are whole, are in extras. */
+/* Finds the semantic of a column. One beyond the numbers of its semantic gets a name of its own,
+ * such as _uv1, and so its old name when it is read back; joints, which are whole, are in extras
+ * then. */
 static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANTICS],
                           const he_column *column, he_glb_part *part)
 {
@@ -159,7 +160,7 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
     return true;
 }
 
-/* Does what is written of each row come back to the same bits? */
+/* Is each row read back with the same bits? */
 static bool comes_back(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -176,7 +177,7 @@ static bool comes_back(const he_mesh *m, const he_glb_part *part)
     return true;
 }
 
-/* Does the reader make the same column of it? */
+/* Does the reader make an equal column of it? */
 static bool is_exact(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -219,7 +220,7 @@ static bool is_shown(const he_glb_parts *g, const he_column *column)
     return i < g->count;
 }
 
-/* Do meshes, primitives and materials say what it does? */
+/* Do meshes, primitives and materials represent it? */
 static bool is_told_apart(const he_glb_parts *g, const he_column *column)
 {
     size_t i = 0;
@@ -242,13 +243,13 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                          .count = rows_of(g->mesh, column->domain) * words,
                          .stride = 4});
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
-        return; /* others see it too */
+        return; /* other programs see it too */
     }
     he_notes_add(notes, "in_extras", "kept where only hedge looks: attribute", subject,
                  (size_t)length, HE_PLACE_NONE, 0);
 }
 
-/* What is seen by all, then, behind the triangles, the rest. */
+/* Adds the attributes for all programs, then, after the triangles, the rest. */
 static void add_values(he_glb_parts *g, he_notes *notes)
 {
     const he_mesh *m = g->mesh;
@@ -273,7 +274,7 @@ static void add_values(he_glb_parts *g, he_notes *notes)
     }
 }
 
-/* Split vertices where corners say different things of what is seen. */
+/* Splits vertices whose corners have different values of the attributes for all programs. */
 static he_status split(he_glb_parts *g, he_watch *watch, he_error *err)
 {
     const he_column *columns[HE_GLTF_SEMANTICS * MOST_NUMBERS];
@@ -325,7 +326,8 @@ static void place_values(he_glb_parts *g, const he_column **used)
     }
 }
 
-/* They are in the order of corners, and a packed triangle may begin at another one. */
+/* Values of corners are in the order of corners, and a compressed triangle may begin at another
+ * one. */
 static bool has_corner_values(const he_mesh *m)
 {
     for (size_t i = 0; i < he_mesh_columns(m); i++) {

@@ -67,14 +67,14 @@ static size_t element_bytes(const he_gltf_accessor *a)
     return rows * ((rows * bytes + 3) / 4 * 4);
 }
 
-/* Where elements lie in a buffer: `object` has bufferView and byteOffset. */
+/* The range of elements in a buffer: `object` has bufferView and byteOffset. */
 typedef struct span {
     const unsigned char *bytes;
     size_t stride;
     uint64_t place;
 } span;
 
-/* The bytes of a view, unpacked where they are compressed. */
+/* Finds the bytes of a view, decompressed if necessary. */
 static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he_error *err)
 {
     uint32_t extension = he_gltf_meshopt(asset, view);
@@ -89,8 +89,8 @@ static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he
     return status;
 }
 
-/* `count` elements of `size` bytes, in 64 bits without overflow: all numbers are below 2^53 + 1, a
- * stride below 2^8. */
+/* Finds `count` elements of `size` bytes, in 64 bits without overflow: all numbers are below 2^53 +
+ * 1, a stride below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_t size,
                           size_t alignment, span *out, he_error *err)
 {
@@ -137,7 +137,7 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
     return HE_OK;
 }
 
-/* They must rise, so that a walk meets each where it belongs. */
+/* The indices must rise, so that a walk reaches each in its turn. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {
@@ -198,7 +198,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
         return status;
     }
     a->changed_value = found.bytes;
-    /* they are looked at whenever the accessor is used */
+    /* they are visited whenever the accessor is used */
     status = he_gltf_spend(asset, sparse, a->changed, err);
     return status == HE_OK ? check_changed(asset, a, sparse, err) : status;
 }

@@ -12,7 +12,7 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
                  he_json_place(&asset->json, place));
 }
 
-/* How much there is to do is not known before; few files have less than a step for 16 bytes. */
+/* The amount of work is not known before; few files take less than a step for 16 bytes. */
 he_status he_gltf_tell(he_gltf *asset, he_error *err)
 {
     asset->told = asset->steps;
@@ -45,7 +45,7 @@ he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const
                             what, (unsigned long long)index, list->count);
     }
     *item = list->ids[index];
-    /* who names it looks at all its members */
+    /* the caller visits all its members */
     return he_gltf_spend(asset, value, 8 * he_json_span(&asset->json, *item), err);
 }
 
@@ -131,7 +131,7 @@ static bool begins_with_any(const he_json *json, uint32_t name, const char *cons
 
 static he_status check_extensions(he_gltf *asset, he_error *err)
 {
-    /* what changes how a surface looks, not where it is */
+    /* prefixes of extensions that change how a surface looks, not where it is */
     static const char *const looks[] = {"KHR_materials_",
                                         "KHR_texture_",
                                         "EXT_texture_",
@@ -175,8 +175,8 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     return HE_OK;
 }
 
-/* Images are told by their names: what came beside is not told again as a file that nothing names.
- */
+/* Marks the files of images as used, so that they are not noted again as files that nothing
+ * names. */
 static void note_images(he_gltf *asset)
 {
     const he_json *json = &asset->json;
@@ -194,7 +194,7 @@ static void note_images(he_gltf *asset)
     }
 }
 
-/* What has no place in a mesh. */
+/* Notes everything that a mesh cannot store. */
 static void note_rest(he_gltf *asset)
 {
     static const struct {

@@ -41,7 +41,7 @@ he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *co
     return status == HE_OK ? he_column_extend(column, rows, err) : status;
 }
 
-/* A run of at most three digits that does not begin with 0 unless it is 0, to its end. */
+/* Reads a number to the end of the text: at most three digits, and no leading 0. */
 static bool read_number(const char *p, unsigned *number)
 {
     unsigned value = 0;
@@ -53,7 +53,7 @@ static bool read_number(const char *p, unsigned *number)
     return p > begin && *p == '\0' && (*begin != '0' || p == begin + 1);
 }
 
-/* The attribute's name for a semantic; false where it has none. */
+/* Finds the attribute's name for a semantic. Returns false if it has none. */
 static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
                            const he_gltf_semantic **known)
 {
@@ -97,8 +97,8 @@ static he_type column_type(const he_gltf_accessor *a, const he_gltf_semantic *kn
 
 /* --- directions --- */
 
-/* Normals turn with the cofactors of the frame, which are its inverse transposed but for a factor;
- * tangents with the frame. */
+/* Normals are transformed by the cofactors of the frame, which are its inverse transpose up to a
+ * factor; tangents by the frame. */
 static void turn(const he_gltf_primitive *p, bool normal, double *v)
 {
     const double(*m)[4] = p->frame->row;
@@ -188,7 +188,7 @@ static bool is_direction(const he_gltf_semantic *known)
     return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
 }
 
-/* Directions are floats, or what the extension has for them. */
+/* Directions must be floats, or what the extension allows for them. */
 static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                             const he_gltf_semantic *known, he_error *err)
 {
@@ -202,7 +202,7 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                         (int)a->type);
 }
 
-/* The column for the rows, NULL where there can be none. */
+/* Finds or makes the column for the rows; NULL if there can be none. */
 static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, const char *semantic,
                              const he_gltf_accessor *a, const he_gltf_semantic **known,
                              he_column **out, he_error *err)
@@ -225,7 +225,7 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
     const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);
     if (p->exact && corners != NULL && corners->rows > p->first_corner) {
-        return HE_OK; /* it is what vertices and their copies say of them */
+        return HE_OK; /* the extras have it already, for vertices and their copies */
     }
     if (column != NULL && column->rows > p->first_vertex) {
         if (!p->exact) {

@@ -1,38 +1,39 @@
-/* gltf_attribute.h - the attributes of a primitive as those of vertices.
+/* gltf_attribute.h - reads the attributes of a primitive as attributes of vertices.
  *
- *     NORMAL, TANGENT      normal, tangent, turned as their node turns them
+ *     NORMAL, TANGENT      normal, tangent, rotated as their node is
  *     TEXCOORD_0, _1 ...   uv, uv1 ...: v runs down in glTF and up in a mesh, so that it is 1 - v
- *     COLOR_0, _1 ...      color, color1 ...: fractions, also where they are normalized integers
+ *     COLOR_0, _1 ...      color, color1 ...: fractions, also from normalized integers
  *     JOINTS_0, _1 ...     joints, joints1 ...
  *     WEIGHTS_0, _1 ...    weights, weights1 ...
  *     _ANY                 ANY
  *
- * Floats stay float, normalized integers become it, others are int32 or uint32. Only uv is double:
- * there 1 - v takes nothing from a float, so that it comes back as it was. */
+ * Floats stay float, normalized integers become it, others are int32 or uint32. Only uv is double,
+ * in which 1 - v of a float is exact, so that it is written back as it was. */
 #ifndef HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 #define HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 
 #include "format/gltf/gltf_surface.h"
 
-/* A primitive that is being added. */
+/* A primitive that is being read. */
 typedef struct he_gltf_primitive {
-    uint32_t value, attributes; /* in the JSON */
+    uint32_t value, attributes; /* their values in the JSON */
     const he_gltf_frame *frame;
-    bool still;  /* the frame leaves all as it is */
-    bool mirror; /* it turns surfaces inside out */
+    bool still;  /* the frame is the identity */
+    bool mirror; /* the frame mirrors */
     bool indexed;
     uint64_t mode;
     he_gltf_accessor positions, indices;
     uint64_t faces;    /* triangles */
-    uint64_t vertices; /* of the soup: the first ones of positions, the others are copies of them */
-    he_gltf_accessor copies; /* the vertex that each is a copy of, where there are any */
-    bool private;            /* extras fit so far */
-    bool exact;              /* what was read from extras comes before attributes */
-    bool polygons;           /* and its polygons before the triangles */
-    uint32_t first_vertex, first_face, first_corner; /* in the soup */
+    uint64_t vertices; /* vertices of the soup: the first are those of positions, the others are
+                          copies of them */
+    he_gltf_accessor copies; /* the vertex of each copy, if there are any */
+    bool private;            /* the extras are valid so far */
+    bool exact;              /* attributes read from extras take precedence */
+    bool polygons;           /* polygons from extras replace the triangles */
+    uint32_t first_vertex, first_face, first_corner; /* first rows in the soup */
 } he_gltf_primitive;
 
-/* The vertex that an index names, which is below the count of positions. */
+/* Returns the vertex of an index, which is below the count of positions. */
 static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index)
 {
     return index < p->vertices
@@ -40,42 +41,43 @@ static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index
                : he_gltf_whole(HE_GLTF_UINT32,
                                p->copies.bytes + (index - p->vertices) * p->copies.stride);
 }
-/* Place of element i in the input; where its bytes are not in the file, that of `value`. */
+/* Returns the place of element i in the input; if its bytes are not in the file, that of
+ * `value`. */
 uint64_t he_gltf_element_place(const he_gltf *asset, const he_gltf_accessor *a, uint32_t value,
                                uint64_t i);
 HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he_gltf_primitive *p,
                                               he_error *err);
-/* Say which vertices were given no value where others were. */
+/* Notes which vertices have no value of an attribute that others have. */
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
-/* Rows up to `end` of a column whose first row to be written is `begin`: room for them, and
- * defaults before. HE_LIMIT, HE_NO_MEMORY. */
+/* Extends a column to rows up to `end`, with defaults before `begin`, the first row to be written.
+ * Returns HE_LIMIT if a limit of the soup would be exceeded.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
                                       size_t end, he_error *err);
 
 typedef enum he_gltf_role {
-    HE_GLTF_NORMAL, /* turned by nodes */
+    HE_GLTF_NORMAL, /* rotated by nodes */
     HE_GLTF_TANGENT,
     HE_GLTF_UV,    /* its second component is 1 - v */
-    HE_GLTF_COLOR, /* bytes where they say all of it */
+    HE_GLTF_COLOR, /* bytes if they represent all of it */
     HE_GLTF_JOINTS,
     HE_GLTF_WEIGHTS,
     HE_GLTF_SEMANTICS
 } he_gltf_role;
 
-/* What the writer calls an attribute, and the reader takes for it: a row of he_gltf_semantics, at
- * its role. */
+/* The semantic of an attribute, for reader and writer: a row of he_gltf_semantics, at its role. */
 typedef struct he_gltf_semantic {
     const char *semantic, *attribute;
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
     he_gltf_role role;
-    he_gltf_role partner; /* the one without which it may not be, itself where there is none */
+    he_gltf_role partner; /* the role that must accompany it, itself if none */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 
-/* Component i of a value, from a mesh to glTF or back. */
+/* Converts component i of a value, from a mesh to glTF or back. */
 static inline double he_gltf_convert(he_gltf_role role, uint32_t i, double value)
 {
     return role == HE_GLTF_UV && i == 1 ? 1 - value : value;

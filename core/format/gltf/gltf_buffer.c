@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-/* Characters of base64 between two looks at the watch; a multiple of four. */
+/* Characters of base64 between two steps of the watch; a multiple of four. */
 enum { PIECE = 1 << 16 };
 
-/* `to` has room for the bytes of `length` characters. */
+/* Decodes `length` characters to `to`, which has room. */
 static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
                         he_gltf_buffer *to, he_error *err)
 {
@@ -27,7 +27,8 @@ static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t l
     return status;
 }
 
-/* The characters of a string whose escapes are undone, if it has any: then `own` is to be freed. */
+/* Returns the characters of a string with its escapes decoded, if it has any: then the caller frees
+ * `own`. */
 static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
                             char **own, he_error *err)
 {
@@ -44,7 +45,7 @@ static he_status plain_text(const he_json *json, uint32_t value, const char **te
     return HE_OK;
 }
 
-/* A buffer in a file that came with this one. */
+/* Finds a buffer in a file that came with this one. */
 static he_status find_beside(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, const char *name,
                              size_t length, he_error *err)
 {
@@ -107,14 +108,14 @@ static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, 
     return status;
 }
 
-/* Is it there for readers without the extension alone? Those of others may lack it. */
+/* Is the buffer only for readers without the extension? Then its file may be missing. */
 static bool is_fallback(const he_gltf *asset, uint32_t value)
 {
     uint32_t flag = he_json_find(&asset->json, he_gltf_meshopt(asset, value), "fallback");
     return he_json_type(&asset->json, flag) == 't';
 }
 
-/* Nobody misses the bytes of one that did not come, as long as all its views are compressed. */
+/* A fallback buffer that did not come is allowed if all its views are compressed. */
 static he_status find_fallback(he_gltf *asset, size_t i, uint32_t value, he_error *err)
 {
     uint32_t uri = he_json_find(&asset->json, value, "uri");

@@ -12,7 +12,7 @@ static void note(he_gltf *asset, uint32_t value, const char *code, const char *t
 
 /* --- names --- */
 
-/* A name that no material before has. */
+/* Adds a name that no material before has. */
 static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[HE_GLTF_NAME],
                           he_error *err)
 {
@@ -30,7 +30,8 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
             note(asset, value, "material_renamed",
                  "numbered, since another has its name: a material", own);
         }
-        number = number > FEW && number <= i ? (unsigned)i + 1 : number; /* free at once mostly */
+        number = number > FEW && number <= i ? (unsigned)i + 1
+                                             : number; /* so the next one is mostly free */
         he_material_number_name(own, number, name);
     }
     return he_labels_add(names, name, strlen(name), &index, err);
@@ -40,7 +41,7 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
 
 typedef struct reading {
     he_gltf *asset;
-    bool odd; /* a number was none */
+    bool odd; /* a number was not valid */
 } reading;
 
 static void read_number(reading *r, uint32_t object, const char *name, double *out)
@@ -135,7 +136,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     he_material *row = NULL;
     uint32_t own = he_json_find(json, he_json_find(json, value, "extras"), "hedge");
     if (he_json_is(json, own, "name")) {
-        return HE_OK; /* written here: only its name was known */
+        return HE_OK; /* written by hedge: only its name was known */
     }
     if (table->count == HE_MATERIALS) {
         note(asset, value, "material_limit", "left out: materials beyond 4096", "");
@@ -148,7 +149,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
              "set to its default or the end of its range: a number of the material", name);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
-    if (status == HE_BAD_VALUE) { /* a control character */
+    if (status == HE_BAD_VALUE) { /* the name has a control character */
         note(asset, value, "material_name", "left out, for its name: a material", name);
         return HE_OK;
     }

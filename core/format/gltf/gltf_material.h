@@ -1,10 +1,10 @@
-/* gltf_material.h - materials of glTF assets made rows of a soup's table.
+/* gltf_material.h - reads the materials of glTF assets into a soup's table.
  *
- * Their factors are those of mesh/material.h. An alphaMode of OPAQUE leaves the opacity out, so it
- * is 1 then; KHR_materials_emissive_strength is taken into the emission; of
- * KHR_materials_pbrSpecularGlossiness the diffuse factor is the base colour, where a material says
- * nothing else. Textures and other extensions are noted and not held (gltf_asset.c). A number that
- * is none, or out of range, is set to its default or the end of its range with a note. */
+ * Their factors are those of mesh/material.h. With alphaMode OPAQUE the opacity is 1;
+ * KHR_materials_emissive_strength is multiplied into the emission; the diffuse factor of
+ * KHR_materials_pbrSpecularGlossiness is the base colour, if the material has no other. Textures
+ * and other extensions are noted and ignored (gltf_asset.c). A number that is not valid, or out of
+ * range, is set to its default or the end of its range, with a note. */
 #ifndef HE_FORMAT_GLTF_GLTF_MATERIAL_H
 #define HE_FORMAT_GLTF_GLTF_MATERIAL_H
 
@@ -12,9 +12,12 @@
 
 enum { HE_GLTF_NAME = 1024 };
 
-/* Fill the table, and *names, the caller's, with a name for each material in their order: its own,
- * material_N where it has none, and NAME_2 and so on where another has it. Beyond HE_MATERIALS
- * there are names without rows, with a note. HE_LIMIT, HE_NO_MEMORY, HE_CANCELLED. */
+/* Fills the table, and *names, which the caller owns, with a name for each material in order: its
+ * own, material_N if it has none, and NAME_2 and so on if another has that name. Beyond
+ * HE_MATERIALS there are names without rows, with a note.
+ * Returns HE_LIMIT if a limit would be exceeded.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_gltf_read_materials(he_gltf *asset, he_labels **names, he_error *err);
 
 #endif

@@ -21,8 +21,8 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
                  HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
 }
 
-/* Memory, limits and an end before time are no matter of the file; all else only says that the
- * extras are no use. */
+/* Is the failure about memory, limits or cancellation? Any other only means that the extras are not
+ * valid. */
 static bool is_serious(he_status status)
 {
     return status == HE_NO_MEMORY || status == HE_LIMIT || status == HE_CANCELLED;
@@ -36,7 +36,8 @@ static he_status get_words(he_gltf *asset, uint32_t object, const char *name, he
     if (value == HE_NONE) {
         return HE_OK;
     }
-    /* Most reasons are not told: to name the place in words costs more than to read it. */
+    /* The error has no text, because finding the path of the place would cost more than reading
+     * it. */
     he_status status = he_gltf_accessor_get(asset, value, out, NULL);
     if (status == HE_OK) {
         *fits = out->components == 1 && out->type == HE_GLTF_UINT32 && out->bytes != NULL;
@@ -56,8 +57,8 @@ typedef struct polygons {
     he_gltf_accessor degrees, corners;
 } polygons;
 
-/* Are the triangles of each polygon at corners of it, degree - 2 of them, and its corners apart?
- * `marks` has a word a vertex. Fails as the watch does. */
+/* Are the triangles of each polygon at its corners, degree - 2 of them, and its corners different?
+ * `marks` has a word for each vertex. Fails if the watch gave up. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -171,7 +172,7 @@ typedef struct description {
     he_rule rule;
     uint64_t components;
     uint64_t rows;
-    size_t first; /* row in the soup */
+    size_t first; /* first row in the soup */
     uint32_t labels;
     he_gltf_accessor words;
 } description;
@@ -213,7 +214,7 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-/* Each must be there once: two of a name would move the numbers of all behind them. */
+/* Each label must be unique: a repeated one would shift the indices of all after it. */
 static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, bool *fits,
                              he_error *err)
 {
@@ -254,7 +255,7 @@ static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, boo
     return HE_OK;
 }
 
-/* One component from its words; false where it is no value of the type. */
+/* Writes one component from its words. Returns false if it is no value of the type. */
 static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
 {
     uint32_t word = next_word(walk);
@@ -284,8 +285,8 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Is every word a value of the type, and the number of a label where there are any? Fails as the
- * watch does. */
+/* Is every word a value of the type, and the index of a label if there are any? Fails if the watch
+ * gave up. */
 static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
                               he_error *err)
 {
@@ -311,7 +312,7 @@ static he_status check_values(he_gltf *asset, const description *d, size_t label
     return HE_OK;
 }
 
-/* Is there a column that the values may go on, or room for a new one? Asked before they are read,
+/* Is there a column that can take the values, or room for a new one? Checked before they are read,
  * so that each value of a file is read for one column. */
 static bool has_place(const he_gltf_surface *s, const description *d)
 {
@@ -324,7 +325,7 @@ static bool has_place(const he_gltf_surface *s, const description *d)
            column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
 }
 
-/* Numbers of labels become those that a column has for them. */
+/* Replaces indices of labels by those that a column has for them. */
 static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
 {
     size_t count = he_labels_count(labels);
@@ -346,7 +347,7 @@ static he_status renumber(he_column *column, size_t first, const he_labels *labe
     return status;
 }
 
-/* Which faces have names of their own that are also told by nodes and materials. */
+/* Lists the faces whose names come from extras and not from nodes and materials. */
 static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
 {
     he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
@@ -413,7 +414,7 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
     if (status == HE_OK && fits) {
-        /* they are looked at even where they come to nothing */
+        /* they are visited even if they are not used */
         status = he_gltf_spend(s->asset, object, d.words.count * sizeof(uint32_t), err);
     }
     if (status == HE_OK && fits && d.labels != HE_NONE) {
@@ -439,7 +440,7 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Does each copy lie where its vertex does? Fails as the watch does. */
+/* Is each copy at the position of its vertex? Fails if the watch gave up. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

@@ -1,4 +1,4 @@
-/* gltf_private.h - what a primitive carries beyond glTF, in the files that were written here.
+/* gltf_private.h - data of a primitive beyond glTF, in extras of files written by hedge.
  *
  *     "extras": {"hedge": {
  *         "copies": 2,
@@ -6,29 +6,30 @@
  *         "columns": [{"domain": "face", "name": "material", "type": "uint32", "components": 1,
  *                      "rule": "copy", "accessor": 5, "labels": ["", "steel"]}, ...]}}
  *
- * Numbers such as 3 name accessors of UNSIGNED_INT SCALAR. `copies` has for each of the last
- * vertices the one that it is a copy of, made since corners say different things (io/splits.h): so
- * many vertices less has the mesh, and no index here names them. `degrees` has one number a
- * polygon, in their order; `corners` their vertices. The triangles that other readers see are those
- * of the polygons, one after another. A column's accessor has the words of its rows as they are in
- * memory (a bool is a word), little-endian: of vertices, of faces, or of halfedges: the corners in
- * the order of `corners`.
+ * Numbers such as 3 name accessors of UNSIGNED_INT SCALAR. `copies` names, for each of the last
+ * vertices, the one that it is a copy of, made because corners have different values (io/splits.h);
+ * the mesh does not have these copies, and no index here names them. `degrees` has one number a
+ * polygon, in their order; `corners` their vertices. The triangles for other programs are those of
+ * the polygons, in their order. A column's accessor has the words of its rows as they are in memory
+ * (a bool is a word), little-endian: of vertices, of faces, or of halfedges: the corners in the
+ * order of `corners`.
  *
- * None of it is believed: a program that changed the file may have kept it. Copies at other
- * positions than their vertices, polygons that are not those of the triangles and columns of a
- * wrong number of rows are ignored with a note, all of it where the node moves the mesh. */
+ * All of it is checked, because a program that changed the file may have kept the extras. Copies at
+ * other positions than their vertices, polygons that do not match the triangles and columns of a
+ * wrong number of rows are ignored with a note, and so are all extras if the node transforms the
+ * mesh. */
 #ifndef HE_FORMAT_GLTF_GLTF_PRIVATE_H
 #define HE_FORMAT_GLTF_GLTF_PRIVATE_H
 
 #include "format/gltf/gltf_attribute.h"
 
 bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive);
-/* Before its vertices are added: which of them are copies; p->private says whether the extras fit
- * so far. Fails only as memory, limits and the watch do. */
+/* To be called before the vertices are added: finds which of them are copies; p->private says
+ * whether the extras are valid so far. Fails only if memory, limits or the watch do. */
 HE_NODISCARD he_status he_gltf_open_private(he_gltf_surface *surface, he_gltf_primitive *p,
                                             he_error *err);
-/* After that, where p->private: add its columns, and its polygons, so that the triangles need not
- * be; p->exact and p->polygons say so. Fails likewise. */
+/* To be called after that, if p->private: adds the columns and the polygons, in place of the
+ * triangles; p->exact and p->polygons say which. Fails as he_gltf_open_private does. */
 HE_NODISCARD he_status he_gltf_read_private(he_gltf_surface *surface, he_gltf_primitive *p,
                                             he_error *err);
 

@@ -8,7 +8,7 @@ enum { HEADER = 12, CHUNK = 8 };
 
 static const uint32_t JSON_CHUNK = 0x4E4F534A, BIN_CHUNK = 0x004E4942;
 
-/* Bytes that are kept whole, since numbers in them are looked at in any order. */
+/* Bytes that are kept completely, because numbers in them are read in any order. */
 typedef struct block {
     char *bytes;
     size_t length, capacity;
@@ -17,19 +17,20 @@ typedef struct block {
 
 typedef struct glb {
     he_import *into;
-    unsigned char head[HEADER]; /* a header that is not whole */
+    unsigned char head[HEADER]; /* an incomplete header */
     size_t head_length;
-    uint64_t offset; /* of the next byte */
-    uint64_t length; /* of the file, as it says */
-    uint64_t left;   /* of the chunk */
-    size_t chunks;   /* begun */
-    size_t padding;  /* bytes that may follow the chunk, whose length is no multiple of 4 */
+    uint64_t offset; /* offset of the next byte */
+    uint64_t length; /* length of the file, as its header says */
+    uint64_t left;   /* bytes of the chunk still to come */
+    size_t chunks;   /* chunks that have begun */
+    size_t
+        padding; /* bytes of padding that may follow the chunk, whose length is no multiple of 4 */
     bool begun, has_bin;
     block json, bin;
-    block *chunk; /* where its bytes go; NULL: nowhere */
+    block *chunk; /* where its bytes are stored; NULL: nowhere */
 } glb;
 
-/* `most` is what will come at the most. */
+/* `most` is the most that will come. */
 static he_status keep(block *b, const void *bytes, size_t n, uint64_t most, uint64_t limit,
                       he_error *err)
 {
@@ -106,9 +107,9 @@ static he_status take_header(glb *g, he_error *err)
     return HE_OK;
 }
 
-/* Behind a chunk whose length is no multiple of 4 comes the next one, or first the bytes up to such
- * a multiple. Are these at the beginning of what was taken for the header of a chunk? They are
- * passed over then, and the rest of the header is to come. */
+/* After a chunk whose length is no multiple of 4 the next one follows directly, or after padding.
+ * Do the bytes read as the header of a chunk begin with such padding? It is then skipped, and the
+ * rest of the header is still to come. */
 static bool skip_padding(glb *g)
 {
     size_t n = g->padding;
@@ -302,7 +303,7 @@ static he_status gltf_open(he_import *into, void **state, he_error *err)
 
 const he_reading he_gltf_reading = {gltf_open, gltf_feed, gltf_finish, gltf_close, true};
 
-/* An object with a member "asset", which stands at the beginning of nearly all files. */
+/* Recognises an object with a member "asset", which is near the beginning of nearly all files. */
 bool he_gltf_sniff(const char *bytes, size_t n)
 {
     static const char member[] = "\"asset\"";

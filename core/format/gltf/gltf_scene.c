@@ -9,14 +9,14 @@
 /* A node whose children are being visited. */
 typedef struct level {
     he_gltf_frame frame;
-    uint32_t children, child; /* in the JSON; the one to come, or HE_NONE */
+    uint32_t children, child; /* array of children in the JSON; the next child, or HE_NONE */
 } level;
 
 typedef struct scene {
     he_gltf *asset;
     he_gltf_surface surface;
-    uint64_t *visited, *used; /* nodes, meshes */
-    uint64_t instances;       /* beyond the first of a mesh */
+    uint64_t *visited, *used; /* nodes visited; meshes used */
+    uint64_t instances;       /* uses of meshes beyond the first */
     level *levels;
     size_t depth, capacity;
 } scene;
@@ -36,7 +36,7 @@ static he_gltf_frame multiply(const he_gltf_frame *a, const he_gltf_frame *b)
     return out;
 }
 
-/* `count` numbers at a member, left alone where there is none. */
+/* Reads `count` numbers of a member; leaves `out` alone if it is missing. */
 static he_status get_numbers(const he_json *json, uint32_t node, const char *name, size_t count,
                              double *out, bool *found, he_error *err)
 {
@@ -57,10 +57,10 @@ static he_status get_numbers(const he_json *json, uint32_t node, const char *nam
     return status;
 }
 
-/* A length of 1 to so much is taken for the rounding of what wrote it. */
+/* A difference of the length to 1 up to this is taken for rounding. */
 static const double UNIT = 1e-4;
 
-/* A rotation is a quaternion of length 1; one of another length would scale as well. */
+/* Normalises a quaternion: one of another length than 1 would scale, too. */
 static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error *err)
 {
     const he_json *json = &asset->json;
@@ -85,7 +85,7 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     return HE_OK;
 }
 
-/* T * R * S */
+/* Returns T * R * S. */
 static he_gltf_frame compose(const double *t, const double *q, const double *s)
 {
     double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -184,7 +184,7 @@ static he_status push(scene *s, const he_gltf_frame *frame, uint32_t children, u
     return HE_OK;
 }
 
-/* Node `index`; `value` is what named it. */
+/* Visits node `index`; `value` is the number that named it. */
 static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_frame *parent,
                        he_error *err)
 {
@@ -218,7 +218,7 @@ static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_f
     return status;
 }
 
-/* The node that the number at `value` names. */
+/* Visits the node that the number at `value` names. */
 static he_status visit_named(scene *s, uint32_t value, const he_gltf_frame *parent, he_error *err)
 {
     uint32_t node;
@@ -230,7 +230,7 @@ static he_status visit_named(scene *s, uint32_t value, const he_gltf_frame *pare
     return status == HE_OK ? visit(s, index, value, parent, err) : status;
 }
 
-/* All that is below the nodes that were visited. */
+/* Visits everything below the nodes that were visited. */
 static he_status visit_rest(scene *s, he_error *err)
 {
     he_status status = HE_OK;
@@ -241,14 +241,14 @@ static he_status visit_rest(scene *s, he_error *err)
             continue;
         }
         uint32_t child = top->child;
-        he_gltf_frame frame = top->frame; /* the levels may move */
+        he_gltf_frame frame = top->frame; /* a copy: the array of levels may move */
         top->child = he_json_after(&s->asset->json, top->children, child);
         status = visit_named(s, child, &frame, err);
     }
     return status;
 }
 
-/* --- where to begin --- */
+/* --- choosing the scene --- */
 
 static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
 {
@@ -291,7 +291,7 @@ static he_status visit_scene(scene *s, uint32_t value, he_error *err)
     return status;
 }
 
-/* What names each node as a child, in the JSON, and the node that it is in; HE_NONE: nothing. */
+/* The value that names a node as a child, and the node that contains it; HE_NONE: none. */
 typedef struct parent {
     uint32_t value, node;
 } parent;
@@ -316,7 +316,8 @@ static he_status find_parents(he_gltf *asset, parent *parents, he_error *err)
     return status;
 }
 
-/* A node that is below no root has a parent, as that has: there is no end but round and round. */
+/* A node that is below no root has a parent, and so has that one: following them leads round a
+ * cycle. */
 static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t node, he_error *err)
 {
     for (size_t i = 0; i < s->asset->nodes.count; i++) {
@@ -326,7 +327,7 @@ static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t no
                         "node %u is inside itself", node);
 }
 
-/* Without scenes: the nodes that are no children. */
+/* Visits the nodes that are no children, if there are no scenes. */
 static he_status visit_roots(scene *s, he_error *err)
 {
     const he_ids *nodes = &s->asset->nodes;

@@ -23,7 +23,7 @@ static void note(he_gltf *asset, uint32_t value, const char *code, const char *t
                  he_json_place(&asset->json, value));
 }
 
-/* --- what a primitive has --- */
+/* --- reading a primitive --- */
 
 static he_status get_mode(const he_gltf *asset, uint32_t primitive, uint64_t *mode, he_error *err)
 {
@@ -32,7 +32,7 @@ static he_status get_mode(const he_gltf *asset, uint32_t primitive, uint64_t *mo
     return value == HE_NONE ? HE_OK : he_json_whole(&asset->json, value, POINTS, FAN, mode, err);
 }
 
-/* A primitive whose data is only there compressed looks like one without data. */
+/* A primitive whose data exists only compressed looks like one without data. */
 static he_status get_whole(he_gltf *asset, uint32_t primitive, uint32_t value,
                            he_gltf_accessor *out, he_error *err)
 {
@@ -113,7 +113,8 @@ static he_status located(he_status status, uint64_t at, he_error *err)
 
 /* --- vertices and faces --- */
 
-/* What the soup will hold, and a place for each element whose places are at other steps. */
+/* Counts the memory of the soup, and of a place for each element whose distance from the last
+ * differs. */
 static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     he_import *into = s->asset->into;
@@ -190,8 +191,8 @@ static he_status bad_index(const he_gltf_surface *s, const he_gltf_primitive *p,
     return status;
 }
 
-/* Triangle i of a strip or fan that has come as far as its corners: held are the first, and the
- * two last. */
+/* Finds the corners of triangle i of a strip or fan that has been read up to them: `held` has the
+ * first corner, and the last ones. */
 static void corners_of(uint64_t mode, uint64_t i, const uint32_t held[4], uint32_t corners[3])
 {
     bool odd = i % 2 == 1;
@@ -381,7 +382,7 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
     return status;
 }
 
-/* What extras say of some faces comes before what nodes and materials say of all. */
+/* Names from extras, for some faces, take precedence over those from nodes and materials. */
 static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const he_ids *own,
                               const char *name, he_error *err)
 {

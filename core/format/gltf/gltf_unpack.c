@@ -1,4 +1,5 @@
-/* Buffer views of gltf_asset.h: their bytes, and those that EXT_meshopt_compression has packed. */
+/* Buffer views of gltf_asset.h: finds their bytes, and decompresses those of
+ * EXT_meshopt_compression. */
 #include "format/gltf/gltf_asset.h"
 
 #include "format/gltf/meshopt.h"
@@ -47,9 +48,9 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
     return HE_OK;
 }
 
-/* --- compressed ones --- */
+/* --- compressed views --- */
 
-/* The place of a string in a list of `count` words; `absent` where there is no string. */
+/* Finds a string in a list of `count` words; `absent` if there is no string. */
 static he_status find_word(const he_gltf *asset, uint32_t object, const char *name,
                            const char *const *words, int count, int absent, int *out, he_error *err)
 {
@@ -98,7 +99,7 @@ static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_s
                          : he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "%s", wrong);
 }
 
-/* Can the bytes be such a stream? Nothing is made for those that cannot. */
+/* Can the bytes be such a stream? If not, no memory is allocated for it. */
 static he_status check_stream(const he_gltf *asset, uint32_t object,
                               const he_meshopt_stream *stream, const he_gltf_buffer *packed,
                               he_error *err)
@@ -176,7 +177,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     return he_gltf_tell(asset, err);
 }
 
-/* Its place in the list of views, whose values rise. */
+/* Returns its index in the list of views, whose values rise. */
 static size_t number_of(const he_ids *views, uint32_t view)
 {
     size_t from = 0, to = views->count;

@@ -20,7 +20,8 @@ static void note_stale(he_gltf *asset, uint32_t value)
 
 /* --- is the scene as it was written? --- */
 
-/* The accessor's description that the number at `value` names, HE_NONE where there is none. */
+/* Returns the description of the accessor that the number at `value` names, HE_NONE if there is
+ * none. */
 static uint32_t accessor_of(const he_gltf *asset, uint32_t value)
 {
     uint64_t index = 0;
@@ -37,7 +38,7 @@ static bool is_member(const he_json *json, uint32_t object, const char *name, ui
     return value == HE_NONE || he_json_whole(json, value, 0, HE_JSON_WHOLE, out, NULL) == HE_OK;
 }
 
-/* What an accessor of indices says. */
+/* An accessor of indices. */
 typedef struct indices {
     uint64_t view, offset, type, count;
 } indices;
@@ -76,9 +77,9 @@ static bool same_attributes(const he_json *json, uint32_t a, uint32_t b)
 
 typedef struct checking {
     he_gltf *asset;
-    uint32_t whole; /* the primitive of all */
+    uint32_t whole; /* the primitive of all faces */
     indices all;
-    uint64_t offset; /* of the triangles that come next */
+    uint64_t offset; /* offset of the next triangles */
 } checking;
 
 static bool fits_primitive(checking *s, uint32_t primitive)
@@ -141,7 +142,7 @@ static bool same_names(const he_gltf_surface *surface, uint32_t list)
     return item == HE_NONE && i == count;
 }
 
-/* Each look costs as much as the values of the JSON that it goes over. */
+/* Each test is charged the values of the JSON that it visits. */
 static he_status check_scene(he_gltf_surface *surface, uint32_t value, uint32_t private, bool *fits,
                              he_error *err)
 {
@@ -192,7 +193,7 @@ he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whol
 
 /* --- the order of faces --- */
 
-/* Is each number below the count there once? */
+/* Does each number below the count occur once? */
 static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t *order, bool *fits,
                             he_error *err)
 {
@@ -215,7 +216,7 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
     return status;
 }
 
-/* Source places of faces follow the faces to their new order. */
+/* Reorders the places of faces in the input. */
 static he_status order_places(he_places *places, const uint32_t *order, size_t count, he_error *err)
 {
     he_places made;

@@ -7,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* What is written, in this order. */
+/* The parts of the document, in order. */
 typedef enum stage { HEADER, JSON, BIN_HEADER, PARTS, END } stage;
 
 /* Room for one element of any part: sixteen doubles. */
@@ -15,17 +15,16 @@ enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
     he_glb_parts g;
-    uint32_t
-        *at; /* where vertices are split: of each vertex the number in the face that is written */
-    uint32_t *ranks; /* of faces among the live ones, NULL where that is their id */
+    uint32_t *at;    /* if vertices are split: for each vertex its number in the present face */
+    uint32_t *ranks; /* ranks of faces among the live ones, NULL if they are the ids */
     stage stage;
-    size_t json;       /* next byte */
-    size_t part;       /* that is being written */
-    uint32_t row;      /* next vertex or face */
-    uint32_t halfedge; /* next corner of the face, or HE_NONE */
-    size_t copy;       /* next */
+    size_t json;       /* the next byte of the JSON */
+    size_t part;       /* the part being written */
+    uint32_t row;      /* the next vertex or face */
+    uint32_t halfedge; /* the next corner of the face, or HE_NONE */
+    size_t copy;       /* the next copy */
     he_cut_walk walk;
-    uint64_t written; /* bytes of the part */
+    uint64_t written; /* bytes of the part written */
 } glb_writer;
 
 static void glb_close(void *state)
@@ -100,7 +99,7 @@ static uint32_t number_of(const glb_writer *w, uint32_t vertex)
 
 /* --- walks over the elements of a part; HE_NONE after the last --- */
 
-/* Copies follow the vertices: a half-edge each. */
+/* Copies follow the vertices; returns a half-edge for each. */
 static uint32_t next_copy(glb_writer *w)
 {
     return w->copy < w->g.splits.copies.count ? w->g.splits.copies.ids[w->copy++] : HE_NONE;
@@ -147,7 +146,7 @@ static uint32_t next_row(glb_writer *w, he_kind domain)
     return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
 }
 
-/* The numbers that vertices have in a face, where they are split. */
+/* Fills in the numbers that vertices have in a face, if they are split. */
 static void enter_face(const glb_writer *w, uint32_t face)
 {
     const he_content *c = &w->g.mesh->c;
@@ -189,8 +188,8 @@ static char *put_position(const glb_writer *w, uint32_t vertex, char *p)
     return p;
 }
 
-/* Writes what the part holds of the next vertex, or of the next copy of one; nothing after the
- * last. A copy has the corner values of the corner it stands for. */
+/* Writes the part's value for the next vertex, or the next copy; nothing after the last. A copy has
+ * the values of the corner it stands for. */
 static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_content *c = &w->g.mesh->c;
@@ -210,7 +209,7 @@ static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
     return put_value(part, part->column->domain == HE_HALFEDGE ? h : id, p);
 }
 
-/* The next of a part; nothing after the last. */
+/* Writes the next element of a part; nothing after the last. */
 static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_mesh *m = w->g.mesh;
@@ -240,7 +239,7 @@ static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
     return id == HE_NONE ? p : put_words(part->column, id, p);
 }
 
-/* --- packing --- */
+/* --- compression --- */
 
 static void begin_part(glb_writer *w)
 {
@@ -249,7 +248,7 @@ static void begin_part(glb_writer *w)
     w->written = 0;
 }
 
-/* All elements of a part, for the packer: indices are words there. */
+/* Collects all elements of a part for compression: indices are words then. */
 static he_status pack_part(glb_writer *w, he_glb_part *part, he_error *err)
 {
     he_glb_part plain = *part;

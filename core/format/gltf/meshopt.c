@@ -7,11 +7,11 @@ const char *const he_meshopt_modes[HE_MESHOPT_MODES] = {"ATTRIBUTES", "TRIANGLES
 const char *const he_meshopt_filters[HE_MESHOPT_FILTERS] = {"NONE", "OCTAHEDRAL", "QUATERNION",
                                                             "EXPONENTIAL"};
 
-/* A stream begins with this and its version. */
+/* A stream begins with this byte, combined with its version. */
 static const unsigned char marks[HE_MESHOPT_MODES] = {0xA0, 0xE0, 0xD0};
 
-/* The extension uses version 1 of the index coding, which the library sets for the whole process:
- * so it is set before other threads start. */
+/* The extension uses version 1 of the index coding. The library sets it for the whole process, so
+ * it is set before other threads start. */
 __attribute__((constructor)) static void choose_version(void)
 {
     meshopt_encodeVertexVersion(HE_MESHOPT_ATTRIBUTES_VERSION);
@@ -39,9 +39,9 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
     return NULL;
 }
 
-/* Behind a byte of mark and version: of attributes at least two bits for 16 values of each byte of
- * an element, and the first element; of triangles a byte each and a table of 16; of indices a byte
- * each and 4. */
+/* After a byte of mode and version a stream needs: for attributes at least two bits for 16 values
+ * of each byte of an element, and the first element; for triangles one byte each and a table of 16;
+ * for indices one byte each and 4. */
 uint64_t he_meshopt_least(const he_meshopt_stream *s)
 {
     switch (s->mode) {
