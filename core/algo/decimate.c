@@ -65,8 +65,8 @@ static void count_feature(const he_decimation *d, he_edge e, uint32_t vertex)
     }
 }
 
-/* The plane through the edge of h that stands upright on the face to its left, whose normal is
- * given. */
+/* Adds the plane through the edge of h that is perpendicular to the face on its left, whose normal
+ * is given. */
 static void add_wall(const he_decimation *d, he_halfedge h, he_vec3 normal)
 {
     he_node *a = &d->nodes[he_origin(d->mesh, h).i], *b = &d->nodes[he_target(d->mesh, h).i];
@@ -136,7 +136,7 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* The first write to fresh pages takes long. Vertices without an edge are not asked about. */
+    /* The first write to fresh pages takes long, so vertices without an edge are skipped. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_watch_at(m->watch, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
@@ -174,7 +174,7 @@ static he_status fill_queue(he_decimation *d, he_error *err)
     return status;
 }
 
-/* Edge e was first, in a bucket. */
+/* Handles edge e, which was first in the queue, in a bucket. */
 static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_error *err)
 {
     he_candidate what;
@@ -193,7 +193,7 @@ static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_e
     return HE_OK;
 }
 
-/* Ask for what tells where the ends of edges are, and what they are. */
+/* Prefetches the ends of edges, and their positions. */
 static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -214,7 +214,7 @@ static void ask_for_ends(const he_decimation *d, uint32_t edge)
 
 enum { AHEAD = 4 };
 
-/* Edges that were first. Stops at so many faces. */
+/* Handles edges that were first in the queue. Stops when there are only `faces` faces. */
 static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t count,
                                uint32_t bucket, uint32_t faces, he_error *err)
 {
@@ -235,7 +235,7 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
     return status;
 }
 
-/* Looks at the watch: one at so many takes from the queue, or after so much work. */
+/* The watch is stepped after so many takes from the queue, or after so much work. */
 enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_WATCH_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
@@ -275,7 +275,7 @@ static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
     return HE_STOP_EXHAUSTED;
 }
 
-/* Nodes in memory that has one more of them. */
+/* Returns the first aligned node in memory that has room for one node more. */
 static he_node *align(void *memory)
 {
     uintptr_t over = (uintptr_t)memory % HE_CACHE_LINE;
@@ -360,7 +360,7 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_watch(copy, m->watch);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        /* Each collapse takes a vertex: without one nothing has changed. */
+        /* Each collapse deletes a vertex: with equally many nothing has changed. */
         if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }

@@ -1,16 +1,17 @@
-/* What an edge costs, and where its vertex would go. */
+/* Computes what an edge costs, and where its vertex would move. */
 #include "algo/decimation.h"
 
-/* How much a new place is drawn to the middle of the edge, of all weights: enough for a place in
- * the plane to be found well, too little to be felt where the surface is curved. */
+/* How strongly the new point is pulled to the middle of the edge, relative to the sum of weights:
+ * enough to find a point in a plane accurately, too little to matter on curved surfaces. */
 static const double PULL = 1e-6;
-/* An end is better where it costs less by more than rounding. */
+/* An end is better if it costs less by more than rounding. */
 static const double ROUNDING = 1e-14;
-/* Of edges that cost nothing the shortest are first. */
+/* Edges that cost nothing are ordered by length, the shortest first. */
 static const double LENGTH = 1e-9;
-/* Small meshes in large ones have priorities that a float holds. */
+/* Bounds the priorities, so that small meshes inside large ones have priorities that fit a
+ * float. */
 static const double WITHIN = 0x1p40;
-/* Errors below are those of rounding. */
+/* Smaller errors are rounding noise. */
 static const double NOTHING = 1e-12;
 
 /* May the vertex move along an edge, which is a feature if `along`? */
@@ -22,10 +23,10 @@ static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 }
 
 typedef struct ends {
-    he_halfedge h; /* from a to b */
+    he_halfedge h; /* runs from a to b */
     const he_node *a, *b;
-    he_quadric sum; /* about a */
-    he_vec3 across; /* from a to b */
+    he_quadric sum; /* relative to a */
+    he_vec3 across; /* vector from a to b */
     bool a_goes, b_goes, a_moves, b_moves;
 } ends;
 
@@ -37,7 +38,7 @@ static void take(const ends *e, he_vec3 x, bool a_goes, bool moves, he_candidate
     out->cost = he_quadric_at(&e->sum, x);
 }
 
-/* Any place is allowed. */
+/* Takes the best point; any is allowed. */
 static bool take_best(const ends *e, he_candidate *out)
 {
     bool a_goes = e->a_goes && e->b_moves, b_goes = e->b_goes && e->a_moves;
@@ -47,7 +48,8 @@ static bool take_best(const ends *e, he_candidate *out)
         !he_quadric_least(&e->sum, PULL * trace, he_vec3_scale(e->across, 0.5), &x)) {
         return false;
     }
-    /* The one with fewer edges goes, and of two with as many the later one. */
+    /* The end with fewer edges is deleted, and of two with equally many the one with the higher
+     * id. */
     if (a_goes && b_goes) {
         a_goes = e->a->degree < e->b->degree;
     }

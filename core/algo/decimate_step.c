@@ -1,12 +1,13 @@
-/* One collapse of a decimation. */
+/* Performs one collapse of a decimation. */
 #include "algo/decimation.h"
 
 #include "edit/local/collapse.h"
 #include "edit/piece/point.h"
 
-/* A face may turn by so much: the square of the cosine of 60 degrees. */
+/* The largest angle by which a face may turn: the squared cosine of 60 degrees. */
 static const double TURN = 0.25;
-/* The square of twice the area by the square of the longest side, of a face that is one. */
+/* A face counts as having area if its squared doubled area, relative to the fourth power of its
+ * longest side, is above this. */
 static const double SLIVER = 1e-12;
 
 static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
@@ -14,9 +15,9 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Half-edges that leave the ends of h, from h and its twin on: the first end's, or both's, which
- * are turned about in step, since each turn waits for memory. False where there are more than fit.
- */
+/* Lists the half-edges that leave the ends of h, from h and its twin on: of the first end, or of
+ * both, which are then walked in alternation, since each step waits for memory. Returns false if
+ * there are too many. */
 static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
     const he_halfedge first[2] = {h, he_twin(h)};
@@ -43,7 +44,7 @@ static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out
     return true;
 }
 
-/* Would the triangle p, q, r stay upright and a triangle with its first corner at `to`? */
+/* Would the triangle p, q, r keep its direction and area with its first corner at `to`? */
 static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
 {
     he_vec3 side = he_vec3_sub(r, q), left = he_vec3_sub(q, to), right = he_vec3_sub(r, to);
@@ -59,7 +60,7 @@ static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
     return old_square == 0 || (along > 0 && along * along >= TURN * old_square * new_square);
 }
 
-/* Of the faces about `spokes`' vertex, but those of its first edge. */
+/* Tests the faces around the vertex of `spokes`, except those of its first edge. */
 static bool stay_upright(const he_decimation *d, const he_spokes *spokes, he_vec3 from, he_vec3 to)
 {
     const he_mesh *m = d->mesh;
@@ -122,7 +123,7 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* May the vertex wait? Where it cannot be remembered it may not. */
+/* May the vertex wait? Only if it can be remembered. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -132,7 +133,8 @@ static bool is_late(he_decimation *d, uint32_t vertex)
     return (d->flags[vertex] & HE_NODE_LATE) != 0 || he_ids_add(&d->late, vertex, NULL) == HE_OK;
 }
 
-/* Edges about a vertex that are aside go back, and dear ones too where it has taken another in. */
+/* Returns the ASIDE edges of a vertex to the queue, and the DEAR ones too if another vertex was
+ * merged into it. */
 static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
 {
     uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
@@ -161,7 +163,7 @@ bool he_decimation_catch_up(he_decimation *d)
     return any;
 }
 
-/* Where between the ends the place is, of 1. */
+/* Returns the position of the point between the ends, from 0 to 1. */
 static double between(he_vec3 from, he_vec3 to, he_vec3 place)
 {
     he_vec3 across = he_vec3_sub(to, from);
@@ -170,7 +172,7 @@ static double between(he_vec3 from, he_vec3 to, he_vec3 place)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
-/* The place outside; never beyond the range of a double. */
+/* Converts a point to outside coordinates; never beyond the range of a double. */
 static he_vec3 outside(const he_decimation *d, he_vec3 place)
 {
     return (he_vec3){d->middle.x + ldexp(place.x, d->exponent),
@@ -178,7 +180,7 @@ static he_vec3 outside(const he_decimation *d, he_vec3 place)
                      d->middle.z + ldexp(place.z, d->exponent)};
 }
 
-/* Room for one more split and the faces about one vertex. */
+/* Makes room for one more split and the faces around one vertex. */
 static he_status make_room(he_progressive *log)
 {
     if (log->count == log->capacity) {
@@ -193,7 +195,7 @@ static he_status make_room(he_progressive *log)
     return he_ids_reserve(&log->moved, HE_DECIMATE_DEGREE, NULL);
 }
 
-/* What undoes the collapse of the first edge of `about`, which is not done yet. */
+/* Records how to undo the collapse of the first edge of `about`, before it is done. */
 static void remember(const he_decimation *d, const he_spokes *about)
 {
     const he_mesh *m = d->mesh;
@@ -229,7 +231,7 @@ static void remember(const he_decimation *d, const he_spokes *about)
     }
 }
 
-/* As the collapse of h merges them, which is not done yet. */
+/* Notes what the collapse of h will merge, before it is done. */
 static he_status note_merges(const he_decimation *d, he_halfedge h)
 {
     const he_mesh *m = d->mesh;
@@ -260,7 +262,7 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     }
 }
 
-/* The first edge of `about`, with what is to be kept of it. */
+/* Collapses the first edge of `about`, and records what is required. */
 static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
 {
     he_halfedge h = {about->out[0]};

@@ -1,4 +1,4 @@
-/* What a decimation made in a copy, written into the mesh: each word that differs, once. */
+/* Writes the result of a decimation from the copy into the mesh: each word that differs, once. */
 #include "algo/decimation.h"
 
 #include "mesh/write.h"
@@ -64,7 +64,7 @@ static void count_words(const he_mesh *m, const he_mesh *made, he_need *need)
     }
 }
 
-/* Words of two rows that differ. */
+/* Counts the words of two rows that differ. */
 static size_t words_between(const unsigned char *a, const unsigned char *b, size_t bytes)
 {
     size_t count = 0;
@@ -74,7 +74,8 @@ static size_t words_between(const unsigned char *a, const unsigned char *b, size
     return count;
 }
 
-/* Words of a column that differ; written with `to`, else only counted. */
+/* Handles the words of a column that differ: writes them if `to` is not NULL, else only counts
+ * them. */
 static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_mesh *to)
 {
     const he_column *from = m->c.columns[slot], *column = made->c.columns[slot];
@@ -160,7 +161,7 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
 {
     he_need need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
-    /* Not as need.attributes, which is rows of every column there is. */
+    /* need.attributes would count rows of every column. */
     need.links += each_column(m, made, NULL);
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {

@@ -1,10 +1,10 @@
-/* edge_queue.h - edges by priority, the least first, inline.
+/* edge_queue.h - an inline priority queue of edges, the least priority first.
  *
  * A bucket holds the edges whose priorities agree in exponent and two binary digits: those that
- * differ by less than a quarter may come in either order. Within a bucket edges lie as they came,
- * most of them by id, so that neighbours are near in memory; that is worth more than a finer order,
- * which leaves a mesh no better. They lie in chunks of 64 bytes, and a chunk is taken whole,
- * so that what its edges need can be asked for ahead of time. */
+ * differ by less than a quarter may come in either order. Within a bucket edges are in order of
+ * arrival, mostly by id, so that neighbours are near in memory; that gains more than a finer order,
+ * which gives no better mesh. They are stored in chunks of 64 bytes, and a chunk is taken as a
+ * whole, so that the data of its edges can be prefetched. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H
 
@@ -20,20 +20,21 @@ enum {
 };
 
 typedef struct he_queue_chunk {
-    uint32_t next; /* of the bucket, or of those in no bucket; HE_NONE */
+    uint32_t next; /* the next chunk of the bucket, or of the free list; HE_NONE */
     uint32_t count;
     uint32_t edges[HE_QUEUE_CHUNK];
 } he_queue_chunk;
 
 typedef struct he_edge_queue {
     he_queue_chunk *chunks;
-    uint32_t *first;     /* chunk of each bucket; all others behind it are full */
-    uint32_t free, used; /* the first chunk in no bucket; chunks from `used` on never were */
+    uint32_t *first;     /* the first chunk of each bucket; all after it are full */
+    uint32_t free, used; /* the first free chunk; chunks from `used` on were never used */
     uint64_t filled[HE_QUEUE_WORDS];
-    size_t word; /* none before it has a bucket with edges */
+    size_t word; /* no word before it has a bucket with edges */
 } he_edge_queue;
 
-/* For at most `edges` edges at once. HE_NO_MEMORY; cleared all the same. */
+/* Makes a queue with room for `edges` edges. The caller clears it also after a failure.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD static inline he_status he_queue_init(he_edge_queue *queue, uint32_t edges,
                                                    he_error *err)
 {
@@ -55,12 +56,13 @@ static inline void he_queue_clear(he_edge_queue *queue)
     he_mem_free(queue->first);
 }
 
-/* Of a lower priority no higher one. Priorities are not negative. */
+/* Returns the bucket of a priority, which is not negative; a lower priority never has a higher
+ * bucket. */
 static inline uint32_t he_queue_bucket(float priority)
 {
     uint32_t bits;
     memcpy(&bits, &priority, sizeof bits);
-    return bits >> HE_QUEUE_SHIFT; /* the sign is 0 */
+    return bits >> HE_QUEUE_SHIFT; /* the sign bit is 0 */
 }
 
 static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float priority)
@@ -83,8 +85,8 @@ static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float prior
     queue->word = word < queue->word ? word : queue->word;
 }
 
-/* Takes some of the first edges out, all of one bucket, and gives their number: 0 where there are
- * none. */
+/* Takes some of the first edges out, all of one bucket. Returns their number, 0 if the queue is
+ * empty. */
 static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUEUE_CHUNK],
                                      uint32_t *bucket)
 {

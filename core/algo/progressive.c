@@ -10,7 +10,7 @@ void he_progressive_clear(he_progressive *progressive)
     *progressive = (he_progressive){0};
 }
 
-/* The share of the copy in the time. */
+/* The part of the time that copying the mesh takes. */
 static const double COPIED = 0.05;
 
 he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options, he_watch *watch,

@@ -1,8 +1,8 @@
-/* progressive.h - a mesh as a coarse one and the splits that lead back to it.
+/* progressive.h - a mesh as a coarse mesh and the splits that lead back to it.
  *
- * H. Hoppe, "Progressive meshes", 1996: a decimation is remembered collapse by collapse, and each
+ * H. Hoppe, "Progressive meshes", 1996: a decimation is recorded collapse by collapse, and each
  * collapse is undone by a vertex split. Undone in reverse order, they lead through all levels of
- * detail to the mesh that was, with the same ids, ends of edges, corners of faces and positions.
+ * detail to the original mesh, with equal ids, ends of edges, corners of faces and positions.
  *
  *              c                               c
  *              o                               o
@@ -20,30 +20,32 @@
 #include "mesh/column.h"
 #include "mesh/mesh.h"
 
-/* What makes one collapse undone. A side without a face has HE_NONE in all it says. */
+/* The data to undo one collapse. If a side has no face, its fields are HE_NONE. */
 typedef struct he_progressive_split {
-    uint32_t vertex, from;   /* u comes back beside v */
+    uint32_t vertex, from;   /* u, which is made, and v, beside which it is */
     uint32_t left, right;    /* the third corners, c and d */
     uint32_t halfedge;       /* from u to v */
     uint32_t left_halfedge;  /* from u to c */
     uint32_t right_halfedge; /* from u to d */
     uint32_t left_face, right_face;
-    uint32_t moved;      /* faces that go over to u: so many */
-    size_t first_moved;  /* from this one on, in he_progressive.moved */
-    he_vec3 at, from_at; /* where u and v are then */
+    uint32_t moved;      /* number of faces that move to u */
+    size_t first_moved;  /* the first of them in he_progressive.moved */
+    he_vec3 at, from_at; /* positions of u and v after the split */
 } he_progressive_split;
 
-/* Open for reading; written by the decimation. {0} is empty. */
+/* Anyone may read the fields; the decimation writes them. {0} is empty. */
 typedef struct he_progressive {
     he_mesh *base;
-    he_progressive_split *splits; /* the first is the last to be done */
+    he_progressive_split *splits; /* the first one is the last to be applied */
     size_t count, capacity;
     he_ids moved;
 } he_progressive;
 
-/* Decimate a copy, and remember how. What decimate refuses, HE_NO_MEMORY; HE_CANCELLED by the
- * watch, which may be NULL and is not the mesh's: others may read that one meanwhile. The base is
- * what decimate makes of the mesh by the same options. */
+/* Decimates a copy and records the collapses; the base is what he_decimate makes with these
+ * options. `watch`, which may be NULL, is not the mesh's: other threads may read the mesh
+ * meanwhile. Fails as he_decimate does.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
                                           he_watch *watch, he_progressive *out, he_error *err);
 void he_progressive_clear(he_progressive *progressive);

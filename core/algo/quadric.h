@@ -1,4 +1,4 @@
-/* quadric.h - how far a point is from many planes at once, inline.
+/* quadric.h - inline quadrics: the sum of a point's squared distances to many planes.
  *
  * Garland and Heckbert, "Surface simplification using quadric error metrics", 1997: the sum of the
  * squared distances to planes, each with a weight, is a quadratic function of the point, and such
@@ -6,8 +6,8 @@
  *
  *     q(x) = x' A x + 2 b' x + c        A symmetric, 3 by 3
  *
- * Here x is relative to a point that the quadric is about, which its owner knows: a vertex. So the
- * numbers are as small as the edges are, wherever the mesh lies, and few digits are lost. */
+ * Here x is relative to a point that the quadric's owner knows, a vertex. So the numbers are as
+ * small as the edges, wherever the mesh is, and few digits are lost. */
 #ifndef HE_ALGO_QUADRIC_H
 #define HE_ALGO_QUADRIC_H
 
@@ -17,10 +17,10 @@ typedef struct he_quadric {
     double xx, xy, xz, yy, yz, zz; /* A */
     he_vec3 b;
     double c;
-    double weight; /* of all planes */
+    double weight; /* sum of the weights of all planes */
 } he_quadric;
 
-/* A plane through the point the quadric is about. */
+/* Adds a plane through the point to which the quadric is relative. */
 static inline void he_quadric_add_plane(he_quadric *q, he_vec3 unit_normal, double weight)
 {
     he_vec3 n = unit_normal, w = he_vec3_scale(n, weight);
@@ -40,7 +40,7 @@ static inline he_vec3 he_quadric_times(const he_quadric *q, he_vec3 x)
                      q->xz * x.x + q->yz * x.y + q->zz * x.z};
 }
 
-/* Never negative: what rounding takes too much is nothing. */
+/* Returns the value, never negative: a negative one is rounding noise. */
 static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
 {
     double value = he_vec3_dot(x, he_vec3_add(he_quadric_times(q, x), he_vec3_scale(q->b, 2)));
@@ -48,14 +48,14 @@ static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
     return value > 0 ? value : 0;
 }
 
-/* The same function about a point that is `by` away from the one it is about. */
+/* Makes the quadric relative to a point that is `by` away from the present one. */
 static inline void he_quadric_shift(he_quadric *q, he_vec3 by)
 {
     q->c = he_quadric_at(q, by);
     q->b = he_vec3_add(q->b, he_quadric_times(q, by));
 }
 
-/* Both about the same point. */
+/* Adds a quadric; both are relative to one point. */
 static inline void he_quadric_add(he_quadric *q, const he_quadric *more)
 {
     q->xx += more->xx;
@@ -69,9 +69,9 @@ static inline void he_quadric_add(he_quadric *q, const he_quadric *more)
     q->weight += more->weight;
 }
 
-/* Where q(x) + pull * |x - home|^2 is least. A pull of more than a few 1e-12 of the trace of A
- * makes this well defined where the planes have no point in common, as in a flat place. False where
- * there are no planes. */
+/* Finds where q(x) + pull * |x - home|^2 is least. A pull of more than a few 1e-12 of the trace of
+ * A makes this well defined if the planes have no common point, as in a flat region. Returns false
+ * if there are no planes. */
 static inline bool he_quadric_least(const he_quadric *q, double pull, he_vec3 home, he_vec3 *x)
 {
     double xx = q->xx + pull, yy = q->yy + pull, zz = q->zz + pull;

@@ -9,8 +9,8 @@
 
 static const double QUARTER_TURN = 1.57079632679489661923;
 
-/* Point i of n on the unit circle. The quarter turns are taken out first, so that points on the
- * axes are exact and the circle is as symmetric as n lets it be. */
+/* Computes point i of n on the unit circle. The quarter turns are done first, so that points on the
+ * axes are exact and the circle is as symmetric as n allows. */
 static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
 {
     uint64_t quarters = 4 * (uint64_t)i;
@@ -36,7 +36,7 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
     }
 }
 
-/* n vertices around the z axis, counter-clockwise seen from above. */
+/* Adds n vertices around the z axis, counter-clockwise seen from above. */
 static void circle(he_soup *soup, uint32_t n, double radius, double z)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -46,7 +46,7 @@ static void circle(he_soup *soup, uint32_t n, double radius, double z)
     }
 }
 
-/* One polygon over n consecutive vertices, facing up, or down when they are taken backwards. */
+/* Adds one polygon over n consecutive vertices, facing up, or down if they are taken backwards. */
 static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
 {
     assert(soup->face_count < soup->face_capacity);
@@ -57,7 +57,7 @@ static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
     }
 }
 
-/* Triangles from the circle of n vertices at `first` to `tip`, which sees the circle
+/* Adds triangles from the circle of n vertices at `first` to `tip`, from which the circle is
  * counter-clockwise if `up`. */
 static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up)
 {
@@ -67,7 +67,8 @@ static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up
     }
 }
 
-/* Quads between two circles of n vertices, normals away from the axis when `above` lies above. */
+/* Adds quads between two circles of n vertices, with normals away from the axis if `above` is
+ * above. */
 static void band(he_soup *soup, uint32_t below, uint32_t above, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -148,7 +149,7 @@ static he_shape_size uv_sphere_size(const double *args)
     return (he_shape_size){n * (bands - 1) + 2, n * bands, 4 * n * (bands - 2) + 6 * n};
 }
 
-/* The south pole, circles of latitude from south to north, the north pole. */
+/* The south pole, then circles of latitude from south to north, then the north pole. */
 static void uv_sphere_fill(const double *args, he_soup *soup)
 {
     uint32_t n = (uint32_t)args[0], bands = (uint32_t)args[1];
@@ -198,7 +199,7 @@ static he_shape_size torus_size(const double *args)
     return (he_shape_size){quads, quads, 4 * quads};
 }
 
-/* Vertices run about the tube first; the tube's circles about the axis. */
+/* Vertices run around the tube first; the tube's circles around the axis. */
 static void torus_fill(const double *args, he_soup *soup)
 {
     uint32_t major = (uint32_t)args[0], minor = (uint32_t)args[1];
@@ -283,9 +284,9 @@ static void polygon_fill(const double *args, he_soup *soup)
     cap(soup, 0, n, true);
 }
 
-/* Lengths beyond this have no use, and their squares would overflow. */
+/* Larger lengths have no use, and their squares would overflow. */
 #define LONGEST 1e100
-/* Enough for any side of a mesh that fits; products are refused by the limits. */
+/* More than any side of a mesh that fits; the limits refuse products that are too large. */
 #define MOST 16777216
 
 #define LENGTH(name, fallback, doc)                            \
@@ -411,7 +412,7 @@ void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS])
     }
 }
 
-/* A number in a message, the same in every locale. */
+/* A number in a message, formatted equally in every locale. */
 typedef struct shown {
     char text[HE_NUMBER_TEXT + 1];
 } shown;
@@ -458,7 +459,7 @@ he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAM
 static he_status within(const he_shape *shape, uint64_t count, uint64_t limit, const char *what,
                         he_error *err)
 {
-    /* Every edge has a corner, so this leaves ids for the edges too. */
+    /* There is at most one edge for each corner, so this leaves ids for the edges too. */
     if (limit == 0 || limit > HE_MAX_ROWS) {
         limit = HE_MAX_ROWS;
     }

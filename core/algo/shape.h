@@ -1,8 +1,8 @@
-/* shape.h - THE table of shapes a mesh can be made as.
+/* shape.h - THE table of shapes from which a mesh can be made.
  *
- * A row says what a shape is called, what may be asked of it, and how many vertices, faces and
- * corners that gives, so that a request over a limit is refused before memory is taken for it. From
- * the rows come the decoding of {"shape": ...}, its documentation, and the tests.
+ * A row has a shape's name, its parameters, and the numbers of vertices, faces and corners for
+ * them, so that a request over a limit is refused before memory is allocated. The decoding of
+ * {"shape": ...}, its documentation and the tests are driven by the rows.
  *
  * All shapes are centred at the origin with z up. Solids and closed surfaces wind so that normals
  * point outwards; flat ones (grid, disk, polygon) lie in z = 0 and face up. Points that symmetry
@@ -21,7 +21,7 @@ typedef enum he_shape_type {
 typedef struct he_shape_param {
     const char *name;
     he_shape_type type;
-    bool exclusive; /* `min` is not in the range; `max` always is */
+    bool exclusive; /* `min` is excluded; `max` is always included */
     double fallback, min, max;
     const char *doc;
 } he_shape_param;
@@ -35,26 +35,30 @@ typedef struct he_shape_size {
 typedef struct he_shape {
     const char *name;
     const char *doc;
-    he_shape_param params[HE_SHAPE_PARAMS]; /* ends at the first without a name */
-    /* Call through the functions below, with arguments at the index of their parameter. */
+    he_shape_param params[HE_SHAPE_PARAMS]; /* ends at the first one without a name */
+    /* Called by the functions below only, with arguments at the index of their parameter. */
     he_shape_size (*size)(const double *args);
-    /* Returns early, with whatever it has, once the soup's watch has given up. */
+    /* Returns early, with an incomplete soup, if the soup's watch gave up. */
     void (*fill)(const double *args, he_soup *soup);
 } he_shape;
 
 size_t he_shape_count(void);
 const he_shape *he_shape_at(size_t i);
-const he_shape *he_shape_find(const char *name, size_t length); /* NULL when there is none */
+const he_shape *he_shape_find(const char *name, size_t length); /* NULL if there is none */
 size_t he_shape_params(const he_shape *shape);
 void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS]);
 
-/* HE_NOT_FINITE, or HE_BAD_VALUE outside a parameter's range or with a fraction where none may be.
- * `*param` (which may be NULL) is the index of the one at fault. */
+/* Checks arguments. `*param` (which may be NULL) is the index of the one at fault.
+ * Returns HE_NOT_FINITE if one is not finite.
+ * Returns HE_BAD_VALUE if one is outside its range, or has a fraction where it must be whole. */
 HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                       size_t *param, he_error *err);
-/* The soup is the caller's to clear, and he_build refuses none of them. As he_shape_check; HE_LIMIT
- * when it would have more vertices, faces, corners or bytes than `limits` (NULL: than the
- * structure) allows, HE_NO_MEMORY, HE_CANCELLED. */
+/* Makes a soup, which the caller clears; he_build accepts all of them. Fails as he_shape_check
+ * does, too.
+ * Returns HE_LIMIT if it would have more vertices, faces, corners or bytes than `limits` allow
+ * (NULL: the structure's own).
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                      const he_limits *limits, he_soup *out, he_error *err);
 

@@ -14,7 +14,7 @@ bool he_solid_goes_on(const he_soup *soup)
 void he_solid_vertex(he_soup *soup, double x, double y, double z)
 {
     assert(soup->vertex_count < soup->vertex_capacity);
-    /* Minus zero plus zero is zero: no shape has a coordinate that prints as -0. */
+    /* Adding zero turns -0 into 0, so that no coordinate is printed as -0. */
     soup->positions[soup->vertex_count++] = (he_vec3){x + 0.0, y + 0.0, z + 0.0};
 }
 
@@ -70,7 +70,7 @@ void he_solid_octahedron(he_soup *soup, double radius)
     he_solid_vertex(soup, 0, -radius, 0);
     he_solid_vertex(soup, 0, 0, radius);
     he_solid_vertex(soup, 0, 0, -radius);
-    /* One triangle an octant; each reflection turns it over. */
+    /* One triangle for each octant; each reflection reverses it. */
     for (uint32_t i = 0; i < 8; i++) {
         uint32_t x = i & 1u, y = i >> 1 & 1u, z = i >> 2;
         if ((x ^ y ^ z) == 0) {
@@ -83,7 +83,7 @@ void he_solid_octahedron(he_soup *soup, double radius)
 
 /* The icosahedron's vertices are the corners of three golden rectangles, one in each coordinate
  * plane; its edges join those at the least distance, and its faces are the triples joined pairwise,
- * turned outwards. */
+ * oriented outwards. */
 typedef struct icosahedron {
     he_vec3 vertex[12];
     uint32_t face[20][3];
@@ -136,7 +136,7 @@ void he_solid_icosahedron(he_soup *soup, double radius)
     he_solid_icosphere(soup, 0, radius);
 }
 
-/* The face of the icosahedron that runs from `at` to `b`, and the corner after those. */
+/* Finds the face of the icosahedron that runs from `at` to `b`, and its corner after those. */
 static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint32_t *after)
 {
     for (uint32_t f = 0; f < 20; f++) {
@@ -151,7 +151,8 @@ static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint3
     return 0;
 }
 
-/* The dual of the icosahedron: a vertex for each face, a face for each vertex. */
+/* The dodecahedron is the dual of the icosahedron: a vertex for each face, a face for each
+ * vertex. */
 void he_solid_dodecahedron(he_soup *soup, double radius)
 {
     icosahedron ico = icosahedron_make();
@@ -182,14 +183,14 @@ typedef struct patch {
     uint32_t n, face;
 } patch;
 
-/* Step t of n along an edge; both triangles beside it must get the same vertex. */
+/* Returns vertex t of n along an edge; both triangles beside it must get the same vertex. */
 static uint32_t on_edge(const patch *p, uint32_t from, uint32_t to, uint32_t t)
 {
     uint32_t step = from < to ? t : p->n - t;
     return 12 + p->ico->edge[from][to] * (p->n - 1) + step - 1;
 }
 
-/* Vertices are numbered: 12 corners, then the inner points of 30 edges, then those of 20 faces. */
+/* Numbers of vertices: 12 corners, then the inner points of 30 edges, then those of 20 faces. */
 static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
 {
     const uint32_t *corner = p->ico->face[p->face];
@@ -206,7 +207,7 @@ static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
     if (i + j == n) {
         return on_edge(p, corner[1], corner[2], j);
     }
-    /* Row j has n - 1 - j inner points; below it lie those of the rows 1 to j - 1. */
+    /* Row j has n - 1 - j inner points; below it are those of the rows 1 to j - 1. */
     uint32_t inner = (uint32_t)((uint64_t)(n - 1) * (n - 2) / 2);
     uint32_t below = (uint32_t)((uint64_t)(j - 1) * (n - 1) - (uint64_t)(j - 1) * j / 2);
     return 12 + 30 * (n - 1) + p->face * inner + below + i - 1;
@@ -218,7 +219,7 @@ static void halve(he_vec3 *at, uint32_t a, uint32_t b, uint32_t middle)
     at[middle] = he_vec3_scale(sum, 1 / he_vec3_length(sum));
 }
 
-/* Every edge of one level is a side of exactly one triangle that points as the patch does. */
+/* Every edge of one level is a side of exactly one triangle that is oriented as the patch. */
 static void place_level(const patch *p, uint32_t step, he_vec3 *at)
 {
     uint32_t half = step / 2;

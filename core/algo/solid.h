@@ -1,13 +1,14 @@
-/* solid.h - the five regular solids and the sphere made from one, as fillings of a soup whose
- * arrays are large enough. `radius` is that of the sphere through the vertices. For shape.c. */
+/* solid.h - fills soups, whose arrays are large enough, with the five regular solids and the
+ * icosphere. `radius` is that of the sphere through the vertices. For shape.c. */
 #ifndef HE_ALGO_SOLID_H
 #define HE_ALGO_SOLID_H
 
 #include "build/build.h"
 
-/* Tell the soup's watch how full it is; false when it has given up. For each row of a shape. */
+/* Reports to the soup's watch how full the soup is; returns false if it gave up. Called for each
+ * row of a shape. */
 bool he_solid_goes_on(const he_soup *soup);
-/* Append to a soup that has room. */
+/* Appends a vertex to a soup that has room. */
 void he_solid_vertex(he_soup *soup, double x, double y, double z);
 void he_solid_face(he_soup *soup, const uint32_t *corners, size_t count);
 
@@ -17,8 +18,8 @@ void he_solid_octahedron(he_soup *soup, double radius);
 void he_solid_icosahedron(he_soup *soup, double radius);
 void he_solid_dodecahedron(he_soup *soup, double radius);
 
-/* Each triangle of the icosahedron becomes 4^subdivisions: edges are halved and the new points
- * pushed out to the sphere, again and again. Vertices: 10 * 4^subdivisions + 2. */
+/* Divides each triangle of the icosahedron into 4^subdivisions: edges are halved and the new points
+ * moved to the sphere, repeatedly. Vertices: 10 * 4^subdivisions + 2. */
 void he_solid_icosphere(he_soup *soup, unsigned subdivisions, double radius);
 
 #endif

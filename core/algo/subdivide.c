@@ -8,10 +8,10 @@
 
 /* --- sizes --- */
 
-/* What steps need to know of the mesh they begin with. */
+/* Facts about the mesh that all steps need. */
 typedef struct start {
     he_sizes sizes;
-    uint64_t *feature; /* bits, NULL when there are none */
+    uint64_t *feature; /* one bit for each edge, NULL if there are no features */
     uint64_t *fixed;
 } start;
 
@@ -20,7 +20,7 @@ static he_status no_memory(const he_mesh *m, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to subdivide %u faces", m->c.faces.live);
 }
 
-/* One face at a vertex of the boundary: its two edges are all it has. */
+/* Has a vertex of the boundary only one face? Then its two boundary edges are all it has. */
 static bool has_one_face(const he_content *c, uint32_t v)
 {
     uint32_t h = c->vertex_halfedge[v];
@@ -133,7 +133,7 @@ static void add(he_sizes *sizes, uint64_t vertices, uint64_t edges, uint64_t fac
     sizes->live_faces += faces;
 }
 
-/* Every second step of sqrt3 cuts sharp edges. */
+/* Every second step of sqrt3 cuts sharp edges in three. */
 static bool cuts_in_three(he_scheme scheme, unsigned step)
 {
     return scheme == HE_SQRT3 && step % 2 == 1;
@@ -178,8 +178,8 @@ static uint64_t rows_of(const he_sizes *s)
     return s->vertices + s->edges + s->faces;
 }
 
-/* Sizes after each step, unless they are too many. A step at most multiplies them by seven, so that
- * 64 bits hold what the last of them comes to; and what is within the limit has ids. */
+/* Computes the sizes after each step, unless they are too large. A step multiplies them by at most
+ * seven, so 64 bits are enough; and sizes within the limit have ids. */
 _Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "a limit within the ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
@@ -204,7 +204,7 @@ he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps, 
     return estimate(&sizes, scheme, steps, unused, err);
 }
 
-/* --- what is locked --- */
+/* --- locked elements --- */
 
 static he_status require_unlocked(const he_mesh *m, const start *at, he_error *err)
 {
@@ -245,7 +245,8 @@ static void clear_step(he_subdivide_step *s)
     he_mem_free(s->corner_from);
 }
 
-/* NULL where there is nothing to rank; *failed when memory is out. `stride` links make up a row. */
+/* Returns the ranks of live rows; NULL if all rows live. *failed says that memory is out. A row has
+ * `stride` links. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -311,7 +312,7 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
     return HE_OK;
 }
 
-/* Rows for all that will be, not yet written. */
+/* Makes room for all rows, without writing them. */
 static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 {
     he_need need = {.vertices = (uint32_t)sizes->vertices,
@@ -332,7 +333,7 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
     return HE_OK;
 }
 
-/* From `done` to `to` of the work. */
+/* The step's progress goes from `done` to `to` of the whole. */
 static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *sizes, double done,
                           double to, he_error *err)
 {
@@ -363,7 +364,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *
     return status == HE_OK ? he_subdivide_carry(s, err) : status;
 }
 
-/* The finer mesh of `c`. The features become its own. */
+/* Makes the finer mesh of `c`, and finds its features. */
 static he_status step(const he_mesh *m, const he_content *c, he_scheme scheme, bool thirds,
                       start *at, const he_sizes *sizes, const double share[2], he_mesh **out,
                       he_error *err)

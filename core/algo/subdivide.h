@@ -1,6 +1,6 @@
 /* subdivide.h - finer meshes by refinement rules.
  *
- * A step makes a finer mesh of the whole mesh, in the time the finer mesh takes to write:
+ * A step refines the whole mesh, in time linear in the finer mesh:
  *
  *     loop            a triangle becomes 4: three at its corners and the middle one
  *                     Loop, Smooth Subdivision Surfaces Based on Triangles, 1987
@@ -9,8 +9,8 @@
  *                     Topological Meshes, 1978
  *     linear          triangles become 4, other faces quads, and no vertex moves: the mesh keeps
  *                     its shape
- *     sqrt3           a triangle becomes 3 about a vertex in it, and the old edges are flipped:
- *                     they join it with those of the faces beside, d, e and k
+ *     sqrt3           a triangle becomes 3 around a vertex in it, and the old edges are flipped:
+ *                     they join it with the new vertices of the adjacent faces, d, e and k
  *                     Kobbelt, Sqrt(3)-Subdivision, 2000
  *
  *         v1                    v1                      v1
@@ -37,24 +37,24 @@
  * parts; what comes to be inside faces is not, in any step of the call, whatever the default of the
  * attribute is. By the number of sharp edges a vertex is smooth (0), a dart (1: smooth rule), on a
  * curve (2) or a corner (3 or more), as in Hoppe et al., Piecewise Smooth Surface Reconstruction,
- * 1994. Where two meet, the curve becomes their cubic B-spline: the middle of an edge, and
- * (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character Animation,
- * 1998. Corners stay in place, and so do a boundary vertex with one face, a bow-tie, an isolated
- * vertex and a vertex whose `locked` was true before the call. By sqrt3 sharp edges are not
- * flipped; in every second step of one call they are cut in three, by the B-spline's rules for
+ * 1994. At a vertex of two sharp edges the curve becomes their cubic B-spline: the middle of an
+ * edge, and (1 6 1) / 8 at vertices, as in DeRose, Kass, Truong, Subdivision Surfaces in Character
+ * Animation, 1998. Corners stay in place, and so do a boundary vertex with one face, a bow-tie, an
+ * isolated vertex and a vertex whose `locked` was true before the call. By sqrt3 sharp edges are
+ * not flipped; in every second step of one call they are cut in three, by the B-spline's rules for
  * that, (1 16 10) / 27 and (4 19 4) / 27, and the triangles beside them become three at the two new
  * vertices instead of having one inside.
  *
- * ATTRIBUTES. Of vertices: interpolated columns take the rules positions take, so that a column
- * that is linear in the position remains so; a copy is of the origin of half-edge 2e, of the nearer
- * end, or of the corner of the face's stored half-edge. Of corners: linear within the old face;
- * what is interpolated has the middle of two corners at an edge and the mean inside. Of edges: both
- * parts have the edge's, unless the rule is default; edges inside have the default. Of faces: the
- * parts have the face's, unless the rule is default. Parts of `feature` edges are features under
- * any rule.
+ * ATTRIBUTES. Vertices: interpolated columns follow the rules of positions, so that a column that
+ * is linear in the position remains so; a copy is from the origin of half-edge 2e, from the nearer
+ * end, or from the corner of the face's stored half-edge. Corners: linear within the old face;
+ * interpolated columns have the middle of two corners at an edge and the mean inside. Edges: both
+ * parts have the edge's value, unless the rule is default; edges inside have the default. Faces:
+ * the parts have the face's value, unless the rule is default. Parts of `feature` edges are
+ * features under any rule.
  *
  * LOCKED edges and faces are cut, like by other edits: the part that keeps the id is locked. New
- * vertices are not locked, whatever those about them are: see marks.h. */
+ * vertices are never locked, even between locked ones: see marks.h. */
 #ifndef HE_ALGO_SUBDIVIDE_H
 #define HE_ALGO_SUBDIVIDE_H
 
@@ -63,7 +63,8 @@
 typedef enum he_scheme { HE_LOOP, HE_CATMULL_CLARK, HE_LINEAR, HE_SQRT3 } he_scheme;
 
 enum { HE_SUBDIVIDE_STEPS = 12 };
-/* Rows of vertices, edges and faces together that a mesh may come to have: some 3 GB of links. */
+/* Most rows of vertices, edges and faces together that a refined mesh may have: some 3 GB of
+ * links. */
 #define HE_SUBDIVIDE_ROWS (UINT64_C(1) << 27)
 
 /* Live elements after each step. */
@@ -71,18 +72,23 @@ typedef struct he_subdivide_counts {
     uint32_t vertices, edges, faces;
 } he_subdivide_counts;
 
-/* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replace that keeps ids (write.h). `counts`
- * (which may be NULL) has room for `steps` of them.
+/* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replacement that keeps ids (write.h).
+ * `counts` (which may be NULL) has room for `steps` of them.
  *
- * Refused: HE_LIMIT when there would be more than HE_SUBDIVIDE_ROWS, before memory is taken;
- * HE_NOT_TRIANGLE naming a face, by loop and sqrt3; HE_DOUBLED_EDGE naming an edge of two triangles
- * with the same three corners, by all but catmull_clark; HE_LOCKED_ELEMENT naming an edge that
- * sqrt3 would flip, or a face beside one. HE_NO_MEMORY, HE_CANCELLED. */
+ * Returns HE_LIMIT if there would be more than HE_SUBDIVIDE_ROWS, before memory is allocated.
+ * Returns HE_NOT_TRIANGLE naming a face, if loop or sqrt3 meets one that is no triangle.
+ * Returns HE_DOUBLED_EDGE naming an edge, if it has two triangles with the same three corners and
+ * the scheme is not catmull_clark.
+ * Returns HE_LOCKED_ELEMENT naming it, if an edge that sqrt3 would flip, or a face beside one, is
+ * locked.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
                                     he_subdivide_counts *counts, he_error *err);
 
-/* HE_LIMIT where the counts of the mesh alone tell that he_subdivide will refuse so, in no time.
- * HE_OK is no promise: linear makes more of polygons, and sqrt3 of sharp edges. */
+/* Finds out from the mesh's counts alone, in constant time, whether he_subdivide must refuse for
+ * its limit. HE_OK is no promise: linear makes more of polygons, and sqrt3 of sharp edges.
+ * Returns HE_LIMIT if it must. */
 HE_NODISCARD he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps,
                                          he_error *err);
 

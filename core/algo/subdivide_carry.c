@@ -1,4 +1,4 @@
-/* Attributes of a finer mesh: subdivide.h says what they become. */
+/* Computes the attributes of a finer mesh, as subdivide.h says. */
 #include "algo/subdivide_step.h"
 
 #include "mesh/marks.h"
@@ -16,7 +16,7 @@ static bool has_columns(const he_content *c, he_kind domain)
     return false;
 }
 
-/* `count` ids that are all HE_NONE, where there are columns. */
+/* Makes an array of `count` ids that are all HE_NONE, if there are columns. */
 static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_t **out)
 {
     if (!has_columns(c, domain)) {
@@ -108,7 +108,7 @@ static void put(he_column *column, size_t row, uint32_t component, double value)
 
 /* --- vertices --- */
 
-/* Three components at a time are as good as positions. */
+/* Three components at a time are computed like positions. */
 static he_status smooth_column(const he_subdivide_step *s, const he_column *from, he_column *to,
                                he_error *err)
 {
@@ -204,7 +204,8 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
                                he_error *err)
 {
     he_status status = HE_OK;
-    /* What is as another one comes after it: the first edge inside a face is the lowest. */
+    /* A corner that copies another one comes after it, because the first edge inside a face is the
+     * lowest. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
         status = he_watch_at(s->watch, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);
@@ -219,8 +220,8 @@ static bool is_feature(const he_column *column)
     return column->domain == HE_EDGE && he_is_mark(column, "feature");
 }
 
-/* Rows that stay keep their value; those of a parent have it unless the rule is default. `parents`
- * NULL: none has one. */
+/* Old rows keep their value; rows with a parent have the parent's unless the rule is default.
+ * `parents` NULL: none has one. */
 static void carry_rows(const he_column *from, he_column *to, size_t issued, const uint32_t *parents)
 {
     for (size_t row = 0; row < to->rows; row++) {
@@ -293,7 +294,7 @@ he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err)
     if (to->columns == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes");
     }
-    /* Slots stay: records of other revisions name them. */
+    /* Slots stay, because records of other revisions name them. */
     to->column_count = to->column_capacity = from->column_count;
     he_status status = HE_OK;
     for (size_t i = 0; i < from->column_count && status == HE_OK; i++) {

@@ -1,8 +1,9 @@
-/* Where vertices come to lie. The weights are those of the papers in subdivide.h; none is negative,
- * so that a refined mesh stays in the box of the old one.
+/* Computes the positions of vertices. The weights are those of the papers in subdivide.h; none is
+ * negative, so a refined mesh stays in the box of the old one.
  *
- * An old vertex gathers in `to` what its rule sums up, its neighbours (at catmull_clark its faces'
- * means too) or, on a curve, its two neighbours there, and is then moved. */
+ * For each old vertex `to` first gets the sum that its rule needs: of its neighbours (for
+ * catmull_clark also of the means of its faces) or, on a curve, of its two neighbours there; then
+ * the vertex is moved. */
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
@@ -12,7 +13,7 @@
 
 enum { SMOOTH_AT_MOST = 1, CURVE = 2, CORNER = 3 };
 
-/* s a + t b */
+/* Returns s a + t b. */
 static inline he_vec3 mix(double s, he_vec3 a, double t, he_vec3 b)
 {
     return (he_vec3){s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
@@ -22,7 +23,7 @@ static inline void gather(he_vec3 *to, he_vec3 what)
     *to = he_vec3_add(*to, what);
 }
 
-/* One ring of rules: what a smooth vertex keeps of itself and takes of its sum. */
+/* A rule: the weights of a smooth vertex itself and of its sum. */
 typedef struct weights {
     double own, sum;
 } weights;
@@ -51,7 +52,7 @@ static uint8_t sharpness(const he_subdivide_step *s, uint32_t v)
     return s->sharp == NULL ? 0 : s->sharp[v];
 }
 
-/* What edge e, from a to b, adds to the sums of its ends. */
+/* Adds edge e, from a to b, to the sums of its ends. */
 static inline void gather_ends(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
                                he_vec3 *to)
 {
@@ -82,7 +83,7 @@ static uint32_t middle(const he_subdivide_step *s, uint32_t e)
     return s->from->vertices.issued + he_subdivide_edge_rank(s, e);
 }
 
-/* --- edges, by scheme: the vertices on them, and what they add to the sums of both ends --- */
+/* --- edges, by scheme: the vertices on them, and their share in the sums of both ends --- */
 
 static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
@@ -97,13 +98,13 @@ static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *fro
     to[middle(s, e)] = mix(0.375, ends, 0.125, he_vec3_add(from[left], from[right]));
 }
 
-/* The mean of face f in `to`. */
+/* Returns the mean of face f, from `to`. */
 static he_vec3 face_point(const he_subdivide_step *s, uint32_t f, const he_vec3 *to)
 {
     return to[s->from->vertices.issued + s->from->edges.live + he_subdivide_face_rank(s, f)];
 }
 
-/* The means of the faces beside edge e; zero where there is none. */
+/* Returns the means of the faces beside edge e; zero if there is none. */
 static void find_sides(const he_subdivide_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
 {
     const he_content *c = s->from;
@@ -146,15 +147,15 @@ static void linear_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *f
     to[middle(s, e)] = mix(0.5, a, 0.5, b);
 }
 
-/* Once all sums are there: the point on a sharp edge at a third from a to b. At the end of a curve
- * the edge is taken to go on straight beyond a. */
+/* Returns the point on a sharp edge at a third from a to b; all sums must be complete. At the end
+ * of a curve the edge is extended straight beyond a. */
 static he_vec3 third_from(const he_subdivide_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
                           const he_vec3 *to)
 {
     if (sharpness(s, a) != CURVE) {
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
-    /* The sum holds b once already. */
+    /* The sum contains b once already. */
     return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
@@ -171,7 +172,7 @@ static void cut_in_thirds(const he_subdivide_step *s, const he_vec3 *from, he_ve
     }
 }
 
-/* What places new vertices by the old ones. */
+/* The data for computing positions. */
 typedef struct placing {
     const he_subdivide_step *s;
     const he_vec3 *from;
@@ -191,7 +192,7 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     for (uint32_t n = 1; n < TABLE; n++) {
         table[n] = weights_of(s->scheme, n);
     }
-    /* A curve that is not cut does not move. */
+    /* Vertices of a curve that is not cut do not move. */
     weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
                     : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
                                           : (weights){1, 0};
@@ -208,7 +209,7 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* catmull_clark and sqrt3, where a face's number or a table says which vertex is its own. */
+/* catmull_clark and sqrt3: a face's number, or a table, says which vertex is in it. */
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -231,7 +232,7 @@ static he_status place_centres(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* linear, where only faces that are no triangles have one. */
+/* linear: only faces that are no triangles have a vertex in them. */
 static he_status place_some_centres(const placing *p, he_error *err)
 {
     const he_content *c = p->s->from;
@@ -268,13 +269,13 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
             linear_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_SQRT3:
-            break; /* of sharp edges alone, when the sums are there */
+            break; /* only for sharp edges, when the sums are complete */
         }
     }
     return HE_OK;
 }
 
-/* One thread's work: a sum depends on the order of what is summed up. */
+/* One thread does this alone, because a floating-point sum depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -328,9 +329,9 @@ static he_status smooth(const he_subdivide_step *s, const he_vec3 *from, he_vec3
     return status;
 }
 
-/* --- numbers near the end of their range --- */
+/* --- large coordinates --- */
 
-/* Sums of so many times this still fit. */
+/* Sums of coordinates up to this do not overflow. */
 static const double LARGE = 1e290;
 
 static bool is_large(const he_vec3 *p, uint32_t count)

@@ -1,12 +1,11 @@
-/* Links where every edge is cut in halves: loop, catmull_clark, linear. */
+/* Writes the links for schemes that cut every edge in halves: loop, catmull_clark, linear. */
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
-/* Everything about an edge and its halves is where these say:
+/* The elements of an edge and its halves:
  *
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
- *                  origin              middle               target
- */
+ *                  origin              middle               target */
 static uint32_t middle(const he_subdivide_step *s, uint32_t h)
 {
     return s->from->vertices.issued + he_subdivide_edge_rank(s, h >> 1);
@@ -24,7 +23,7 @@ static uint32_t second(const he_subdivide_step *s, uint32_t h)
     return (h & 1) == 0 ? other_half(s, h) : h;
 }
 
-/* Ids of what the face at hand gets. */
+/* Ids of the new elements of the present face. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -36,7 +35,7 @@ static void note_faces(const he_subdivide_step *s, uint32_t f, uint32_t first_fa
     }
 }
 
-/* The corner at the origin of h, the two at its middle and the ones inside. */
+/* Notes how to compute the corner at the origin of h, the two at its middle and those inside. */
 static void note_corner(const he_subdivide_step *s, uint32_t h, uint32_t next)
 {
     s->corner_from[first(s, h)] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
@@ -74,8 +73,8 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
     at->face += 3;
 }
 
-/* Quads between the corners and a vertex inside, to which edge i runs from the middle of the i-th
- * half-edge. */
+/* Makes quads between the corners and a vertex inside, to which edge i runs from the middle of
+ * half-edge i. */
 static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
 {
     const he_content *from = s->from;
@@ -144,7 +143,7 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     return HE_OK;
 }
 
-/* What face f, which lives, gets. */
+/* Counts the new elements of face f, which is live. */
 static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
 {
     const he_content *from = s->from;
@@ -162,7 +161,7 @@ static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
     at->face += count - 1;
 }
 
-/* The faces in lanes, each of which must know what those before it make. */
+/* Faces are cut in lanes, each of which must know how many elements those before it make. */
 typedef struct cutting {
     const he_subdivide_step *s;
     fresh at[HE_MOST_LANES];
@@ -186,7 +185,7 @@ static he_status cut_lane(void *context, uint32_t lane, size_t from, size_t to, 
 {
     cutting *c = context;
     const he_subdivide_step *s = c->s;
-    fresh at = c->at[lane]; /* not there: lanes would write one cache line */
+    fresh at = c->at[lane]; /* a copy, because lanes would write to one cache line */
     he_status status = HE_OK;
     for (size_t f = from; f < to && status == HE_OK; f++) {
         if (!he_subdivide_is_live(s->from->face_halfedge, (uint32_t)f)) {
@@ -220,7 +219,7 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
     if (status == HE_OK) {
         status = he_run_lanes(s->watch, lanes, from->faces.issued, cut_lane, &c, err);
     }
-    /* A later lane may have come upon a later face first. */
+    /* A later lane may have found a later face first; one lane finds the first. */
     return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 

@@ -1,4 +1,4 @@
-/* Links where a vertex comes into every triangle and the old edges are flipped: sqrt3.
+/* Writes the links for sqrt3, which puts a vertex into every triangle and flips the old edges.
  *
  * Of every old half-edge h there is one new triangle, before any edge is flipped the one between h
  * and the `apex` of h in its face. Two legs join them, edges inside the old face:
@@ -14,14 +14,14 @@
  *                                          a o---o-o---o b          in_leg(k) = p to c
  *                                                p q                and the triangle p, q, c
  *
- * A flipped half-edge h runs from the apex of its twin to its own; the triangle it bounds lies at
- * its old origin. */
+ * A flipped half-edge h runs from the apex of its twin to its own; its triangle is at its old
+ * origin. */
 #include "algo/subdivide_step.h"
 
 /* A face of the old content. */
 typedef struct triangle {
     uint32_t f, h[3];
-    unsigned cut; /* the half-edge of the edge cut in three; 3 when there is none */
+    unsigned cut; /* the half-edge of the edge cut in three; 3 if there is none */
 } triangle;
 
 enum { NO_CUT = 3 };
@@ -45,7 +45,8 @@ static unsigned place_of(const triangle *t, uint32_t h)
     return h == t->h[0] ? 0 : h == t->h[1] ? 1 : 2;
 }
 
-/* The j-th of the three half-edges that h is cut into, and the vertex where it ends (j < 2). */
+/* Returns the j-th of the three half-edges that h is cut into, and the vertex where it ends (j <
+ * 2). */
 static uint32_t segment(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t e = h >> 1, side = h & 1, more = s->from->edges.issued + 2 * s->third[e];
@@ -87,7 +88,7 @@ static uint32_t in_leg(const he_subdivide_step *s, uint32_t h)
     return i == (t.cut + 1) % 3 ? segment(s, t.h[t.cut], 2) : 2 * s->spoke[t.f];
 }
 
-/* The values of a corner at the apex of h. */
+/* Returns how to compute the corner at the apex of h. */
 static he_corner_source at_apex(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
@@ -104,7 +105,7 @@ static he_corner_source at_row(uint32_t h)
     return (he_corner_source){h, HE_NONE, HE_FROM_ROW};
 }
 
-/* The three half-edges of a new triangle, where they start, and whence their corners. */
+/* The three half-edges of a new triangle, where they start, and how to compute their corners. */
 typedef struct corner {
     uint32_t h, origin;
     he_corner_source source;
@@ -121,7 +122,7 @@ static void put(const he_subdivide_step *s, uint32_t face, const corner c[3])
     s->to->face_halfedge[face] = c[0].h;
 }
 
-/* The triangle of the i-th half-edge. */
+/* Writes the triangle of the i-th half-edge. */
 static void put_part(const he_subdivide_step *s, const triangle *t, unsigned i, uint32_t face)
 {
     const he_content *from = s->from;
@@ -169,7 +170,7 @@ static void put_face(const he_subdivide_step *s, uint32_t f)
     }
 }
 
-/* What runs along a hole stays, or is cut. */
+/* A boundary half-edge stays, or is cut in three. */
 static void put_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;
@@ -232,7 +233,7 @@ static void put_vertex(const he_subdivide_step *s, uint32_t v)
     s->to->vertex_halfedge[v] = h;
 }
 
-/* Number what is new. */
+/* Numbers the new elements. */
 static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
