@@ -1,10 +1,10 @@
-/* Which repairs a refused soup needs. Each is tried on a copy of its faces. */
+/* Finds which repairs a refused soup needs, by trying each on a copy of its faces. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
 #include <string.h>
 
-/* Copy what the faces are; positions are lent. */
+/* Copies the faces; positions are borrowed. */
 static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
 {
     *out = (he_soup){.limits = soup->limits,
@@ -26,7 +26,7 @@ static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
     return HE_OK;
 }
 
-/* How many faces run along an edge, each way. */
+/* How many faces run along an edge in each direction. */
 typedef struct runs {
     uint32_t up, down;
 } runs;
@@ -44,7 +44,7 @@ static void count_runs(const he_soup *soup, const uint64_t *gone, const uint32_t
     }
 }
 
-/* Has the face an edge that was wrong and is right when the duplicates are gone? */
+/* Has the face an edge that is invalid before and valid after the duplicates are dropped? */
 static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, const runs *before,
                        const runs *after)
 {
@@ -56,8 +56,8 @@ static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, c
     return mends;
 }
 
-/* Does each duplicate that is dropped mend an edge? The wall between two solids does not: both need
- * it, and are to be split. */
+/* Does each dropped duplicate mend an edge? The wall between two solids does not: both need it, and
+ * the soup must be split. */
 static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
 {
     size_t edges = 0;
@@ -97,13 +97,13 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
     return status;
 }
 
-/* What is found of duplicates: are there any, and does each that is dropped mend an edge? */
+/* Are there duplicates, and does each that is dropped mend an edge? */
 typedef struct duplicates {
     bool some, mend;
 } duplicates;
 
-/* What proper faces need. With `dropped` the duplicates are dropped first; where there are none
- * that is said, and nothing else is found. */
+/* Finds what a soup of valid faces needs. If `dropped` is not NULL the duplicates are dropped
+ * first; if there are none it says so, and nothing else is tested. */
 static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;
@@ -143,8 +143,8 @@ static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *
     return status;
 }
 
-/* Dropping duplicates is the answer where it spares a split, or faces the turning, and where each
- * of them is in the way of an edge. */
+/* Advises to drop duplicates if that makes a split, or the orienting, unnecessary, or if each
+ * duplicate makes an edge invalid. */
 static he_status advise_proper(const he_soup *soup, unsigned *out, he_error *err)
 {
     unsigned as_is, less = 0;

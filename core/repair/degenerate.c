@@ -1,4 +1,4 @@
-/* drop_degenerate: a face that repeats a vertex keeps what has an area, or is left out.
+/* drop_degenerate: a face that repeats a vertex keeps the parts that have area, or is dropped.
  *
  *     1 2 3 3  ->  1 2 3            the same vertex twice in a row
  *     1 2 3 4 3  ->  1 2 3          a spike, there and back
@@ -10,11 +10,11 @@
  *     |/          |    their neighbours then meet.
  *     0-----------1
  *
- * Loops that touch in a vertex, 0 1 2 0 3 4, are faces of their own where all of them are seen from
- * the same side; where they are not, one is a hole of another, and the whole is cut.
+ * Loops that touch in a vertex, 0 1 2 0 3 4, become separate faces if all of them have the same
+ * orientation; otherwise one is a hole of another, and the whole is cut.
  *
- * A loop that runs along an edge twice in one direction, as one that goes round twice does, is the
- * rim of nothing, and left out; so is one of which no triangles can be made that do not. */
+ * A loop that runs along an edge twice in one direction, such as one that goes round twice, bounds
+ * nothing and is dropped; so is one that cannot be cut into triangles without such an edge. */
 #include "build/pair.h"
 #include "geometry/triangulation.h"
 #include "geometry/vec3.h"
@@ -23,21 +23,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What becomes of the degenerate faces, in their order. */
+/* The degenerate faces, in order, and the parts they keep. */
 typedef struct mending {
     const he_mend *m;
     uint64_t *bad;   /* faces */
-    uint32_t *stamp; /* of each vertex, for he_soup_find_repeat */
-    he_ids loops;    /* corners that their faces keep, one face after another */
-    he_ids ends;     /* of each loop */
-    he_ids cut;      /* of each loop its number in `flat`, or HE_NONE */
-    he_ids done;     /* of each face the end of its loops */
-    he_ids stack;    /* corners of a loop that is being taken apart */
-    uint32_t *place; /* of a vertex among them */
+    uint32_t *stamp; /* for each vertex, for he_soup_find_repeat */
+    he_ids loops;    /* corners that are kept, face by face */
+    he_ids ends;     /* end of each loop */
+    he_ids cut;      /* for each loop its number in `flat`, or HE_NONE */
+    he_ids done;     /* for each face the end of its loops */
+    he_ids stack;    /* corners of the present loop */
+    uint32_t *place; /* index of a vertex among them */
     he_soup flat;    /* loops to be cut into triangles: every corner is a vertex */
-    he_mesh *mesh;   /* of `flat` */
+    he_mesh *mesh;   /* made from `flat` */
     he_ids list;     /* vertices of a loop, or of triangles */
-    uint64_t *runs;  /* the edges of `list` in the order of their ends */
+    uint64_t *runs;  /* the edges of `list`, sorted by their ends */
     size_t run_capacity;
 
     he_soup made; /* the faces afterwards */
@@ -50,7 +50,7 @@ static uint32_t vertex(const mending *g, size_t i)
     return g->m->soup->corners[g->loops.ids[i]];
 }
 
-/* The corners [from, loops.count) without the last that repeat or go back. */
+/* Removes repeated corners and spikes at the end of the corners [from, loops.count). */
 static void shorten_end(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;
@@ -86,7 +86,7 @@ static size_t shorten_both(mending *g, size_t from)
     }
 }
 
-/* Add the loop of a face without what repeats in a row and without spikes. */
+/* Adds the loop of a face without repeated corners in a row and without spikes. */
 static he_status add_loop(mending *g, uint32_t f, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -109,7 +109,7 @@ static he_status add_loop(mending *g, uint32_t f, he_error *err)
     return HE_OK;
 }
 
-/* The corners of `loops` behind the last loop are another. */
+/* Ends a loop: the corners of `loops` after the last one. */
 static he_status end_loop(mending *g, uint32_t cut, he_error *err)
 {
     he_status status = he_ids_add(&g->ends, (uint32_t)g->loops.count, err);
@@ -124,7 +124,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Do loops of so many vertices, one after another in `list`, run along an edge twice in one
+/* Do loops of `degree` vertices, one after another in `list`, run along an edge twice in one
  * direction? */
 static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
 {
@@ -153,7 +153,7 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
     return HE_OK;
 }
 
-/* Twice the vector area of corners [from, end) of `loops`. */
+/* Returns twice the vector area of corners [from, end) of `loops`. */
 static he_vec3 area_of(const mending *g, size_t from, size_t end)
 {
     const he_vec3 *p = g->m->soup->positions;
@@ -166,7 +166,7 @@ static he_vec3 area_of(const mending *g, size_t from, size_t end)
     return sum;
 }
 
-/* Are the loops from `first` on all seen from the side from which they are together? */
+/* Have the loops from `first` on all the orientation of the whole? */
 static bool agree(const mending *g, size_t from, size_t first)
 {
     he_vec3 sum = {0, 0, 0};
@@ -181,7 +181,7 @@ static bool agree(const mending *g, size_t from, size_t first)
     return good;
 }
 
-/* Corners from `at` of the stack on are a loop. */
+/* Ends a loop that is the corners from `at` of the stack on. */
 static he_status pop_loop(mending *g, size_t at, he_error *err)
 {
     for (size_t i = at; i < g->stack.count; i++) {
@@ -191,8 +191,8 @@ static he_status pop_loop(mending *g, size_t at, he_error *err)
     return end_loop(g, HE_NONE, err);
 }
 
-/* The loop from `from` on is taken apart where it comes to a vertex again, if its parts can be
- * faces of their own; else it stays. */
+/* Divides the loop from `from` on where it passes a vertex again, if its parts can be separate
+ * faces; else it stays. */
 static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
 {
     const uint32_t *corners = g->m->soup->corners;
@@ -210,7 +210,8 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     g->stack.count = 0;
     for (size_t i = from; i < end && status == HE_OK; i++) {
         uint32_t c = g->loops.ids[i], at = g->place[corners[c]];
-        /* what is left there of another loop, or of what was popped, is no place in this stack */
+        /* an index left there by another loop, or by corners that were removed, is not valid in
+         * this stack */
         if (at < g->stack.count && corners[g->stack.ids[at]] == corners[c]) {
             status = pop_loop(g, at, err);
         }
@@ -224,7 +225,7 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
         return status;
     }
     *apart = agree(g, end, first);
-    if (*apart) { /* the parts, which are behind the whole, take its place */
+    if (*apart) { /* the parts, which are after the whole, replace it */
         memmove(g->loops.ids + from, g->loops.ids + end, count * sizeof *g->loops.ids);
         for (size_t i = first; i < g->ends.count; i++) {
             g->ends.ids[i] -= (uint32_t)count;
@@ -236,7 +237,7 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     return HE_OK;
 }
 
-/* The loop of a face that still comes to a vertex twice is to be cut, or nothing is left of it. */
+/* A loop that still passes a vertex twice must be cut, or nothing of it is kept. */
 static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -274,7 +275,7 @@ static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
     return status == HE_OK ? end_loop(g, (uint32_t)g->flat.face_count - 1, err) : status;
 }
 
-/* Find the faces that repeat a vertex or have too few, and what they keep. */
+/* Finds the faces that repeat a vertex or have too few, and the parts they keep. */
 static he_status find(mending *g, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -320,7 +321,7 @@ static he_status add_face(mending *g, const uint32_t *corners, size_t count, uin
                            : status;
 }
 
-/* The triangles of the loop that begins at `from`. */
+/* Adds the triangles of the loop that begins at `from`. */
 static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t from, he_error *err)
 {
     he_triangulation triangles;
@@ -332,7 +333,7 @@ static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t f
         return status;
     }
     size_t count = 3 * ((size_t)triangles.flat.n - 2), kept = 0;
-    uint32_t *corners = triangles.corners; /* become those of the soup */
+    uint32_t *corners = triangles.corners; /* replaced by those of the soup */
     bool twice = true;
     g->list.count = 0;
     status = he_ids_reserve(&g->list, count, err);
@@ -451,7 +452,7 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
         status = find(&g, err);
     }
     if (status == HE_OK && g.done.count > 0) {
-        /* not NULL where no face is left: a soup was repaired */
+        /* not NULL even if no face is left: it says that the soup was repaired */
         status = he_ids_reserve(&g.face_from, 1, err);
         if (status == HE_OK && m->has_corner_values) {
             status = he_ids_reserve(&g.corner_from, 1, err);

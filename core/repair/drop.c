@@ -1,4 +1,4 @@
-/* drop_duplicates: faces left out. */
+/* drop_duplicates: drops all but the first of equal faces. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
@@ -8,7 +8,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
                          soup->face_count);
 }
 
-/* Close the gaps that the faces with a bit leave. */
+/* Removes the faces that have a bit, and moves the others up. */
 static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
 {
     he_soup *soup = m->soup;
@@ -29,7 +29,7 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
         if (he_bits_get(gone, f)) {
             continue;
         }
-        /* Nothing is written beyond what was read: faces <= f and corners <= begin. */
+        /* The write position never passes the read position: faces <= f and corners <= begin. */
         soup->starts[faces] = corners;
         out->face_from[faces++] = out->face_from[f];
         for (uint32_t c = begin; c < end; c++, corners++) {
@@ -44,8 +44,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     return HE_OK;
 }
 
-/* The way round a face that is the same for all its duplicates: from its lowest vertex towards the
- * lower of that one's neighbours. */
+/* The canonical order of a face's corners, equal for all its duplicates: from its lowest vertex
+ * towards the lower of that one's neighbours. */
 typedef struct way {
     const uint32_t *corners;
     uint32_t count, first;
@@ -96,10 +96,10 @@ static bool same(const way *a, const way *b)
 }
 
 typedef struct slot {
-    uint32_t hash, face; /* number + 1; 0 where the slot is free */
+    uint32_t hash, face; /* hash, and number of a face + 1; 0 in a free slot */
 } slot;
 
-/* The earlier face that f repeats, or HE_NONE: then it lies in the table. */
+/* Returns the earlier face that f repeats, or HE_NONE and adds it to the table. */
 static uint32_t find(const he_soup *soup, slot *slots, size_t mask, uint32_t f)
 {
     way w = way_of(soup, f);

@@ -1,15 +1,15 @@
-/* Mates that exchange partners, where pairs of them would double an edge.
+/* Exchanges partners of mates where two pairs of them would double an edge.
  *
- * Corners x and y run along one edge, and both ends of their pairs lie in the same fans: x's and
- * y's faces would then share an edge with four corners. If x gets y's mate, and y gets x's, what
- * followed x in the fan follows y, and the other way round: the fan falls into two, one with x and
- * one with y, and so does that at the other end.
+ * Corners x and y run along one edge, and both ends of their pairs are in the same fans, so x's and
+ * y's pairs would be two edges between two vertices. If x gets y's mate, and y gets x's, the
+ * corners that followed x in the fan follow y, and the reverse: the fan falls into two, one with x
+ * and one with y, and so does that at the other end.
  *
  *     ... x | a ... y | b ...      ->      x | b ...      and      y | a ... (and on to y)
  *
- * No fan is ever joined to another. So edges that were told apart stay apart, each edge is settled
- * once, and corners that had mates keep having some: what is closed stays closed. The same holds
- * where one of x and y has no mate; both have, or they were the ends of two fans.
+ * No fan is ever joined to another. So separate edges stay separate, each edge is settled once, and
+ * corners that had mates still have some: a closed surface stays closed. Either both x and y have
+ * mates, or they are the ends of two fans.
  *
  * Corners of an edge are settled one by one, by the numbers of the fans at both ends. The smaller
  * part of a fan that falls in two gets a new number, so that a corner gets one few times: n log n
@@ -18,22 +18,23 @@
 
 #include <assert.h>
 
-/* A settled corner of the present edge, with the fans it was in then, which may have changed. */
+/* A settled corner of the present edge, and its fans at that time, which may have changed since. */
 typedef struct slot {
-    uint32_t epoch; /* number of the edge + 1, else free */
+    uint32_t epoch; /* number of the edge + 1, else the slot is free */
     uint32_t corner, from, to;
 } slot;
 
 typedef struct exchanging {
     he_splitting *s;
-    uint32_t *edge_of; /* of each corner */
-    uint32_t *begin;   /* of each edge's corners in `list`; only of those with more than two */
+    uint32_t *edge_of; /* edge of each corner */
+    uint32_t
+        *begin; /* where each edge's corners begin in `list`; only for edges with more than two */
     uint32_t *list;
     size_t edges;
-    uint32_t fans; /* numbers that were given */
+    uint32_t fans; /* number of fans so far */
     bool any;
-    uint32_t edge, origin; /* the one in hand, and where most of its corners leave from */
-    uint64_t *settled;     /* corners */
+    uint32_t edge, origin; /* the present edge, and the vertex that most of its corners leave */
+    uint64_t *settled;     /* corners that are settled */
     slot *slots;
     size_t mask, used;
 } exchanging;
@@ -53,7 +54,7 @@ static bool is_valid(const exchanging *x, const slot *at)
            s->to[he_corner_after(s, at->corner)] == at->to;
 }
 
-/* The slot of a settled corner between two fans, or a free one. */
+/* Returns the slot of a settled corner between two fans, or a free one. */
 static size_t slot_of(const exchanging *x, uint32_t from, uint32_t to)
 {
     uint64_t sum = (uint64_t)(uintptr_t)x->slots * 0x94D049BB133111EB;
@@ -75,7 +76,7 @@ static void put(exchanging *x, uint32_t corner)
     x->slots[at] = (slot){x->edge + 1, corner, from, to};
 }
 
-/* Room for what a fan that falls in two may add: a few for each corner that is settled. */
+/* Makes room for what a fan that falls in two may add: a few entries for each settled corner. */
 static he_status make_room(exchanging *x, size_t more, he_error *err)
 {
     if (x->slots != NULL && 2 * (x->used + more) <= x->mask) {
@@ -108,13 +109,13 @@ static he_status make_room(exchanging *x, size_t more, he_error *err)
 
 /* --- fans --- */
 
-/* The corners of a fan, from one on to its end, then from that one back. */
+/* Walks over the corners of a fan, from one on to its end, then from that one back. */
 typedef struct walk {
     uint32_t start, at;
     bool back;
 } walk;
 
-/* False when all were met. */
+/* Returns false when all were visited. */
 static bool step(const he_splitting *s, walk *w)
 {
     if (!w->back) {
@@ -136,7 +137,8 @@ static bool is_settled(const exchanging *x, uint32_t c)
     return x->edge_of[c] == x->edge && he_bits_get(x->settled, c);
 }
 
-/* Corners a and b left one vertex in one fan, which fell in two: the smaller gets a new number. */
+/* Corners a and b left one vertex in one fan, which fell in two: the smaller part gets a new
+ * number. */
 static he_status number(exchanging *x, uint32_t a, uint32_t b, he_error *err)
 {
     const he_splitting *s = x->s;
@@ -206,7 +208,7 @@ static he_status settle(exchanging *x, uint32_t c, he_error *err)
 
 /* --- edges --- */
 
-/* List the corners of edges that have more than two. */
+/* Lists the corners of edges that have more than two. */
 static he_status list_corners(exchanging *x, he_error *err)
 {
     const he_soup *soup = x->s->soup;

@@ -1,9 +1,10 @@
-/* fill: small holes of the mesh are closed, each by a polygon. */
+/* fill: closes small holes of the mesh, each by a polygon. */
 #include "edit/border/hole.h"
 #include "mesh/walk.h"
 #include "repair/repair.h"
 
-/* The loop of boundary half-edge h: how long, counted to `most` + 1, and all along one face? */
+/* Returns the length of the loop of boundary half-edge h, counted to `most` + 1, and whether all of
+ * it is along one face. */
 static size_t length_of(const he_mesh *m, he_halfedge h, size_t most, bool *one_face)
 {
     size_t length = 0;
@@ -48,7 +49,7 @@ static he_status fill(he_mesh *m, he_halfedge h, size_t most, he_repair_account 
     return HE_OK;
 }
 
-/* Loops are met at their lowest half-edge; `seen` has those of loops that were. */
+/* Each loop is handled at its lowest half-edge; `seen` has the half-edges of loops before. */
 static he_status fill_all(he_mesh *m, size_t most, uint64_t *seen, he_repair_account *account,
                           he_error *err)
 {

@@ -7,9 +7,9 @@
 typedef struct he_mend {
     he_soup *soup;
     he_repaired *out;
-    bool has_corner_values; /* attributes whose rows follow the corners */
-    uint32_t *corner_from;  /* the input's corner of each; NULL: all kept their number */
-    uint64_t *turned;       /* a bit for each face that orient turned; NULL: none */
+    bool has_corner_values; /* there are attributes of corners */
+    uint32_t *corner_from;  /* the input's corner of each; NULL: all kept their numbers */
+    uint64_t *turned;       /* a bit for each face that orient has reversed; NULL: none */
 } he_mend;
 
 static inline void he_mend_name(he_repair_account *account, uint32_t a, uint32_t b)
@@ -22,25 +22,26 @@ static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
 {
     return from == NULL ? i : from[i];
 }
-/* A list 0, 1, 2... of `count`, with room for `room`. NULL when memory is out. */
+/* Returns a list 0, 1, 2... of `count`, with room for `room`. NULL if memory is out. */
 uint32_t *he_mend_same(size_t count, size_t room);
 bool he_mend_has_corner_values(const he_soup *soup);
-/* Make sure that there is m->corner_from, if it is wanted. */
+/* Makes m->corner_from, if it is needed. */
 HE_NODISCARD he_status he_mend_corners(he_mend *m, he_error *err);
-/* Does a corner name no vertex? */
+/* Does a corner name a vertex that does not exist? */
 bool he_mend_has_bad_index(const he_soup *soup);
-/* face_of[c] = the face that has corner c. */
+/* Sets face_of[c] to the face that has corner c. */
 void he_mend_faces(const he_soup *soup, uint32_t *face_of);
 
-/* The repairs. Faces are proper for those below, as he_soup_check_faces has it. */
+/* The repairs. All but the first ones require valid faces, as he_soup_check_faces defines it. */
 HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
 HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
 HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);
-/* With `force` what cannot be oriented is turned as well as may be, else it fails. */
+/* With `force`, a component that cannot be oriented is reversed as well as possible; without, it
+ * fails. */
 HE_NODISCARD he_status he_mend_orient(he_mend *m, bool force, he_error *err);
 HE_NODISCARD he_status he_mend_split(he_mend *m, he_error *err);
 
-/* Would he_build refuse the soup, whose faces are turned as they are to be, unless it is split? */
+/* Would he_build refuse the soup, whose faces are oriented already, unless it is split? */
 HE_NODISCARD he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err);
 
 #endif

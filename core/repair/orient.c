@@ -1,4 +1,4 @@
-/* orient: faces turned until neighbours agree. Breadth-first over the edges of two faces, one
+/* orient: reverses faces until neighbours agree. Breadth-first over the edges of two faces, one
  * component after another. */
 #include "build/pair.h"
 #include "repair/mend.h"
@@ -8,25 +8,26 @@ typedef enum state { UNSEEN, KEPT, TURNED } state;
 typedef struct orienting {
     he_soup *soup;
     he_repaired *out;
-    uint32_t *mate;    /* the corner on the other side, HE_NONE unless there is just one */
-    uint32_t *face_of; /* of each corner */
-    uint32_t *queue;   /* of faces: components one after another */
+    uint32_t *mate;    /* the corner on the other side, HE_NONE unless there is exactly one */
+    uint32_t *face_of; /* face of each corner */
+    uint32_t *queue;   /* a queue of faces, component after component */
     unsigned char *state;
 } orienting;
 
 #define NO_PAIR (HE_NONE - 1)
 
-/* The corners of edges with two. */
+/* Finds the mates: the corners of edges with two. */
 static he_status find_mates(orienting *o, he_error *err)
 {
     const he_soup *soup = o->soup;
     size_t edges = 0;
-    uint32_t *edge_of = o->face_of; /* lent until the faces are wanted */
+    uint32_t *edge_of = o->face_of; /* used as a buffer until the faces are needed */
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {
         return status;
     }
-    uint32_t *met = he_mem_zero(edges + 1, sizeof *met); /* how many, then the first of two */
+    uint32_t *met = he_mem_zero(
+        edges + 1, sizeof *met); /* for each edge how many corners; then the first of two */
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);
     }
@@ -50,7 +51,8 @@ static he_status find_mates(orienting *o, he_error *err)
     return HE_OK;
 }
 
-/* Note where a component cannot be oriented: between face f, at its corner c, and another. */
+/* Notes that a component cannot be oriented: face f, at its corner c, and the face beside it
+ * clash. */
 static void note_clash(orienting *o, uint32_t f, uint32_t c)
 {
     const he_soup *soup = o->soup;
@@ -63,7 +65,7 @@ static void note_clash(orienting *o, uint32_t f, uint32_t c)
     account->left++;
 }
 
-/* All faces that hang together with `seed` join the queue; false in *fits where they clash. */
+/* Adds all faces connected with `seed` to the queue; *fits is false if they clash. */
 static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he_error *err)
 {
     const he_soup *soup = o->soup;
@@ -95,8 +97,8 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     return status;
 }
 
-/* How many edges of queue[begin..end) clash when faces are `turned`, or as they are; each is met
- * from both sides. */
+/* Counts the edges of queue[begin..end) that clash with faces `turned`, or as they are; each is
+ * counted from both sides. */
 static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, bool turned)
 {
     const he_soup *soup = o->soup;
@@ -116,7 +118,8 @@ static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, boo
     return count;
 }
 
-/* Of a component that cannot be oriented: where turning does not leave fewer clashes, none is. */
+/* A component that cannot be oriented: if reversing does not leave fewer clashes, no face is
+ * reversed. */
 static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
 {
     if (clashes_of(o, begin, end, true) < clashes_of(o, begin, end, false)) {
@@ -127,7 +130,7 @@ static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
     }
 }
 
-/* The smaller part of queue[begin..end) is to be the one that is turned. */
+/* Chooses the smaller part of queue[begin..end) as the one that is reversed. */
 static void settle(orienting *o, uint32_t begin, uint32_t end)
 {
     uint32_t turned = 0;
@@ -144,7 +147,7 @@ static void settle(orienting *o, uint32_t begin, uint32_t end)
     o->out->accounts[HE_REPAIR_ORIENT].parts += turned > 0;
 }
 
-/* The first corner stays, the others follow the other way round. */
+/* The first corner stays, the others are reversed. */
 static void turn(he_mend *m, uint32_t f)
 {
     uint32_t low = m->soup->starts[f] + 1, high = he_soup_end(m->soup, f) - 1;

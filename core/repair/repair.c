@@ -46,7 +46,7 @@ void he_repaired_report(const he_repaired *repaired, he_report *report)
     }
 }
 
-/* --- what the repairs share --- */
+/* --- functions that the repairs share --- */
 
 uint32_t *he_mend_same(size_t count, size_t room)
 {
@@ -124,7 +124,7 @@ static he_status carry(const he_mend *m, he_error *err)
     return status;
 }
 
-/* Normals of faces that were turned, and of their corners, are turned with them. */
+/* Reverses the normals of reversed faces and of their corners. */
 static he_status turn_normals(const he_mend *m, he_column *column, he_error *err)
 {
     const he_soup *soup = m->soup;
@@ -161,7 +161,7 @@ static he_status turn_all_normals(const he_mend *m, he_error *err)
     return status;
 }
 
-/* --- the whole --- */
+/* --- all repairs --- */
 
 bool he_mend_has_bad_index(const he_soup *soup)
 {
@@ -172,7 +172,7 @@ bool he_mend_has_bad_index(const he_soup *soup)
     return c < soup->corner_count;
 }
 
-/* What he_build would refuse each for itself keeps the later repairs from running. */
+/* Faces that he_build would refuse by themselves keep the later repairs from running. */
 static he_status is_proper(const he_soup *soup, bool *out, he_error *err)
 {
     uint64_t total = 0;
@@ -196,7 +196,7 @@ static he_status run(he_mend *m, const he_repair_plan *plan, he_repair repair, h
         return he_mend_split(m, err);
     case HE_REPAIR_FILL:
     case HE_REPAIR_COUNT:
-        break; /* of meshes */
+        break; /* a repair of meshes */
     }
     return HE_OK;
 }

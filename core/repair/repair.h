@@ -1,47 +1,47 @@
-/* repair.h - what makes a polygon soup one that the structure can hold, on request.
+/* repair.h - repairs that make a polygon soup representable as a half-edge mesh, on request.
  *
  *     reader -> he_soup -> he_repair_soup -> he_build -> he_repair_mesh -> mesh
  *
- * Repairs are applied in this order, whatever the order in which they are asked for.
+ * Repairs are applied in this order, whatever the order of the request.
  *
- * weld: vertices at most `tolerance` apart become one. In the order of their numbers, each joins
- * the first of those kept so far that is near enough, or is kept. So none moves further than the
- * tolerance, kept ones are further apart than that, and chains do not creep. With tolerance 0 only
- * equal positions meet (-0 is 0). An attribute of vertices that differs between some that become
- * one becomes an attribute of corners, so that seams of texture and sharp edges stay
- * (build/keep.h).
+ * weld: vertices at most `tolerance` apart are merged. In the order of their numbers, each is
+ * merged into the first one kept so far that is near enough, or is kept. So none moves farther than
+ * the tolerance, kept ones are farther apart than that, and merging does not run along chains. With
+ * tolerance 0 only equal positions are merged (-0 equals 0). An attribute of vertices whose values
+ * differ between merged vertices becomes an attribute of corners, so that seams of texture and
+ * sharp edges stay (build/keep.h).
  *
- * drop_degenerate: a face that comes to a vertex twice keeps what has an area. Of corners at one
- * vertex in a row one stays (1 2 3 3 is the triangle 1 2 3), and a spike, there and back, goes.
- * Loops that touch in a vertex become faces of their own, and a face with a hole is cut into
- * triangles. What has less than three corners, before or after that, is left out.
+ * drop_degenerate: a face that passes a vertex twice keeps the parts that have area. Corners in a
+ * row at one vertex become one (1 2 3 3 is the triangle 1 2 3), and a spike, there and back, is
+ * removed. Loops that touch in a vertex become separate faces, and a face with a hole is cut into
+ * triangles. Faces with fewer than three corners, before or after that, are dropped.
  *
  * drop_duplicates: of faces with the same corners, begun anywhere and wound either way, the first
  * is kept.
  *
- * orient: faces are turned until all that share an edge run along it in opposite directions, as far
- * as edges of two faces lead. The larger part of a component keeps its direction; the part of its
- * first face, where they are equal. Where a component cannot be oriented (a Moebius band) the soup
- * is refused, unless it is to be split as well: then it is wound consistently along a tree of its
- * faces, or left where that makes no fewer of them clash, and cut where they do. The attribute
- * "normal" of the faces that are turned, and of their corners, is turned with them.
+ * orient: faces are reversed until any two that share an edge run along it in opposite directions;
+ * only edges of two faces connect. The larger part of a component keeps its direction; if both are
+ * equal, the part of its first face. If a component cannot be oriented (a Moebius band) the soup is
+ * refused, unless it is split as well: then it is oriented consistently along a tree of its faces,
+ * or left if that would not reduce the clashes, and cut where faces clash. The attribute "normal"
+ * of reversed faces, and of their corners, is reversed too.
  *
- * split: every fan of faces gets its vertex for itself. The fan of the first corner keeps it, the
- * others get copies, numbered after all vertices in the order of their first corners. Faces hang
- * together in a fan where they run along an edge in opposite directions. Where more than two have
- * an edge, they are paired in their order, each with the first that waits and runs the other way
- * (two solids that touch come apart); the rest is cut off. Where two pairs along an edge lie
- * between the same two fans, the edge would be doubled: they exchange partners, which makes two
- * fans of each. So what is closed, and wound consistently, stays closed. After Gueziec, Taubin,
- * Lazarus and Horn, "Cutting and stitching: converting sets of polygons to manifold surfaces"
- * (2001).
+ * split: every fan of faces gets a vertex of its own. The fan of the first corner keeps the vertex,
+ * the others get copies, numbered after all vertices in the order of their first corners. Faces are
+ * in one fan if they run along an edge in opposite directions. If more than two faces have an edge,
+ * they are paired in order, each with the first unpaired one that runs the other way (two solids
+ * that touch are separated); the rest is cut off. If two pairs along an edge are between the same
+ * two fans, the edge would be doubled: they exchange partners, which makes two fans of each. So a
+ * closed, consistently oriented surface stays closed. After Gueziec, Taubin, Lazarus and Horn,
+ * "Cutting and stitching: converting sets of polygons to manifold surfaces" (2001).
  *
- * fill: holes of at most `hole_edges` edges are closed by one polygon each. Those that pass a
- * vertex twice, and the rim of a single face, are left.
+ * fill: holes of at most `hole_edges` edges are closed by one polygon each. Holes that pass a
+ * vertex twice, and the rim of a single face, are left open.
  *
- * Vertices and faces keep their order. Other attributes go with their elements: those of the vertex
- * or face that is kept, its parent's with a copy, those of corners with the corners. Every repair
- * takes time linear in the soup, and a few numbers of memory for each corner. */
+ * Vertices and faces keep their order. Other attributes follow their elements: a merged element has
+ * the values of the one that is kept, a copy those of its parent, and values of corners follow the
+ * corners. Every repair takes time linear in the soup, and a few numbers of memory for each
+ * corner. */
 #ifndef HE_REPAIR_REPAIR_H
 #define HE_REPAIR_REPAIR_H
 
@@ -57,84 +57,95 @@ typedef enum he_repair {
     HE_REPAIR_COUNT
 } he_repair;
 
-/* Their names in this order, ends in NULL. */
+/* Names of the repairs in this order; ends in NULL. */
 extern const char *const he_repair_names[];
 
-/* A set of repairs has these bits. */
+/* The bit of a repair in a set of repairs. */
 static inline unsigned he_repair_bit(he_repair repair)
 {
     return 1u << repair;
 }
 
 typedef struct he_repair_plan {
-    unsigned which;    /* a set; 0: none */
-    double tolerance;  /* of weld: finite, not negative */
-    size_t hole_edges; /* of fill */
+    unsigned which;    /* a set of repairs; 0: none */
+    double tolerance;  /* for weld: finite, not negative */
+    size_t hole_edges; /* for fill */
 } he_repair_plan;
 
-/* The first elements of each repair that are named. */
+/* How many elements of each repair are listed, the first ones. */
 enum { HE_REPAIR_NAMED = 100 };
 
 typedef struct he_repair_pair {
     uint32_t a, b;
 } he_repair_pair;
 
-/* What one repair did. What is gone is named by its number in the input, what is there by its id in
- * the mesh. */
+/* The results of one repair. Deleted elements are named by their number in the input, others by
+ * their id in the mesh. */
 typedef struct he_repair_account {
-    uint64_t count; /* weld: vertices gone; drop_*: faces gone; orient: faces turned; split:
-                       vertices made; fill: faces made */
-    uint64_t parts; /* drop_degenerate: faces that lost corners or were cut up; orient: components
-                       with turned faces; split: vertices that had several fans */
-    uint64_t moved; /* weld: values of vertices that went to corners, being different */
+    /* weld: vertices merged; drop_*: faces dropped; orient: faces reversed; split: vertices made;
+     * fill: faces made */
+    uint64_t count;
+    /* drop_degenerate: faces that lost corners or were cut; orient: components with reversed faces;
+     * split: vertices that had several fans */
+    uint64_t parts;
+    uint64_t moved; /* weld: values of vertices that differed and moved to corners */
     uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
-    /* weld: gone, the one it joined; drop_degenerate: the face, what became of it, 0 or more faces;
-     * drop_duplicates: gone, the one kept; orient: turned face, HE_NONE; split: made, its parent;
-     * fill: face, its corners */
+    /* weld: the merged vertex, the one it was merged into; drop_degenerate: the face, and 0 or more
+     * faces made of it; drop_duplicates: the dropped face, the one kept; orient: the reversed face,
+     * HE_NONE; split: the new vertex, its parent; fill: the face, its corners */
     he_repair_pair pairs[HE_REPAIR_NAMED];
     size_t named;
 } he_repair_account;
 
-/* A face of a component that cannot be oriented, and its edge where that is seen. */
+/* A face of a component that cannot be oriented, and the edge at which that was found. */
 typedef struct he_repair_clash {
     uint32_t face, vertex, other;
 } he_repair_clash;
 
 typedef struct he_repaired {
-    /* Numbers in the input, by number in the soup; NULL where all kept theirs. */
+    /* Numbers in the input, by number in the soup; NULL if all kept theirs. */
     uint32_t *vertex_from, *face_from;
-    size_t vertices, faces; /* entries of these */
+    size_t vertices, faces; /* entries of these arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
-    he_repair_clash clashes[HE_REPAIR_NAMED]; /* of orient, accounts[HE_REPAIR_ORIENT].left */
+    he_repair_clash
+        clashes[HE_REPAIR_NAMED]; /* for orient; there are accounts[HE_REPAIR_ORIENT].left */
 } he_repaired;
 
 void he_repaired_clear(he_repaired *repaired);
 /* Did anything change that he_build reads? */
 bool he_repaired_soup(const he_repaired *repaired);
-/* Name the elements of a report about the repaired soup as the input does. */
+/* Renames the elements of a report about the repaired soup to their names in the input. */
 void he_repaired_report(const he_repaired *repaired, he_report *report);
 
-/* Apply what is planned for a soup. Where faces that would have to be dropped remain, and where a
- * corner names no vertex, the repairs that could not deal with them are not begun: he_build refuses
- * the soup. HE_NOT_ORIENTABLE with the face, numbered as in the input; HE_LIMIT when copies exceed
- * the soup's limits; HE_NO_MEMORY; HE_CANCELLED.
+/* Applies the planned repairs of a soup. If degenerate faces remain, or a corner names a vertex
+ * that does not exist, the repairs that could not handle them are not begun, and he_build will
+ * refuse the soup.
  *
- * The soup stays the caller's, `out` is {0} before and the caller's to clear, in any case. After
- * HE_NOT_ORIENTABLE the vertices and faces are as the repairs before orient left them and no face
- * is turned, so that he_repair_advise can be asked; columns have the rows of the input still, which
- * need not be those of the elements. After another failure the soup is only to be cleared. */
+ * The soup stays the caller's; `out` must be {0} before, and the caller clears it in any case.
+ * After HE_NOT_ORIENTABLE the vertices and faces are as the repairs before orient left them and no
+ * face is reversed, so that the caller can ask he_repair_advise; columns still have the rows of the
+ * input, which may not match the elements. After another failure the caller can only clear the
+ * soup.
+ * Returns HE_NOT_ORIENTABLE, naming a face by its number in the input, if a component cannot be
+ * oriented.
+ * Returns HE_LIMIT if copies exceed the soup's limits.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
-/* The same for the mesh it became: fill. Nothing may record. HE_IDS_EXHAUSTED, HE_NO_MEMORY,
- * HE_CANCELLED. */
+/* Applies the planned repairs of the mesh that was built: fill. The mesh must not be recording.
+ * Returns HE_IDS_EXHAUSTED if no ids are left.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
 
-/* he_build refused the soup to which the set `asked` was applied, or he_repair_soup found it not to
- * be orientable: which set, `asked` included, would let it pass? 0 where none would: a corner names
- * no vertex. Columns are not looked at. The soup may get other faces, and is only to be cleared
- * after.
- * HE_NO_MEMORY, HE_CANCELLED. */
+/* Finds which set of repairs, `asked` included, would make he_build accept a soup that it refused
+ * after the repairs `asked`, or that he_repair_soup found not orientable; 0 if none would, because
+ * a corner names a vertex that does not exist. Ignores columns. The faces of the soup may change;
+ * the caller can then only clear it.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out,
                                         he_error *err);
 

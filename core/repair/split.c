@@ -1,5 +1,5 @@
-/* split: a vertex for each fan. Corners of an edge are mates, as many as there are of both
- * directions; where pairs of them would double an edge, they exchange partners (exchange.c). */
+/* split: gives each fan a vertex of its own. Corners of an edge are paired as mates, as many as
+ * there are in both directions; pairs that would double an edge exchange partners (exchange.c). */
 #include "repair/split.h"
 
 #include <string.h>
@@ -9,13 +9,13 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to split %zu faces apart", soup->face_count);
 }
 
-/* Pair the corners of every edge: each with the first one waiting that runs the other way. All that
- * wait at an edge run the same way, so they are a queue, chained by `mate`. */
+/* Pairs the corners of every edge: each with the first unpaired one that runs the other way. All
+ * unpaired corners of an edge run one way, so they are a queue, chained by `mate`. */
 static he_status pair(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
     size_t edges = 0;
-    uint32_t *edge_of = s->to; /* lent until the fans are found */
+    uint32_t *edge_of = s->to; /* used as a buffer until the fans are found */
     uint32_t *head = NULL, *tail = NULL;
     he_status status = he_soup_number_edges(soup, edge_of, &edges, err);
     if (status != HE_OK) {
@@ -79,7 +79,7 @@ static he_status add_copy(he_splitting *s, uint32_t parent, he_error *err)
     return HE_OK;
 }
 
-/* The vertex of the fan that corner c begins, or a part of it when that is open. */
+/* Finds the corners of the fan that begins with corner c, or of a part of it if it is open. */
 static he_status find_fan(he_splitting *s, uint32_t c, he_error *err)
 {
     uint32_t v = s->soup->corners[c], vertex = v;
@@ -146,7 +146,7 @@ static void clear(he_splitting *s)
     he_mem_free(s->closed);
 }
 
-/* Memory, and mates. */
+/* Allocates memory, and finds the mates. */
 static he_status begin(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
@@ -180,7 +180,7 @@ static he_status plan(he_splitting *s, he_error *err)
     return status;
 }
 
-/* Nothing of the soup is written before all memory is there. */
+/* Nothing of the soup is written before all memory is allocated. */
 static he_status apply(he_mend *m, he_splitting *s, he_error *err)
 {
     he_soup *soup = m->soup;
