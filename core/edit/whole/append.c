@@ -3,10 +3,10 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* Where a column of the other mesh goes. */
+/* The column that a column of the other mesh is appended to. */
 typedef struct target {
     size_t slot;
-    uint32_t *label; /* the index of each of its labels here; NULL: as they are */
+    uint32_t *label; /* the index here of each of its labels; NULL: indices stay */
 } target;
 
 void he_appended_clear(he_appended *appended)
@@ -54,10 +54,10 @@ static he_status no_memory(const he_column *column, he_error *err)
 
 /* --- materials --- */
 
-/* Names of the other mesh's materials that others have here, and where they went. */
+/* Materials of the other mesh that are renamed here, and their new rows. */
 typedef struct renames {
-    he_labels *from; /* NULL while there is none */
-    he_ids slots;    /* of each a row of this mesh */
+    he_labels *from; /* NULL if there are none */
+    he_ids slots;    /* for each the row of this mesh */
 } renames;
 
 static void renames_clear(renames *r)
@@ -87,8 +87,8 @@ static bool is_label(const he_mesh *m, const char *name)
            he_labels_find(column->labels, name, strlen(name), &index);
 }
 
-/* The name under which a row of the other mesh is here: its own, unless a row that looks different
- * has that; then NAME_2 and so on, where that is free in both or looks the same. */
+/* Chooses the name of a row of the other mesh: its own, unless a different row has that; then
+ * NAME_2 and so on, the first that is free in both or belongs to an equal row. */
 static void choose_name(const he_mesh *m, const he_mesh *other, const he_material *row,
                         char name[HE_MATERIAL_NAME + 1])
 {
@@ -131,7 +131,7 @@ static he_status merge_material(he_mesh *m, const he_mesh *other, he_material *r
     return status == HE_OK && !same ? rename_material(r, row, slot, err) : status;
 }
 
-/* Rows that this mesh has not come behind its own. */
+/* Appends the rows that this mesh lacks. */
 static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, he_error *err)
 {
     const he_materials *theirs = &other->c.materials;
@@ -146,7 +146,7 @@ static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, h
 
 /* --- labels --- */
 
-/* What a label of the other mesh is called here. */
+/* Returns the name here of a label of the other mesh. */
 static const char *name_here(const he_mesh *m, const he_column *theirs, const renames *r,
                              const char *text)
 {
@@ -179,7 +179,8 @@ static he_status add_theirs(const he_mesh *m, he_labels *to, const he_column *th
     return status;
 }
 
-/* Labels of both, those of `own` (may be NULL) first; out->label says where each of theirs is. */
+/* Makes the labels of both, those of `own` (may be NULL) first; out->label has the new index of
+ * each of theirs. */
 static he_status make_labels(const he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_labels **labels, he_error *err)
 {
@@ -200,7 +201,7 @@ static he_status make_labels(const he_mesh *m, const he_column *own, const he_co
     return HE_OK;
 }
 
-/* A column in the place of `own` that has the labels of both, when those of `own` do not do. */
+/* Replaces `own` by a column that has the labels of both, if `own` lacks some. */
 static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_error *err)
 {
@@ -224,8 +225,8 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
-/* Replaces the number of a label by its number in this mesh. Numbers that have no label, such as -1
- * for none, stay. */
+/* Replaces the index of a label by its index in this mesh. Indices without a label, such as -1,
+ * stay. */
 static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
 {
     for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
@@ -240,7 +241,7 @@ static void map_labels(const he_column *theirs, const target *to, unsigned char 
 
 /* --- columns --- */
 
-/* One like it, at its default everywhere; values of the mesh come along. */
+/* Adds a column like it, with defaults everywhere; a column of the mesh itself keeps its value. */
 static he_status add_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
                             he_error *err)
 {
@@ -303,7 +304,7 @@ static void carry_row(he_mesh *m, const he_column *theirs, const target *to, uin
 
 /* --- COMMIT --- */
 
-/* New ids of old ones. */
+/* Maps old ids to new ones. */
 typedef struct maps {
     uint32_t *vertex, *edge, *face;
 } maps;

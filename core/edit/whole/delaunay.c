@@ -8,28 +8,28 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* One call. */
+/* The state of one call. */
 typedef struct flipper {
     he_mesh *m;
     bool marked; /* are there marks? */
     he_marks marks;
-    uint32_t *queue; /* a ring of `room` */
+    uint32_t *queue; /* a ring buffer of size `room` */
     size_t room, head, waiting;
-    uint64_t *queued; /* edges that wait */
-    he_ids stuck;     /* edges he_edge_flip refused */
-    size_t stuck_at;  /* flips when they were last tried */
+    uint64_t *queued; /* edges in the queue */
+    he_ids stuck;     /* edges that he_edge_flip refused */
+    size_t stuck_at;  /* number of flips when they were last tried */
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
-    uint64_t work;        /* since the last look at the watch */
-    size_t from, fold_at; /* records before this call, and how many are folded next */
+    uint64_t work;        /* work since the watch was last stepped */
+    size_t from, fold_at; /* records before this call; number of records at the next fold */
 } flipper;
 
-/* Records for each edge before they are folded: fewer than it has words. */
+/* Records for each edge that trigger a fold: fewer than it has words. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* Work between two looks at the watch: an edge that is looked at takes as long as a few elements
- * that others look at, and as WORK_OF_EDGE steps about a vertex. */
+/* Work between two steps of the watch: testing an edge takes as long as a few elements in other
+ * loops, and as WORK_OF_EDGE steps around a vertex. */
 enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_WATCH_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
@@ -49,7 +49,7 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
-/* The i-th that waits, no edge where fewer do. */
+/* Returns the i-th edge of the queue, no edge if it is shorter. */
 static he_edge waiting_at(const flipper *q, size_t i)
 {
     return (he_edge){i < q->waiting ? q->queue[(q->head + i) % q->room] : HE_NONE};
@@ -77,7 +77,7 @@ static bool is_crooked(const flipper *q, he_edge e)
     return alpha + beta > PI + HE_DELAUNAY_EPSILON;
 }
 
-/* What he_edge_flip will spend looking for an edge between the opposite corners. */
+/* Returns the steps that he_edge_flip will take to search an edge between the opposite corners. */
 static uint32_t search_steps(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -91,7 +91,8 @@ static uint32_t search_steps(const he_mesh *m, he_edge e)
     return n;
 }
 
-/* Flips go on about the same edges: what is recorded grows with the mesh, not with their number. */
+/* Flips repeat at the same edges: folding makes the records proportional to the mesh, not to the
+ * flips. */
 static he_status fold(flipper *q, he_error *err)
 {
     he_delta *delta = q->m->delta;
@@ -134,7 +135,8 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     return fold(q, err);
 }
 
-/* Flips spread, so the end is not known: what is done beside what waits only comes near. */
+/* Flips spread, so the total is not known: the ratio of work done to work in the queue is an
+ * estimate. */
 static he_status look(flipper *q, he_error *err)
 {
     q->work += WORK_OF_EDGE;
@@ -167,7 +169,7 @@ static he_status empty_queue(flipper *q, he_error *err)
     return status;
 }
 
-/* Other flips may have made room for those that were refused. */
+/* Other flips may have made refused ones possible. */
 static void try_again(flipper *q)
 {
     if (q->flips.count > q->stuck_at) {

@@ -1,18 +1,18 @@
-/* delaunay.h - triangles made as round as flips can make them. */
+/* delaunay.h - flips edges until the triangles are as round as possible. */
 #ifndef HE_EDIT_WHOLE_DELAUNAY_H
 #define HE_EDIT_WHOLE_DELAUNAY_H
 
 #include "mesh/mesh.h"
 
-/* An edge is left alone unless the angles opposite to it sum to more than pi by this, in radians:
- * four points on a circle would be flipped by rounding otherwise. */
+/* An edge is flipped only if the angles opposite to it sum to more than pi by this, in radians:
+ * four points on a circle would otherwise be flipped by rounding. */
 #define HE_DELAUNAY_EPSILON 1e-9
 
-/* The work that is done for each live edge before the request is refused: an edge looked at, or a
- * step about a vertex in search of an edge, counts one. */
+/* The most work for each live edge before the request is refused: a tested edge, or a step around a
+ * vertex in search of an edge, counts one. */
 enum { HE_DELAUNAY_STEPS = 512 };
 
-/* delaunay: no element comes or goes. Edges between two triangles are flipped (see edge_flip)
+/* delaunay: no element is made or deleted. Edges between two triangles are flipped (see edge_flip)
  * while the angles opposite to them sum to more than pi:
  *
  *            c                          c
@@ -27,28 +27,32 @@ enum { HE_DELAUNAY_STEPS = 512 };
  *            o                          o
  *            d                          d
  *
- * A flip may spoil the four sides of the kite, so these wait to be looked at again, in a queue in
- * which no edge is twice (C. L. Lawson, "Software for C1 surface interpolation", 1977). With a list
- * only its edges wait at first, and flips spread from there; NULL stands for all edges.
+ * After a flip the four sides of the kite may violate the criterion, so they are tested again, from
+ * a queue in which no edge is twice (C. L. Lawson, "Software for C1 surface interpolation", 1977).
+ * With a list only its edges are in the queue at first, and flips spread from there; NULL means all
+ * edges.
  *
  * Edges on the boundary, beside a face of more than three corners, that are features or locked, or
- * beside a locked face (marks.h) are never flipped. Where he_edge_flip refuses, the edge stays too,
- * and is tried again after other flips. At the end every other edge that was looked at
- * satisfies the criterion, and, without a list, doing it again changes nothing.
+ * beside a locked face (marks.h) are never flipped. If he_edge_flip refuses, the edge stays too,
+ * and is tried again after other flips. At the end every other tested edge satisfies the criterion,
+ * and, without a list, a second call changes nothing.
  *
- * It ends. Angles are those of the triangles in space, so a flip across a bent edge changes the
- * surface; but it never makes it larger: flattened about its edge the kite is convex and keeps its
- * area, and bending it back shortens c-d, which shrinks both new triangles as the angles opposite
- * to c-d sum to less than pi. So if ever the same triangles came back, all flips in between would
- * have been across flat edges; those are flips within one flat surface, where the triangulations
- * never repeat (A. I. Bobenko and B. A. Springborn, "A discrete Laplace-Beltrami operator for
- * simplicial surfaces", 2007). Since their number may be quadratic, work is limited.
+ * The algorithm ends. Angles are those of the triangles in space, so a flip across a bent edge
+ * changes the surface; but it never makes it larger: flattened about its edge the kite is convex
+ * and keeps its area, and bending it back shortens c-d, which shrinks both new triangles as the
+ * angles opposite to c-d sum to less than pi. So if the same triangles ever came back, all flips in
+ * between would have been across flat edges; those are flips within one flat surface, where the
+ * triangulations never repeat (A. I. Bobenko and B. A. Springborn, "A discrete Laplace-Beltrami
+ * operator for simplicial surfaces", 2007). Since their number may be quadratic, work is limited.
  *
- * Edges keep their ids, and faces; attributes follow as in edge_flip. `flips` gets the edges in the
+ * Edges and faces keep their ids; attributes follow as in edge_flip. `flips` gets the edges in the
  * order they were flipped, one that was flipped twice also twice; it may be NULL.
  *
- * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT for the
- * list; HE_LIMIT after HE_DELAUNAY_STEPS. HE_NO_MEMORY. */
+ * All or nothing: a refusal changes nothing.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
+ * is not live or is listed twice.
+ * Returns HE_LIMIT if it takes more than HE_DELAUNAY_STEPS for each edge.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *flips,
                                    he_error *err);
 

@@ -4,7 +4,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new row of every old one that lives: vertex[f], edge[e], face[v]. */
+/* The new row of every old live one: vertex[f], edge[e], face[v]. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
     uint32_t vertices, edges, faces; /* issued before */
@@ -41,7 +41,8 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Each face marks its neighbours with its own id; one that is marked already is beside it twice. */
+/* Each face marks its neighbours with its own id; a neighbour that is marked already shares a
+ * second edge. */
 static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error *err)
 {
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {

@@ -4,7 +4,7 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* The faces' attribute, NULL where there is none. */
+/* Finds the faces' attribute, NULL if there is none. */
 static he_status find_column(const he_mesh *m, const he_column **out, he_error *err)
 {
     *out = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
@@ -17,7 +17,7 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
                          (*out)->labels != NULL ? " with labels" : "");
 }
 
-/* One like `column`, which may be NULL, with labels of its own. */
+/* Makes a column like `column`, which may be NULL, with these labels. */
 static he_status column_with(const he_mesh *m, const he_column *column, he_labels *labels,
                              he_column **out, he_error *err)
 {
@@ -34,9 +34,9 @@ static he_status column_with(const he_mesh *m, const he_column *column, he_label
     return status;
 }
 
-/* The labels of the column (NULL: none) with `from` replaced by `to`, or with `to` appended where
- * `from` is NULL. A `from` and a `to` that are both there become one label. new_index[i] is what
- * index i becomes; NULL if nobody asks. */
+/* Makes labels from those of the column (NULL: none), with `from` replaced by `to`, or with `to`
+ * appended if `from` is NULL. If `from` and `to` both exist they become one label. new_index[i] is
+ * the new index of i; it may be NULL. */
 static he_status make_labels(const he_column *column, const char *from, const char *to,
                              he_labels *out, uint32_t *new_index, he_error *err)
 {
@@ -69,7 +69,7 @@ static void change_indices(he_column *column, const uint32_t *new_index)
     memcpy(column->fallback, &new_index[index], sizeof index);
 }
 
-/* A column with labels as make_labels() says in the place of this one. */
+/* Replaces a column by one with labels as make_labels() makes them. */
 static he_status put_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
                             uint32_t *new_index, he_error *err)
 {
@@ -119,7 +119,7 @@ static he_status give(he_mesh *m, const char *name, const he_material_change *ch
     return he_attribute_write(m, column, change->faces, change->face_count, &index, true, err);
 }
 
-/* Nothing may have the new name, and something must have had the old one. */
+/* The new name must be unused, and the old one used. */
 static he_status rename_label(he_mesh *m, const char *name, bool has_row, const char *to,
                               he_error *err)
 {
@@ -129,7 +129,7 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     if (status != HE_OK) {
         return status;
     }
-    if (*name == '\0') { /* it stands for none: all faces without a material would get one */
+    if (*name == '\0') { /* "" means no material: all faces without a material would get this one */
         return he_fail_plain(err, HE_BAD_VALUE, "there is no material without a name");
     }
     if (he_materials_find(&m->c.materials, to, strlen(to)) != SIZE_MAX ||
@@ -186,7 +186,7 @@ static bool only_gives(const he_material_change *change)
            change->emission == NULL && change->two_sided == NULL;
 }
 
-/* Faces have none: without an attribute that is so already. */
+/* Removes the material of faces; without an attribute they have none already. */
 static he_status give_none(he_mesh *m, const he_material_change *change, he_error *err)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);

@@ -10,8 +10,8 @@ static bool is_normal(const he_column *column)
            he_is_normal_column(column);
 }
 
-/* Cofactors of the linear part, with the sign of the inverse transpose; its scale does not matter,
- * so entries are at most 1 and nothing overflows. */
+/* Computes the cofactors of the linear part, with the sign of the inverse transpose; its scale does
+ * not matter, so entries are scaled to at most 1 and nothing overflows. */
 static bool find_cofactors(const double matrix[16], double k[9])
 {
     double a[9], largest = 0, off = 0;
@@ -56,7 +56,8 @@ static void turn_row(const he_normals *n, size_t slot, uint32_t row)
         const double *k = n->k + 3 * i;
         w[i] = k[0] * (v[0] / largest) + k[1] * (v[1] / largest) + k[2] * (v[2] / largest);
     }
-    /* First to a largest part of 1: squares of what a very flat map leaves would vanish. */
+    /* Scaled to a largest component of 1 first, because squares of the result of a very flat map
+     * would underflow. */
     largest = fmax(fabs(w[0]), fmax(fabs(w[1]), fabs(w[2])));
     if (!(largest > 0)) {
         return;
@@ -84,7 +85,7 @@ static bool is_mapped(const he_normals *n, he_face f)
     return true;
 }
 
-/* Rows of one column that turn: counted, and turned when `commit`. */
+/* Counts the rows of one column that are transformed, and transforms them if `commit`. */
 static size_t each_row(const he_normals *n, size_t slot, bool commit)
 {
     const he_mesh *m = n->m;
@@ -111,7 +112,7 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
         }
         while (h.i != HE_NONE) {
             he_face f = he_face_of(m, h);
-            /* A face turns with the corner of its stored half-edge. */
+            /* A face is transformed with the corner of its stored half-edge. */
             bool turns = domain == HE_HALFEDGE ||
                          (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i && is_mapped(n, f));
             rows += turns;

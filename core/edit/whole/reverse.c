@@ -3,7 +3,7 @@
 #include "edit/piece/list.h"
 #include "mesh/write.h"
 
-/* What is turned over. */
+/* The elements to reverse. */
 typedef struct part {
     he_ids vertices, edges, faces;
 } part;
@@ -15,7 +15,7 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Ids of all live elements with a face: isolated vertices have nothing to turn. */
+/* Takes all live elements that have a face: isolated vertices have nothing to reverse. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -38,7 +38,7 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* The faces with their corners and sides, each once. */
+/* Takes the faces with their corners and sides, each once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {
@@ -112,8 +112,8 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
     return status;
 }
 
-/* The corner left by h in face(h) is left by turn_ccw(h) afterwards: values about a vertex shift by
- * one place. Holes take part, so that doing it again leads back. */
+/* The corner left by h in face(h) is left by turn_ccw(h) afterwards: values around a vertex shift
+ * by one place. Holes take part, so that a second call restores the values. */
 static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
 {
     const he_column *column = m->c.columns[slot];
@@ -165,8 +165,8 @@ static void turn_values(he_mesh *m, const part *p)
     }
 }
 
-/* The half-edges of an edge change places: each takes over the face and, backwards, the neighbours
- * of the other. What it writes depends on this edge alone. */
+/* Exchanges the half-edges of an edge: each takes the face and, reversed, the neighbours of the
+ * other. What it writes depends on this edge alone. */
 static void turn_edge(he_mesh *m, he_edge e)
 {
     he_halfedge next[2], prev[2];

@@ -1,4 +1,4 @@
-/* separate.h - bow-ties taken apart. */
+/* separate.h - separates the fans of bow-ties. */
 #ifndef HE_EDIT_WHOLE_SEPARATE_H
 #define HE_EDIT_WHOLE_SEPARATE_H
 
@@ -12,17 +12,21 @@
  *           o-----v-----o       --->        o-----v u-----o      u lies where v does, and descends
  *          /     / \     /                 /     / \     /       from it.
  *
- * The fan of the half-edge v stores stays with v; each other one gets a new vertex, in their order
- * about v. A vertex with one fan or none is left alone. Corners keep their values, and the new
+ * The fan of the half-edge that v stores keeps v; each other one gets a new vertex, in their order
+ * around v. A vertex with one fan or none is not changed. Corners keep their values, and the new
  * vertices have those of v.
  *
- * The new ids are appended to `made`, which may be NULL. Refused, all or nothing:
- * HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT; HE_LOCKED_ELEMENT for an edge or
- * face of a fan that leaves v. HE_NO_MEMORY, HE_IDS_EXHAUSTED. vertex_weld is the inverse. */
+ * vertex_weld is the inverse. The new ids are appended to `made`, which may be NULL. All or
+ * nothing: a refusal changes nothing.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice.
+ * Returns HE_LOCKED_ELEMENT if an edge or face of a fan that would get a new vertex is locked.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_vertex_separate(he_mesh *m, const uint32_t *vertices, size_t count,
                                           he_ids *made, he_error *err);
 
-/* separate_bowties: the same for every vertex. */
+/* separate_bowties: vertex_separate for every vertex. */
 HE_NODISCARD he_status he_separate_bowties(he_mesh *m, he_ids *made, he_error *err);
 
 #endif

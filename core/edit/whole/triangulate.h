@@ -1,4 +1,4 @@
-/* triangulate.h - faces cut into triangles. */
+/* triangulate.h - cuts faces into triangles. */
 #ifndef HE_EDIT_WHOLE_TRIANGULATE_H
 #define HE_EDIT_WHOLE_TRIANGULATE_H
 
@@ -15,22 +15,27 @@
  *          \ /       \ /                   \ /       \ /
  *           o         o                     o         o
  *
- * Concave faces come out right: see triangulation.h for what is chosen. The triangle of the stored
- * half-edge keeps the id of its face, the others descend from it; a triangle is left as it is.
+ * Concave faces are handled correctly; triangulation.h says which triangles are chosen. The
+ * triangle of the stored half-edge keeps the id of its face, the others descend from it; a face
+ * that is a triangle is not changed.
  *
  * New ids are appended to `edges` and `faces`, and to `degenerate` the faces in whose plane some
- * triangle has no area or is turned over, as in faces without area or that cross themselves; they
- * are triangulated all the same. All three may be NULL.
+ * triangle has no area or is flipped, as in faces that have no area or intersect themselves; they
+ * are triangulated too. All three may be NULL.
  *
- * Refused, all or nothing: HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT;
- * HE_DOUBLED_EDGE when a face cannot be triangulated without a diagonal that exists as an edge
- * elsewhere. HE_NO_MEMORY, HE_IDS_EXHAUSTED. */
+ * All or nothing: a refusal changes nothing.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice.
+ * Returns HE_DOUBLED_EDGE if a face cannot be triangulated without a diagonal that exists as an
+ * edge elsewhere.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count,
                                            he_ids *edges, he_ids *faces, he_ids *degenerate,
                                            he_error *err);
 
-/* triangulate: face_triangulate of every face of more than three corners, in the order of ids. Of
- * its refusals HE_DOUBLED_EDGE is left. */
+/* triangulate: face_triangulate of every face of more than three corners, in the order of ids. The
+ * only refusal is HE_DOUBLED_EDGE. */
 HE_NODISCARD he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degenerate,
                                       he_error *err);
 

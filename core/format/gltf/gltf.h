@@ -23,11 +23,11 @@
  * (gltf_material.h). Files written by hedge have polygons, and everything else that glTF cannot
  * represent, in extras (gltf_private.h).
  *
- * Errors name the byte, and the path in the JSON. ?? other versions ?? extensions that are required
- * and change geometry (KHR_mesh_quantization and EXT_meshopt_compression are read) ?? references
- * beyond a list, view or buffer ?? numbers outside their range ?? directions that are no floats,
- * without KHR_mesh_quantization ?? nodes that are reached twice or are inside themselves ?? and
- * scenes that make more than gltf_asset.h allows
+ * Reading refuses other versions; extensions that are required and change geometry, except
+ * KHR_mesh_quantization and EXT_meshopt_compression, which it reads; references beyond a list, view
+ * or buffer; numbers outside their range; directions that are no floats, without
+ * KHR_mesh_quantization; nodes that are reached twice or are inside themselves; and scenes that
+ * make more than gltf_asset.h allows. Errors name the byte, and the path in the JSON.
  *
  * WRITING. A mesh for each object and group of faces, in it a primitive for each material, all of
  * them with all vertices, in the order of ids, as floats, and each with its triangles
