@@ -1,17 +1,17 @@
-/* limit.h - THE list of what one client may have of the server.
+/* limit.h - THE list of limits for one client.
  *
- * A client is a token, or the address a request comes from where no token is asked for: the route
- * is open, the server has no tokens, or the token is not known. Options of the server set the
- * limits of every token and of every address; a line of the file of tokens may set those of its
- * own (token_file.h). 0 is no limit.
+ * A client is a token, or an address if a request has no valid token: the route is open, the server
+ * has no tokens, or the token is unknown. Options of the server set the limits of every token and
+ * of every address; a line of the file of tokens may set those of its own (token_file.h). 0 is no
+ * limit.
  *
  *     limit        of      counts                                         answered
  *     requests     both    requests a second: rate.h                      429 rate_limit
  *     bytes        both    bytes of bodies a second, both ways: rate.h    429 rate_limit
- *     connections  address that are open                                  429 too_many_connections
- *     jobs         token   that wait or run                 429 too_many_jobs_of_token
- *     meshes       token   that it made and that exist      507 quota
- *     mesh_bytes   token   memory of those, by their cards  507 quota
+ *     connections  address open connections                               429 too_many_connections
+ *     jobs         token   queued and running jobs          429 too_many_jobs_of_token
+ *     meshes       token   existing meshes that it made     507 quota
+ *     mesh_bytes   token   their memory, by their cards     507 quota
  */
 #ifndef HE_API_LIMIT_LIMIT_H
 #define HE_API_LIMIT_LIMIT_H
@@ -37,33 +37,33 @@ typedef enum api_limit {
         API_LIMIT_COUNT
 } api_limit;
 
-/* The largest values that are taken. */
+/* The largest values allowed. */
 #define API_LIMIT_MOST       UINT64_C(1000000000)
 #define API_LIMIT_MOST_BYTES (UINT64_C(1) << 40)
 
-/* Seconds' worth of requests and bytes that a client may take at once: the most that is taken. */
+/* The largest burst: how many seconds' worth of requests and bytes a bucket may hold. */
 enum { API_BURST_MOST = 3600 };
 
 /* Buckets of requests and bytes that are kept at one time: rate.h. */
 enum { API_TOKEN_RATES = 8192, API_ADDRESS_RATES = 65536 };
 
-/* By api_limit; 0: none. */
+/* Indexed by api_limit; 0: no limit. */
 typedef struct api_limits {
     uint64_t most[API_LIMIT_COUNT];
 } api_limits;
 
-/* "requests"; what stands in the file of tokens and labels metrics. */
+/* Returns the name in the file of tokens and in metrics, such as "requests". */
 const char *api_limit_name(api_limit limit);
 /* Is it counted in bytes? */
 bool api_limit_is_bytes(api_limit limit);
 /* May a token have it? */
 bool api_limit_is_of_token(api_limit limit);
 
-/* A whole number; with `bytes` K, M, G or T may follow, powers of 1024. Nothing else may. */
+/* Parses a whole number; if `bytes`, K, M, G or T may follow (powers of 1024). */
 bool api_amount_parse(const char *text, size_t length, bool bytes, uint64_t *out);
 
-/* How many requests and connections each limit has refused since the start, of tokens and of
- * addresses. Any thread counts and reads, without a lock. */
+/* Counts the requests and connections that each limit has refused since the start, separately for
+ * tokens and addresses. Any thread counts and reads, without a lock. */
 typedef enum api_client_kind {
     API_CLIENT_TOKEN,
     API_CLIENT_ADDRESS,
@@ -76,7 +76,7 @@ typedef struct api_limited {
 
 void api_limited_count(api_limited *limited, api_client_kind kind, api_limit limit);
 uint64_t api_limited_get(const api_limited *limited, api_client_kind kind, api_limit limit);
-/* "token", "address". */
+/* Returns "token" or "address". */
 const char *api_client_kind_name(api_client_kind kind);
 
 #endif

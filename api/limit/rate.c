@@ -15,10 +15,10 @@ enum { REQUESTS, BYTES, AMOUNTS };
 
 typedef struct bucket {
     api_rate_key key;
-    uint64_t at;             /* `taken` is as it was then, */
-    uint64_t full;           /* and 0 for both from then on */
-    uint64_t taken[AMOUNTS]; /* millionths */
-    uint32_t next;           /* in the chain */
+    uint64_t at;             /* time of `taken` */
+    uint64_t full;           /* from this time on both amounts are 0 */
+    uint64_t taken[AMOUNTS]; /* in millionths */
+    uint32_t next;           /* next in the chain */
     uint32_t newer, older;
 } bucket;
 
@@ -89,7 +89,7 @@ static void link_newest(api_rates *rates, uint32_t index)
     rates->newest = index;
 }
 
-/* The one that loses least; there is one. */
+/* Returns the bucket whose eviction loses least; there must be one. */
 static uint32_t choose_old(const api_rates *rates, uint64_t now)
 {
     uint32_t index = rates->oldest;
@@ -117,7 +117,7 @@ static uint32_t take_place(api_rates *rates, uint64_t now)
     return index;
 }
 
-/* The newest from now on. */
+/* Makes it the most recently used one. */
 static bucket *find_or_add(api_rates *rates, const api_rate_key *key, uint64_t now)
 {
     uint32_t *head = head_of(rates, key), index = *head;
@@ -153,13 +153,13 @@ static uint64_t quotient_up(uint64_t a, uint64_t b)
     return a / b + (a % b != 0 ? 1 : 0);
 }
 
-/* Microseconds until so many millionths are filled again, at units a second. */
+/* Returns the microseconds until so many millionths are filled again, at `rate` units a second. */
 static uint64_t time_to_fill(uint64_t millionths, uint64_t rate)
 {
     return rate == 0 ? 0 : quotient_up(millionths, rate);
 }
 
-/* A bucket without a limit fills at once: one that gets a limit later begins full. */
+/* Without a limit a bucket is full at once, so that it starts full if it gets a limit later. */
 static void fill(bucket *b, const api_rate *rate, uint64_t now)
 {
     const uint64_t rates[AMOUNTS] = {rate->requests, rate->bytes};
@@ -179,12 +179,12 @@ static void take(bucket *b, const api_rate *rate, int which, uint64_t amount)
     b->full = sum(b->at, requests > bytes ? requests : bytes);
 }
 
-/* Is there one left? */
+/* Is one unit left? */
 static bool look(const bucket *b, uint64_t rate, uint64_t seconds, int which, api_rate_left *out)
 {
     const uint64_t taken = b->taken[which];
     const uint64_t capacity = product(product(rate, seconds), MILLION);
-    const uint64_t wanted = capacity - MILLION; /* a rate is at least one, and so is a second */
+    const uint64_t wanted = capacity - MILLION; /* capacity is at least one: rate and seconds are */
     *out = (api_rate_left){0};
     if (rate == 0) {
         return true;
@@ -232,7 +232,7 @@ size_t api_rates_count(api_rates *rates)
 
 /* --- fields --- */
 
-/* Every answer has them, so that they are written without printf. */
+/* Written without printf, because every answer has these fields. */
 static char *add_text(char *to, const char *text)
 {
     size_t length = strlen(text);

@@ -1,21 +1,22 @@
-/* rate.h - requests and bytes a second of each client: buckets, in a table of a fixed size.
+/* rate.h - limits requests and bytes a second of each client: token buckets in a table of a fixed
+ * size.
  *
- * A client's bucket holds `seconds` worth of its rate and fills at the rate. A request takes one
- * from the bucket of requests; bytes are taken as bodies come and answers go. A request is let in
- * while there is one request and any byte left, so that a large body or answer is never cut, but
- * leaves a debt: nothing more is let in until it is paid.
+ * A client's bucket holds `seconds` worth of its rate and fills at that rate. Each request takes
+ * one unit from the bucket of requests; bodies and answers take their bytes as they are
+ * transferred. A request is admitted if at least one request and one byte are left. So a large body
+ * or answer is never cut, but leaves a debt: no request is admitted until it is paid.
  *
  *     taken     0 ......... capacity ........ more: a debt of bytes
  *               full        empty
  *
- * What is kept is how much was taken and not yet filled again, exactly, in millionths: so new
- * limits hold at once for a bucket that is there. Times are microseconds of a clock that the
- * caller reads. One that runs backwards fills nothing.
+ * A bucket stores the amount taken and not refilled yet, exactly, in millionths, so that new limits
+ * apply at once to existing buckets. Times are microseconds of a clock that the caller reads; if it
+ * runs backwards nothing is filled.
  *
- * The table has its memory from the start. A bucket that is full says nothing that a new one would
- * not: of the API_RATE_LOOKS buckets that were used longest ago the first that is full makes room,
- * else the oldest. All that is done for a request takes the same time, however many clients there
- * are. Clients choose neither which buckets share a chain nor whose goes. Threads share one lock.
+ * The table is allocated at the start. A full bucket can be evicted without loss, since a new one
+ * is full, too: of the API_RATE_LOOKS buckets used longest ago, the first full one is evicted, else
+ * the oldest. A request takes constant time, however many clients there are. Clients can choose
+ * neither which buckets share a chain nor which bucket is evicted. Threads share one lock.
  */
 #ifndef HE_API_LIMIT_RATE_H
 #define HE_API_LIMIT_RATE_H
@@ -26,45 +27,45 @@ enum { API_RATE_LOOKS = 8 };
 
 typedef struct api_rates api_rates;
 
-/* Whose bucket it is: another client's words differ. */
+/* Identifies the client of a bucket; it is unique. */
 typedef struct api_rate_key {
     uint64_t words[2];
 } api_rate_key;
 
-/* 0 requests or bytes: as many as come. At least one second. */
+/* 0 requests or bytes: no limit. `seconds` is at least 1. */
 typedef struct api_rate {
-    uint64_t requests, bytes; /* a second */
-    uint64_t seconds;         /* of either that the bucket holds */
+    uint64_t requests, bytes; /* per second */
+    uint64_t seconds;         /* seconds' worth of either that the bucket holds */
 } api_rate;
 
-/* What is left of one of the two. */
+/* The state of one of the two amounts. */
 typedef struct api_rate_left {
-    uint64_t left;  /* that may be taken now */
+    uint64_t left;  /* available now */
     uint64_t reset; /* seconds until the bucket is full, rounded up */
-    uint64_t wait;  /* seconds until a request is let in, rounded up; 0: it was */
+    uint64_t wait;  /* seconds until a request is admitted, rounded up; 0: it was */
 } api_rate_left;
 
 typedef struct api_rate_state {
-    api_rate_left requests, bytes; /* of one without a limit nothing is said: 0 */
+    api_rate_left requests, bytes; /* an amount without a limit is 0 */
 } api_rate_state;
 
-/* NULL when memory is out. */
+/* Returns NULL when memory is out. */
 api_rates *api_rates_new(size_t capacity);
 void api_rates_free(api_rates *rates);
 
-/* Takes one request where there is one left, and a byte: false with how long to wait in the part
- * of `out` that refused it, or in both; nothing is taken then. */
+/* Takes one request if a request and a byte are left. Otherwise returns false, takes nothing, and
+ * sets `wait` in the part of `out` that refused it, or in both. */
 bool api_rates_admit(api_rates *rates, const api_rate_key *key, const api_rate *rate, uint64_t now,
                      api_rate_state *out);
-/* Takes bytes, whether there are so many or not. */
+/* Takes bytes, even if fewer are left. */
 void api_rates_charge(api_rates *rates, const api_rate_key *key, const api_rate *rate,
                       uint64_t bytes, uint64_t now);
-/* How many clients have a bucket. */
+/* Returns the number of clients with a bucket. */
 size_t api_rates_count(api_rates *rates);
 
-/* The values of the fields RateLimit-Policy and RateLimit, after the draft of the IETF's HTTPAPI
- * group (draft-ietf-httpapi-ratelimit-headers-10), ended by a null: the policies "requests" and
- * "bytes", with a limit each. "" where there is none. */
+/* Writes the values of the fields RateLimit-Policy and RateLimit, after the draft of the IETF's
+ * HTTPAPI group (draft-ietf-httpapi-ratelimit-headers-10), terminated by NUL: the policies
+ * "requests" and "bytes", as far as they have limits. "" if there are none. */
 enum { API_RATE_FIELD = 128 };
 void api_rate_policy(const api_rate *rate, char out[API_RATE_FIELD]);
 void api_rate_field(const api_rate *rate, const api_rate_state *state, char out[API_RATE_FIELD]);

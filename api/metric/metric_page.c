@@ -39,7 +39,7 @@ static void put_value(api_text *text, const char *value)
     }
 }
 
-/* {method="GET",route="/"}; `bound` is the value of "le" where there is one, else NULL. */
+/* Writes {method="GET",route="/"}; `bound` is the value of "le", or NULL. */
 static void put_labels(const api_metric_page *page, const char *const *values, const char *bound)
 {
     api_text *text = page->text;

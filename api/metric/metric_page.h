@@ -4,8 +4,8 @@
  *     # TYPE hedge_meshes gauge
  *     hedge_meshes 12
  *
- * A family is begun by its row of metric_rows.h, and its samples follow, each with the values of
- * the row's labels in their order. Failure is that of the text. */
+ * A family begins with its row of metric_rows.h; its samples follow, each with the values of the
+ * row's labels in their order. Failure is sticky, as in text.h. */
 #ifndef HE_API_METRIC_METRIC_PAGE_H
 #define HE_API_METRIC_METRIC_PAGE_H
 
@@ -25,7 +25,7 @@ typedef enum api_metric_type {
 typedef struct api_metric {
     const char *name;
     api_metric_type type;
-    const char *labels; /* joined by commas, "" for none */
+    const char *labels; /* separated by commas, "": none */
     const char *help;
 } api_metric;
 
@@ -40,16 +40,15 @@ const api_metric *api_metric_at(api_metric_id id);
 
 typedef struct api_metric_page {
     api_text *text;
-    const api_metric *row; /* of the family at hand */
+    const api_metric *row; /* of the present family */
 } api_metric_page;
 
 enum { API_METRIC_LABELS = 3 };
 
 void api_metric_begin(api_metric_page *page, api_metric_id id);
-/* `values` are as many as the row has labels; NULL where it has none. */
+/* Writes a sample. `values` has one for each label of the row; NULL if it has none. */
 void api_metric_put(api_metric_page *page, const char *const *values, double number);
-/* Of a row that is a histogram. Its values were counted by `scale`, `unit` of which are 1 on
- * the page. */
+/* Writes a histogram. Its values were counted by `scale`; `unit` of them are 1 on the page. */
 void api_metric_put_histogram(api_metric_page *page, const char *const *values,
                               const st_distribution *distribution, const uint64_t scale[ST_BOUNDS],
                               double unit);

@@ -1,14 +1,13 @@
-/* metric_rows.h - the table of metrics: what GET /metrics tells, each with its name, type, labels
- * and meaning.
+/* metric_rows.h - the table of the metrics of GET /metrics, with name, type, labels and meaning.
  *
  * The page (api/read/metrics.c), the manual hedged(8) and the tests read the rows; a test compares
  * the names in server/alerts.yaml with them. A name is the thing, then its unit in base units, as
- * https://prometheus.io/docs/practices/naming/ has it. No label has a value that a client can
- * choose: what is not known beforehand is "other". */
+ * https://prometheus.io/docs/practices/naming/ has it. No client can choose the value of a label:
+ * values that are not known in advance are "other". */
 #ifndef HE_API_METRIC_METRIC_ROWS_H
 #define HE_API_METRIC_METRIC_ROWS_H
 
-/* X(constant, name, type, labels joined by commas, meaning) */
+/* X(constant, name, type, labels separated by commas, meaning) */
 #define API_METRIC_MAP(X)                                                                          \
     /* requests */                                                                                 \
     X(REQUESTS, "hedge_http_requests_total", COUNTER, "method,route,status",                       \

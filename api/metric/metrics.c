@@ -8,8 +8,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* In one table of counters: those without labels, problems by code, edits by operation and result,
- * and for each series and class the buckets of a histogram and its sum. */
+/* The parts of one table of counters: those without labels; problems by code; edits by operation
+ * and result; and for each series and class the buckets of a histogram and its sum. */
 enum {
     PROBLEMS = API_COUNTERS,
     EDITS = PROBLEMS + API_CODE_COUNT,
@@ -79,7 +79,7 @@ static api_class class_of(int status)
                            : API_CLASS_NONE;
 }
 
-/* Where the histogram of a series begins. */
+/* Returns the index at which the histogram of a series begins. */
 static size_t series_at(const api_metrics *metrics, int route, api_method method, api_class of)
 {
     const size_t series = route == API_NO_ROUTE ? 2 * metrics->routes + method
@@ -90,7 +90,7 @@ static size_t series_at(const api_metrics *metrics, int route, api_method method
 void api_count_request(api_metrics *metrics, const api_served *served)
 {
     st_counters *counters = metrics->counters;
-    /* Of a row the method is its own, unless it is HEAD. */
+    /* A row counts its own method; HEAD is counted separately. */
     const api_method method = served->route == API_NO_ROUTE ? method_of(served->method)
                               : served->method[0] == 'H'    ? API_METHOD_HEAD
                                                             : API_METHOD_OTHER;

@@ -1,8 +1,8 @@
-/* metrics.h - what is counted of requests and connections, for GET /metrics.
+/* metrics.h - counters of requests and connections for GET /metrics.
  *
- * Counting takes no lock and no memory; any thread may. What the rooms of core and the table of
- * jobs know of themselves they count themselves (st_store_measure, api_job_measure, st_pool_look);
- * the page asks them. */
+ * Counting takes no lock and allocates nothing; any thread may do it. The rooms of core and the
+ * table of jobs have counters of their own (st_store_measure, api_job_measure, st_pool_look), which
+ * the page reads. */
 #ifndef HE_API_METRIC_METRICS_H
 #define HE_API_METRIC_METRICS_H
 
@@ -16,7 +16,7 @@
 
 typedef struct api_metrics api_metrics;
 
-/* For a table of so many routes, at zero. NULL when memory is out. */
+/* Makes counters for a table of this many routes, all zero. Returns NULL when memory is out. */
 api_metrics *api_metrics_new(size_t routes);
 void api_metrics_free(api_metrics *metrics); /* takes NULL */
 
@@ -34,9 +34,9 @@ typedef enum api_method {
     API_METHODS
 } api_method;
 
-const char *api_method_name(api_method method); /* "other" for API_METHOD_OTHER */
+const char *api_method_name(api_method method); /* returns "other" for API_METHOD_OTHER */
 
-/* Classes of statuses: 1xx is no answer. */
+/* Classes of statuses; 1xx is no final answer. */
 typedef enum api_class {
     API_CLASS_NONE, /* there was no answer */
     API_CLASS_2XX,
@@ -48,14 +48,13 @@ typedef enum api_class {
 
 const char *api_class_name(api_class of);
 
-/* Requests are counted by series. One that matched a row of the table of routes is of a series of
- * that row, which has one for its own method and one for HEAD; all others are of a series of their
- * method. */
+/* Requests are counted by series. A row of the table of routes has one series for its own method
+ * and one for HEAD; requests that match no row belong to a series of their method. */
 enum { API_NO_ROUTE = -1 };
 
 /* A request that ended. */
 typedef struct api_served {
-    int route; /* the number of its row, or API_NO_ROUTE */
+    int route; /* index of its row, or API_NO_ROUTE */
     const char *method;
     int status; /* 0: there was no answer */
     int code;   /* api_code or he_status of the problem; HE_OK: none */
@@ -64,11 +63,11 @@ typedef struct api_served {
 
 void api_count_request(api_metrics *metrics, const api_served *served);
 
-/* What was counted of the requests of a row that had its method, or HEAD (`route` API_NO_ROUTE: of
- * those with this method that matched none), and were answered in this class. */
+/* Returns the statistics of requests that matched a row with its own method or HEAD, or (`route` is
+ * API_NO_ROUTE) matched no row with this method, and were answered in this class. */
 void api_requests_counted(const api_metrics *metrics, int route, api_method method, api_class of,
                           st_distribution *out);
-/* How many requests had that problem. */
+/* Returns the number of requests with this problem. */
 uint64_t api_problems_counted(const api_metrics *metrics, int code);
 
 /* --- edits --- */
@@ -80,14 +79,14 @@ typedef enum api_edit_result {
     API_EDIT_RESULTS
 } api_edit_result;
 
-/* Numbers of operations are those of he_op_at; these two follow the highest one there may be. */
+/* Operations are numbered as by he_op_at; undo and redo follow the highest possible number. */
 enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
 
-/* `count` times operation `number` came to this. */
+/* Counts `count` operations with this number and result. */
 void api_count_edits(api_metrics *metrics, size_t number, api_edit_result result, uint64_t count);
 uint64_t api_edits_counted(const api_metrics *metrics, size_t number, api_edit_result result);
 
-/* --- what has neither route nor operation --- */
+/* --- counters without route or operation --- */
 
 typedef enum api_counter {
     API_COUNT_BEGUN, /* requests */
@@ -96,10 +95,10 @@ typedef enum api_counter {
     API_COUNT_BYTES_OUT,
     API_COUNT_OPENED, /* connections */
     API_COUNT_CLOSED,
-    API_COUNT_REFUSED_LIMIT, /* connections that were refused, by why */
+    API_COUNT_REFUSED_LIMIT, /* connections that were refused, by reason */
     API_COUNT_REFUSED_MEMORY,
     API_COUNT_REFUSED_STOPPING,
-    API_COUNT_LATE_IDLE, /* connections that were closed, by what took too long */
+    API_COUNT_LATE_IDLE, /* connections that were closed for being too slow, by stage */
     API_COUNT_LATE_HEAD,
     API_COUNT_LATE_BODY,
     API_COUNT_LATE_ANSWER,
@@ -109,7 +108,7 @@ typedef enum api_counter {
 void api_count(api_metrics *metrics, api_counter which);
 uint64_t api_counted(const api_metrics *metrics, api_counter which);
 
-/* How many connections there may be; 0 until the server says so. */
+/* Sets the maximum number of connections; 0 until the server calls it. */
 void api_set_connection_limit(api_metrics *metrics, uint64_t limit);
 uint64_t api_connection_limit(const api_metrics *metrics);
 

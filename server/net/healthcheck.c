@@ -44,7 +44,7 @@ static bool split(const char *url, target *out)
            srv_address_parse(authority, &out->address);
 }
 
-/* Returns how many bytes of an answer came. */
+/* Returns the number of bytes of the answer. */
 static size_t ask_plain(int fd, const char *request, size_t length, char *answer, size_t size)
 {
     size_t got = 0;
@@ -56,7 +56,7 @@ static size_t ask_plain(int fd, const char *request, size_t length, char *answer
     return got;
 }
 
-/* The status, 0 when no answer came. */
+/* Returns the status, 0 if there was no answer. */
 static int ask(const target *to)
 {
     char request[512], answer[STATUS_LINE];

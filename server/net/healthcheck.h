@@ -5,10 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* GET `url`, waiting 3 seconds at most: "http://127.0.0.1:8080/livez", "https://...", whose
+/* Sends GET `url` and waits at most 3 seconds: "http://127.0.0.1:8080/livez", "https://...", whose
  * certificate is not verified (tls_client.h), or "unix:/run/hedge/socket". The host is an address
- * or localhost; without a path, /livez is asked for. True for status 200; else `message` says what
- * came instead. */
+ * or localhost; the default path is /livez. Returns true for status 200; otherwise `message` says
+ * what happened instead. */
 bool srv_healthcheck(const char *url, char *message, size_t size);
 
 #endif

@@ -18,7 +18,7 @@ bool srv_notify(const char *message)
     }
     memcpy(to.sun_path, name, length);
     if (name[0] == '@') {
-        to.sun_path[0] = '\0'; /* no file, but a name that the kernel keeps */
+        to.sun_path[0] = '\0'; /* no file: an abstract name, which exists only in the kernel */
     }
     int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (fd < 0) {
@@ -30,7 +30,7 @@ bool srv_notify(const char *message)
     return sent >= 0;
 }
 
-/* A positive number and nothing else; 0 otherwise. */
+/* Parses a positive number; returns 0 for any other text. */
 static uint64_t number_of(const char *text)
 {
     char *end;

@@ -1,20 +1,20 @@
-/* notify.h - what systemd is told: the protocol of sd_notify(3), without its library.
+/* notify.h - notifications for systemd: the protocol of sd_notify(3), without its library.
  *
  * systemd gives a service of Type=notify a Unix datagram socket in NOTIFY_SOCKET, and with
- * WatchdogSec= the time within which it wants to hear of it in WATCHDOG_USEC. Outside of such a
- * service nothing here does anything. */
+ * WatchdogSec= the interval of the watchdog in WATCHDOG_USEC. Outside of such a service these
+ * functions do nothing. */
 #ifndef HE_SERVER_NET_NOTIFY_H
 #define HE_SERVER_NET_NOTIFY_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Send a message, such as "READY=1"; lines are parted by '\n'. False when there is nobody to tell,
- * or the message did not get there, which is no reason to stop. */
+/* Sends a message, such as "READY=1"; lines are separated by '\n'. Returns false if there is no
+ * socket, or if sending failed, which is no reason to stop. */
 bool srv_notify(const char *message);
 
-/* Microseconds within which "WATCHDOG=1" is waited for; 0 when nobody waits, or for another
- * process than this one. */
+/* Returns the microseconds within which systemd expects "WATCHDOG=1"; 0 without a watchdog, or if
+ * it watches another process. */
 uint64_t srv_notify_watchdog(void);
 
 #endif

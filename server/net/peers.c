@@ -9,8 +9,8 @@
 
 typedef struct peer {
     api_rate_key address;
-    uint32_t count; /* of connections; 0: free */
-    uint32_t next;  /* in its chain, or of those that are free */
+    uint32_t count; /* number of connections; 0: free */
+    uint32_t next;  /* next in its chain, or in the list of free entries */
 } peer;
 
 struct srv_peers {

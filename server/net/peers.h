@@ -1,8 +1,8 @@
-/* peers.h - how many connections each address has open.
+/* peers.h - counts the open connections of each address.
  *
- * The table has its memory from the start, as much as there can be connections. Entering and
- * leaving take the same time however many addresses there are, and nobody outside can choose which
- * of them share a chain. Workers share one lock. */
+ * The table is allocated at the start, for the maximum number of connections. Entering and leaving
+ * take the same time however many addresses there are, and clients cannot choose which addresses
+ * share a chain. Workers share one lock. */
 #ifndef HE_SERVER_NET_PEERS_H
 #define HE_SERVER_NET_PEERS_H
 
@@ -14,14 +14,14 @@ typedef struct srv_peers srv_peers;
 
 enum { SRV_NO_PEER = UINT32_MAX };
 
-/* Counts so many connections at one time. NULL when memory is out. */
+/* Makes a table for at most this many connections. Returns NULL when memory is out. */
 srv_peers *srv_peers_new(size_t connections);
 void srv_peers_free(srv_peers *peers); /* takes NULL */
 
-/* A connection of this address was opened. *count is how many it has, with this one. Returns what
- * srv_peers_leave takes, SRV_NO_PEER where there are more connections than were announced. */
+/* Counts a new connection of this address. Sets *count to its number of connections, this one
+ * included. Returns the argument for srv_peers_leave, or SRV_NO_PEER if the table is full. */
 uint32_t srv_peers_enter(srv_peers *peers, const api_rate_key *address, size_t *count);
-/* It was closed. Takes SRV_NO_PEER. */
+/* Counts a connection that was closed. Takes SRV_NO_PEER. */
 void srv_peers_leave(srv_peers *peers, uint32_t peer);
 
 #endif

@@ -25,7 +25,7 @@ static bool parse_bits(const char *text, unsigned most, unsigned *out)
     return value <= most;
 }
 
-/* An address without a port. */
+/* Parses an address without a port. */
 static bool parse_plain(const char *text, srv_network *out)
 {
     out->family = AF_INET;
@@ -91,8 +91,8 @@ bool srv_proxies_has(const srv_proxies *proxies, const char *address)
 
 /* --- one element of a list --- */
 
-/* "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]", "[2001:db8::1]:80". The address as
- * srv_address_format writes it. */
+/* Parses "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" or "[2001:db8::1]:80" and
+ * writes the address like srv_address_format. */
 static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_TEXT])
 {
     char copy[MOST_ADDRESS];
@@ -130,7 +130,8 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
            inet_ntop(address.family, address.address, out, SRV_ADDRESS_TEXT) != NULL;
 }
 
-/* T1. NULL: an element that tells no address. Does it stand, so far, in the place that counts? */
+/* T1. Handles an element; `address` is NULL if it has none. Returns whether it is, so far, the one
+ * that counts. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -159,7 +160,7 @@ static bool read_scheme(const char *text, size_t length, srv_scheme *out)
 
 /* --- X-Forwarded-For, X-Forwarded-Proto --- */
 
-/* The next element without the blanks around it; NULL after the last one. */
+/* Returns the next element without surrounding blanks; NULL after the last one. */
 static const char *next_element(const char **at, size_t *length)
 {
     const char *text = *at;
@@ -185,7 +186,7 @@ static void read_addresses(srv_told *told, const srv_proxies *proxies, const cha
         char address[SRV_ADDRESS_TEXT];
         if (parse_address(text, length, address)) {
             take_address(told, proxies, address);
-        } else if (length > 0) { /* an empty element is none: RFC 9110 5.6.1 */
+        } else if (length > 0) { /* an empty element does not count: RFC 9110 5.6.1 */
             take_address(told, proxies, NULL);
             told->malformed = true;
         }
@@ -209,7 +210,7 @@ static bool read_schemes(srv_told *told, const char *value)
 typedef struct pair {
     const char *name;
     size_t name_length;
-    char value[MOST_ADDRESS]; /* without quotes; "" where it is longer than any that counts */
+    char value[MOST_ADDRESS]; /* without quotes; "" if it is too long to count */
 } pair;
 
 static size_t token_length(const char *text)
@@ -218,7 +219,7 @@ static size_t token_length(const char *text)
                         "!#$%&'*+-.^_`|~");
 }
 
-/* name=token or name="text"; NULL where it is neither, else what follows. */
+/* Reads name=token or name="text"; returns NULL if it is neither, else the position after it. */
 static const char *read_pair(const char *at, pair *out)
 {
     size_t length = 0;
@@ -247,10 +248,10 @@ static bool is_named(const pair *p, const char *name)
     return strlen(name) == p->name_length && strncasecmp(p->name, name, p->name_length) == 0;
 }
 
-/* What an element says; it may be said once. */
+/* The members of one element; each may occur once. */
 typedef struct element {
     bool empty, has_for, has_proto;
-    char address[SRV_ADDRESS_TEXT]; /* "": it tells none */
+    char address[SRV_ADDRESS_TEXT]; /* "": none */
     srv_scheme scheme;
 } element;
 
@@ -275,7 +276,7 @@ static const char *skip_blanks(const char *at)
     return at + strspn(at, " \t");
 }
 
-/* False where it is not well formed. */
+/* Returns false if it is malformed. */
 static bool read_forwarded(srv_told *told, const srv_proxies *proxies, const char *at)
 {
     for (;;) {
@@ -304,7 +305,7 @@ static bool read_forwarded(srv_told *told, const srv_proxies *proxies, const cha
     }
 }
 
-/* --- all of them --- */
+/* --- all lines --- */
 
 void srv_forwarding_read(srv_forwarding *told, const srv_proxies *proxies, const char *name,
                          const char *value)

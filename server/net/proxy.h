@@ -1,21 +1,21 @@
-/* proxy.h - who asked a proxy, going by the headers that it adds.
+/* proxy.h - finds the client of a proxy from the headers that the proxy adds.
  *
- * Behind a proxy all connections come from the proxy. It tells its client's address and scheme in
- * headers that any client can send as well. They count only where the peer of the connection is one
- * of the proxies that --trusted-proxy names.
+ * Behind a proxy all connections come from the proxy. It sends its client's address and scheme in
+ * headers, which any client can forge. They count only if the peer of the connection is one of the
+ * proxies that --trusted-proxy names.
  *
- *   T1  Each proxy on the way adds what it knows at the end of the list, so the list is read from
- *       its end: addresses of trusted proxies are passed over, and the first other one is the
- *       client's. What stands before it was written by the client and is not looked at. Where every
+ *   T1  Each proxy on the way appends to the list, so the list is read from
+ *       its end: addresses of trusted proxies are skipped, and the first other one is the
+ *       client's. The client may have written what precedes it, so that is ignored. If every
  *       address is a trusted proxy's, the first of the list is the client's.
- *   T2  Forwarded (RFC 7239) tells address and scheme in one element. X-Forwarded-For tells
+ *   T2  Forwarded (RFC 7239) has address and scheme in one element. X-Forwarded-For has
  *       addresses; the last word of X-Forwarded-Proto is the scheme.
- *   T3  A trusted proxy that knows only one of the two lets the other one through as its client
- *       wrote it. So where Forwarded and X-Forwarded-For name different clients the request is
- *       refused, and likewise where the two schemes differ.
- *   T4  An address that is none, in the place that counts, is refused, and so is a Forwarded that
- *       is not well formed anywhere: a quote that the client leaves open would hide what the proxy
- *       added. `for=unknown` and hidden names (`for=_x`) are well formed and tell no address. */
+ *   T3  A trusted proxy that sets only one of the two headers passes the other one on as its client
+ *       wrote it. So if Forwarded and X-Forwarded-For name different clients the request is
+ *       refused, and also if the two schemes differ.
+ *   T4  An invalid address in the place that counts is refused, and so is a Forwarded header that
+ *       is malformed anywhere: a quote that the client leaves open would hide what the proxy
+ *       added. `for=unknown` and hidden names (`for=_x`) are well formed and have no address. */
 #ifndef HE_SERVER_NET_PROXY_H
 #define HE_SERVER_NET_PROXY_H
 
@@ -27,7 +27,7 @@
 
 enum { SRV_MAX_PROXIES = 32 };
 
-/* The addresses that agree with `address` in its first `bits` bits. */
+/* The addresses that share their first `bits` bits with `address`. */
 typedef struct srv_network {
     int family; /* AF_INET, AF_INET6; AF_UNIX: every peer on a Unix socket */
     uint8_t address[16];
@@ -39,34 +39,35 @@ typedef struct srv_proxies {
     size_t count;
 } srv_proxies;
 
-/* "10.0.0.7", "10.0.0.0/8", "2001:db8::/32", or "unix". False when it is none, or one too many. */
+/* Adds "10.0.0.7", "10.0.0.0/8", "2001:db8::/32", or "unix". Returns false if the text is none of
+ * these, or if there are too many. */
 bool srv_proxies_add(srv_proxies *proxies, const char *text);
-/* Is the address of this text, as srv_address_format writes it without a port, one of a proxy? */
+/* Is this address (as srv_address_format writes it without a port) one of a proxy? */
 bool srv_proxies_has(const srv_proxies *proxies, const char *address);
 
 typedef enum srv_scheme { SRV_SCHEME_UNKNOWN, SRV_SCHEME_HTTP, SRV_SCHEME_HTTPS } srv_scheme;
 
-/* What one kind of header has told so far; {0} before the first line. Only proxy.c looks inside. */
+/* What lines of one kind of header have said so far; {0} before the first line. Only proxy.c uses
+ * the members. */
 typedef struct srv_told {
-    char address[SRV_ADDRESS_TEXT]; /* "": not told */
+    char address[SRV_ADDRESS_TEXT]; /* "": none */
     srv_scheme scheme;
-    bool any;       /* an element came */
-    bool malformed; /* the one that counts is no address */
+    bool any;       /* there was an element */
+    bool malformed; /* the element that counts is no valid address */
 } srv_told;
 
 typedef struct srv_forwarding {
     srv_told forwarded, x_forwarded;
-    bool broken;    /* a line of Forwarded */
-    bool no_scheme; /* X-Forwarded-Proto has another last word */
+    bool broken;    /* a line of Forwarded is malformed */
+    bool no_scheme; /* the last word of X-Forwarded-Proto is no scheme */
 } srv_forwarding;
 
-/* Takes a line of a header, in the order in which they came; headers of other names are passed
- * over. */
+/* Takes a header line, in the order in which they arrived; headers with other names are ignored. */
 void srv_forwarding_read(srv_forwarding *told, const srv_proxies *proxies, const char *name,
                          const char *value);
-/* What the lines told, after the last one: the client's address into `address`, which is left as it
- * is where none told one, and the scheme. Returns NULL, or a sentence that says why the request is
- * refused: then nothing is written. */
+/* Evaluates the lines after the last one: writes the client's address to `address`, which is
+ * unchanged if there was none, and the scheme. Returns NULL, or a sentence that says why the
+ * request is refused; then nothing is written. */
 const char *srv_forwarding_end(const srv_forwarding *told, char address[SRV_ADDRESS_TEXT],
                                srv_scheme *scheme);
 

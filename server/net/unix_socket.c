@@ -16,7 +16,7 @@ static int fail(char *message, size_t size, const char *path, const char *why)
     return -1;
 }
 
-/* The folder of a path, locked; -1 where it cannot be. */
+/* Opens and locks the folder of a path; returns -1 on failure. */
 static int lock_folder(const char *path)
 {
     char folder[SRV_MAX_PATH + 1];
@@ -33,8 +33,8 @@ static int lock_folder(const char *path)
     return fd;
 }
 
-/* Makes room for a socket at the path. NULL, or what keeps it from being made. Somebody who does
- * not accept at the moment (EAGAIN) listens all the same. */
+/* Removes an abandoned socket at the path. Returns NULL, or why the path cannot be used. A listener
+ * that does not accept at the moment (EAGAIN) is still a listener. */
 static const char *make_room(const srv_address *address, const char *path)
 {
     struct stat found;
@@ -59,8 +59,8 @@ static const char *make_room(const srv_address *address, const char *path)
     return unlink(path) == 0 ? NULL : strerror(errno);
 }
 
-/* The file has its mode from the moment it is there: bind() takes the socket's own, less what the
- * mask of this process forbids. */
+/* The file has its mode from the beginning: bind() uses the socket's mode, reduced by the umask of
+ * this process. */
 static const char *bind_to(int fd, const srv_address *address, const char *path, int backlog,
                            srv_unix_socket *made)
 {
