@@ -68,7 +68,7 @@ uint32_t he_json_find(const he_json *json, uint32_t object, const char *name)
 
 /* --- strings --- */
 
-/* Does the string begin with `text`? `*whole` says whether it ends there too. */
+/* Does the string begin with `text`? `*whole` says whether it also ends there. */
 static bool compare(const he_json *json, uint32_t value, const char *text, bool *whole)
 {
     if (he_json_type(json, value) != '"') {
@@ -128,7 +128,7 @@ static double number_at(const he_json *json, uint32_t value)
     size_t used;
     he_status status =
         he_double_parse(p, json->text + json->length, HE_JSON_NUMBER, &number, &used);
-    return status == HE_OK ? number : 0; /* it was checked */
+    return status == HE_OK ? number : 0; /* it was checked before */
 }
 
 he_status he_json_number(const he_json *json, uint32_t value, double *out, he_error *err)
@@ -160,7 +160,7 @@ he_status he_json_whole(const he_json *json, uint32_t value, uint64_t least, uin
     return HE_OK;
 }
 
-/* --- refusals --- */
+/* --- errors --- */
 
 void he_json_path(const he_json *json, uint32_t value, char *to, size_t size)
 {
@@ -179,7 +179,7 @@ void he_json_path(const he_json *json, uint32_t value, char *to, size_t size)
             index++;
         }
         if (item == HE_NONE) {
-            return; /* it is not inside */
+            return; /* the value is not inside this one */
         }
         char name[40], part[60];
         if (object) {

@@ -1,10 +1,10 @@
-/* json_bytes.h - the blanks of JSON, and the bytes a number may have. */
+/* json_bytes.h - skips the blanks of JSON, and decides which bytes a number may have. */
 #ifndef HE_FORMAT_TEXT_JSON_BYTES_H
 #define HE_FORMAT_TEXT_JSON_BYTES_H
 
 #include <stdbool.h>
 
-/* The first byte from `at` on that is not a blank; `end` where all are. */
+/* Returns the first byte from `at` on that is not a blank; `end` if all are. */
 static inline const char *he_json_skip_blanks(const char *at, const char *end)
 {
     while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) {

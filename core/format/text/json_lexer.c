@@ -94,7 +94,7 @@ static he_token end_value(he_lexer *x, he_token token)
 
 /* --- numbers --- */
 
-/* The bytes of a number that a piece cut, up to one that cannot be of it. */
+/* Carries the bytes of a number that a piece cuts, up to one that cannot belong to it. */
 static he_token carry_number(he_lexer *x)
 {
     he_lexer_carry *carry = x->carry;
@@ -130,7 +130,7 @@ static he_token read_number(he_lexer *x)
         return carry_number(x);
     }
     if (status != HE_SYNTAX && after < x->end && he_json_is_number_byte(*after)) {
-        status = HE_SYNTAX; /* "01" is no number with another one behind it */
+        status = HE_SYNTAX; /* "01" is an error, not a number followed by another */
     }
     if (status != HE_OK) {
         return fault_here(x, status == HE_SYNTAX ? HE_FAULT_NUMBER : HE_FAULT_NOT_FINITE);
@@ -159,7 +159,7 @@ static he_token read_word(he_lexer *x)
 
 /* --- strings --- */
 
-/* Some bytes of a name in a text whose pieces go away. */
+/* Carries bytes of a name in a text whose pieces are freed. */
 static void carry_name(he_lexer *x, const char *bytes, size_t length)
 {
     size_t used = innermost(x)->names + x->name_length;
@@ -170,7 +170,7 @@ static void carry_name(he_lexer *x, const char *bytes, size_t length)
     }
 }
 
-/* The text from x->at up to `to` is of the string that is open. */
+/* Adds the text from x->at up to `to` to the open string. */
 static void pass_string(he_lexer *x, const char *to)
 {
     if (x->state == HE_JSON_IN_NAME && x->carry != NULL) {
@@ -193,7 +193,7 @@ static he_token read_colon(he_lexer *x)
     return HE_TOKEN_KEY;
 }
 
-/* Past the closing quote. */
+/* Ends a string at its closing quote. */
 static he_token close_string(he_lexer *x)
 {
     x->at++;
@@ -212,7 +212,8 @@ static he_token close_string(he_lexer *x)
     return read_colon(x);
 }
 
-/* The character whose first bytes are carried. Returns false where it is cut again, or wrong. */
+/* Completes the character whose first bytes are carried. Returns false if it is cut again, or not
+ * valid. */
 static bool mend_character(he_lexer *x, he_token *token)
 {
     he_lexer_carry *carry = x->carry;
@@ -239,7 +240,7 @@ static bool is_plain(char c)
     return (unsigned char)c >= 0x20 && (unsigned char)c < 0x80 && c != '"' && c != '\\';
 }
 
-/* How far the string may be read before it is interrupted or its name is too long. */
+/* Returns how far the string may be read before it is interrupted or its name is too long. */
 static const char *string_stop(const he_lexer *x)
 {
     size_t most = HE_JSON_STRING, left = (size_t)(x->end - x->at);
@@ -383,7 +384,7 @@ static he_token read_value(he_lexer *x)
     }
 }
 
-/* The whole text ended. */
+/* Handles the end of the whole text. */
 static he_token end_text(he_lexer *x)
 {
     if (x->state == HE_JSON_DONE) {

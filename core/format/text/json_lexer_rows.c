@@ -5,7 +5,7 @@
 #include "format/text/number.h"
 #include "mesh/mesh.h"
 
-/* After a number of a row: at the ',' or ']', NULL where neither stands there. */
+/* Returns the ',' or ']' after a number of a row, NULL if neither follows. */
 static const char *pass_number(const char *at, const char *end)
 {
     if (at < end && *at != ',' && *at != ']') {
@@ -45,7 +45,8 @@ size_t he_lexer_take_numbers(he_lexer *x, double *out, size_t most)
     return 0;
 }
 
-/* Decimal digits of an index: NULL where there are none, or more than an id can have. */
+/* Reads the decimal digits of an index. Returns NULL if there are none, or more than an id can
+ * have. */
 static const char *read_index(const char *at, const char *end, uint32_t *value)
 {
     uint64_t sum = 0;

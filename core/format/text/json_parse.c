@@ -7,19 +7,19 @@
 
 #include <string.h>
 
-/* Bytes between two looks at the watch. */
+/* Bytes between two steps of the watch. */
 enum { STRIDE = 1 << 16 };
 
 typedef struct scan {
     he_json *json;
     he_watch *watch;
-    const char *told; /* up to here */
+    const char *told; /* progress was reported up to here */
     he_lexer lexer;
-    uint32_t open[HE_JSON_DEPTH]; /* arrays and objects */
+    uint32_t open[HE_JSON_DEPTH]; /* open arrays and objects */
     he_error *err;
 } scan;
 
-/* What the lexer has against the text. */
+/* Fails with the fault that the lexer found. */
 static he_status refuse(const scan *s)
 {
     const he_lexer *x = &s->lexer;
@@ -51,7 +51,7 @@ static he_status poll(scan *s)
     return s->lexer.at - s->told < STRIDE ? HE_OK : tell(s);
 }
 
-/* Makes the value or name that begins at byte `place` of the input and is, so far, alone. */
+/* Adds the value or name that begins at byte `place` of the input and has nothing inside yet. */
 static he_status add_value(scan *s, uint64_t place)
 {
     he_json *json = s->json;
@@ -88,7 +88,7 @@ static he_status repeated(const scan *s, uint32_t name)
                       "JSON: the member '%s' is given twice", quoted);
 }
 
-/* Names longer than this are compared by their first bytes and refused as too long. */
+/* A longer name is compared by its first bytes and refused as too long. */
 enum { NAME_ROOM = 1024, FEW = 12 };
 
 static he_status check_few(const scan *s, uint32_t object)
@@ -159,7 +159,7 @@ static he_status check_members(scan *s, uint32_t object)
 
 /* --- values --- */
 
-/* The value whose bracket closed. */
+/* Ends the value whose bracket was closed. */
 static he_status close_value(scan *s)
 {
     uint32_t value = s->open[s->lexer.depth];

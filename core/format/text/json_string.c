@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* The value of `count` hexadecimal digits; -1 where a byte of them that is there is none. */
+/* Returns the value of `count` hexadecimal digits; -1 if one of the bytes before the end is no
+ * digit. */
 static int hex(const char *at, size_t count)
 {
     int value = 0;
@@ -22,7 +23,7 @@ static int hex(const char *at, size_t count)
     return value;
 }
 
-/* The second half of a surrogate pair, "\uDC00" to "\uDFFF", after the first one. */
+/* Reads the second half of a surrogate pair, "\uDC00" to "\uDFFF", after the first one. */
 static size_t pass_low_half(const char *at, const char *end, bool *cut)
 {
     size_t there = end - at < 6 ? (size_t)(end - at) : 6;
@@ -32,7 +33,7 @@ static size_t pass_low_half(const char *at, const char *end, bool *cut)
     return there == 6 && escape && unit >= 0xDC00 && unit <= 0xDFFF ? 6 : 0;
 }
 
-/* From the backslash at `at` on. */
+/* Reads an escape, from the backslash at `at` on. */
 static size_t pass_escape(const char *at, const char *end, const char **wrong, bool *cut)
 {
     size_t there = (size_t)(end - at);
@@ -63,7 +64,7 @@ static size_t pass_escape(const char *at, const char *end, const char **wrong, b
 }
 
 /* Could these bytes, which are no character, be the beginning of one? Whether the second byte fits
- * the first is seen when all are there. */
+ * the first is only tested when all bytes are there. */
 static bool begins_character(const unsigned char *bytes, size_t length)
 {
     size_t size = bytes[0] < 0xC2   ? 0
