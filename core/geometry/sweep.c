@@ -18,8 +18,8 @@ typedef struct interval {
 typedef struct sweep {
     const he_flat *f;
     uint32_t *rank; /* for each corner, its place in the order of visits */
-    uint32_t
-        *within; /* for each side, the interval it bounds; HE_NONE while the line is not on it */
+    /* The interval that each side bounds; HE_NONE while the line is not on it. */
+    uint32_t *within;
     interval *intervals;
     link *links;
     uint32_t interval_count, link_count, root;

@@ -49,8 +49,8 @@ typedef struct he_triangulation_work {
     const he_joins *joins; /* index of edges; NULL: edges are searched around their ends */
     he_joins own;          /* the index, once it is worth making, with the caller's diagonals */
     uint64_t sorted;       /* value of `searched` when the index was made */
-    he_watch
-        *watch; /* told from time to time that `done` of `of` are done, which the caller counts */
+    /* Gets the progress from time to time: `done` of `of`, which the caller counts. */
+    he_watch *watch;
     uint64_t done, of, told;
 } he_triangulation_work;
 

@@ -117,8 +117,8 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
         double high, wide;
         he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
         double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
-        double askew =
-            sqrt(1 - same * same) + 1e-3; /* the margin covers a small angle lost by rounding */
+        /* The margin covers a small angle lost by rounding. */
+        double askew = sqrt(1 - same * same) + 1e-3;
         reach(from, normal, &high, &wide);
         thick = fmax(thick, high + children[i].thick + children[i].radius * askew);
         radius = fmax(radius, wide + children[i].radius + children[i].thick * askew);

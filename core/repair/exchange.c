@@ -27,8 +27,8 @@ typedef struct slot {
 typedef struct exchanging {
     he_splitting *s;
     uint32_t *edge_of; /* edge of each corner */
-    uint32_t
-        *begin; /* where each edge's corners begin in `list`; only for edges with more than two */
+    /* Where each edge's corners begin in `list`; only for edges with more than two. */
+    uint32_t *begin;
     uint32_t *list;
     size_t edges;
     uint32_t fans; /* number of fans so far */

@@ -107,8 +107,8 @@ typedef struct he_repaired {
     uint32_t *vertex_from, *face_from;
     size_t vertices, faces; /* entries of these arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
-    he_repair_clash
-        clashes[HE_REPAIR_NAMED]; /* for orient; there are accounts[HE_REPAIR_ORIENT].left */
+    /* The clashes that orient found; there are accounts[HE_REPAIR_ORIENT].left. */
+    he_repair_clash clashes[HE_REPAIR_NAMED];
 } he_repaired;
 
 void he_repaired_clear(he_repaired *repaired);

@@ -25,8 +25,8 @@ typedef struct st_cursor st_cursor;
 typedef struct st_cursor_step {
     uint64_t revision;
     st_action action;
-    const he_delta
-        *delta;  /* its words may be read by he_changes_find; its objects belong to another state */
+    /* Its words may be read by he_changes_find; its objects belong to another state. */
+    const he_delta *delta;
     bool undone; /* the delta was applied backwards */
     const he_mesh *content;
 } st_cursor_step;

@@ -17,8 +17,8 @@ struct st_step {
     uint64_t applied;  /* revision of the entry that applied it last */
     st_revision *kept; /* that entry, if only the redo stack still needs it */
     uint32_t uses;     /* how many entries and stacks use it */
-    _Atomic uint32_t
-        holders; /* references: one from the log while `uses` is not 0, one from each st_log_hold */
+    /* References: one from the log while `uses` is not 0, one from each st_log_hold. */
+    _Atomic uint32_t holders;
     st_stack stack;
     st_step *below, *above; /* neighbours on its stack */
 };

@@ -44,8 +44,8 @@ typedef struct st_keyed st_keyed;       /* a request with an Idempotency-Key, be
 typedef struct st_cause {
     const st_keyed *keyed; /* the request with an Idempotency-Key; NULL: none */
     const char *job;       /* the job that makes the change; NULL: none */
-    const char
-        *holder; /* the holder of a mesh that it creates (holder/holders.h); "" or NULL: none */
+    /* The holder of a mesh that it creates (holder/holders.h); "" or NULL: none. */
+    const char *holder;
 } st_cause;
 
 /* Plain facts about a stored mesh, copied out under its lock. */

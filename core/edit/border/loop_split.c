@@ -123,8 +123,8 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    he_halfedge
-        inner[3]; /* the half-edges of the new edges along the new cap, which run as the cycle */
+    /* The half-edges of the new edges along the new cap, which run as the cycle. */
+    he_halfedge inner[3];
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
         made->vertices[i] = he_new_vertex(m);

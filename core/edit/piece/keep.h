@@ -35,8 +35,8 @@ typedef struct he_keep_pairs {
 
 /* The kept values of one weld, from he_keep_begin to he_keep_end. */
 typedef struct he_keeping {
-    uint64_t
-        count; /* values of vertices that differ from that of the vertex they are merged into */
+    /* Values of vertices that differ from that of the vertex they are merged into. */
+    uint64_t count;
     he_bracket bracket; /* begun only if there are such values */
 } he_keeping;
 

@@ -36,8 +36,8 @@ typedef struct he_chords {
     he_ids pairs;
     /* used while planning */
     he_ids partners; /* two for each corner */
-    he_ids
-        open; /* chords begun and not ended, and which sides the part beside each has corners on */
+    /* Chords begun and not ended, and which sides the part beside each has corners on. */
+    he_ids open;
     struct he_line_crossing *line;
     size_t line_capacity;
 } he_chords;

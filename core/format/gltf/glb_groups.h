@@ -17,8 +17,8 @@ enum { HE_GLB_PRIMITIVES = 4096 };
 enum { HE_GLB_OBJECT, HE_GLB_GROUP, HE_GLB_MATERIAL, HE_GLB_NAMES };
 
 typedef struct he_glb_group {
-    uint32_t
-        label[HE_GLB_NAMES];   /* labels of its faces; 0 for an attribute that is not separated */
+    /* Labels of its faces; 0 for an attribute that is not separated. */
+    uint32_t label[HE_GLB_NAMES];
     uint64_t first, triangles; /* in the order of the file */
 } he_glb_group;
 

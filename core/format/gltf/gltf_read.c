@@ -23,8 +23,8 @@ typedef struct glb {
     uint64_t length; /* length of the file, as its header says */
     uint64_t left;   /* bytes of the chunk still to come */
     size_t chunks;   /* chunks that have begun */
-    size_t
-        padding; /* bytes of padding that may follow the chunk, whose length is no multiple of 4 */
+    /* Bytes of padding that may follow the chunk, whose length is no multiple of 4. */
+    size_t padding;
     bool begun, has_bin;
     block json, bin;
     block *chunk; /* where its bytes are stored; NULL: nowhere */

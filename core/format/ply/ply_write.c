@@ -27,8 +27,8 @@ typedef struct ply_writer {
     const he_mesh *mesh;
     uint32_t *numbers; /* numbers of vertices */
     he_splits splits;  /* for corners whose values differ at one vertex */
-    const he_column
-        *corners[HE_PLY_GROUPS]; /* attributes of corners that are written with vertices */
+    /* Attributes of corners that are written with vertices. */
+    const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;
     const he_column *texcoord; /* one of them that faces also have as a list */
     he_ply_encoding encoding;

@@ -298,8 +298,8 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        head->row.card.damage[0] =
-            '\0'; /* the records that were damaged are read and checked again */
+        /* The records that were damaged are read and checked again. */
+        head->row.card.damage[0] = '\0';
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);
     }

@@ -223,8 +223,8 @@ struct st_sqlite {
     st_heads heads;
     st_progress progress;             /* the last commit */
     int64_t last_mesh, last_snapshot; /* keys given last */
-    _Atomic uint64_t
-        log_pages;      /* pages of the -wal after the last commit; other threads may read it */
+    /* Pages of the -wal after the last commit; other threads may read it. */
+    _Atomic uint64_t log_pages;
     uint64_t log_tried; /* pages after the last checkpoint that did not write all of them back */
     uint64_t keys;      /* rows of `kept`, at most */
     bool purged;        /* nothing is left to be purged */
