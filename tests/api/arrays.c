@@ -121,8 +121,8 @@ void arrays_assert_same(const arrays *a, const arrays *b)
     }
 }
 
-/* Each live face's triangles in order in one run, and nothing else but zeros; each vertex its
- * row. */
+/* The triangles of each live face are consecutive and in order, all other slots are zeros, and each
+ * vertex has its row. */
 void arrays_check(const arrays *c, const he_mesh *m)
 {
     he_frame frame;

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-/* Texts of tokens are their names and a word, so that a leak of either is seen. */
+/* The text of a token is its name and a word, so that a leak of either is noticed. */
 #define SECRET "-s3cr3t"
 
 static const struct {
@@ -58,7 +58,7 @@ static void secret_of(const char *name, char out[80])
     snprintf(out, 80, "%s" SECRET, name);
 }
 
-/* A file of all holders but one (NULL: of all). */
+/* Writes a file with all holders but one (NULL: all). */
 static void write_file(char out[FILE_BYTES], const char *without)
 {
     size_t used = 0;
@@ -73,7 +73,7 @@ static void write_file(char out[FILE_BYTES], const char *without)
     }
 }
 
-/* No answer may hold a secret. */
+/* No answer may contain a secret. */
 static bench_reply ask_with(world *w, const char *authorization, const char *method,
                             const char *target, const char *const *more, const char *body)
 {
@@ -153,7 +153,7 @@ static void target_of(const api_route *route, const char *mesh, const char *job,
     }
 }
 
-/* A body that the route takes, and that changes something where it is a write. */
+/* Returns a body that the route accepts; for a write, one that changes something. */
 static const char *body_of(const api_route *route)
 {
     static const struct {
@@ -186,7 +186,7 @@ static const api_route *row_of(const char *method, const char *path)
     return NULL;
 }
 
-/* --- the world --- */
+/* --- set-up --- */
 
 static void begin(world *w)
 {
@@ -202,8 +202,7 @@ static void begin(world *w)
     }
 }
 
-/* The two answers are the same but for what was asked: `a` stands in one where `b` does in the
- * other. */
+/* Are the answers equal except for the names asked for, `a` in one and `b` in the other? */
 static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y, const char *b)
 {
     bool alike = x->status == y->status && x->header_count == y->header_count;
@@ -225,7 +224,7 @@ static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y,
 
 /* --- what must hold --- */
 
-/* Without a good token every route that is not open gives one answer, whatever there is. */
+/* Without a valid token every route that is not open gives one answer, whatever exists. */
 static void try_strangers(world *w)
 {
     static const char *const methods[] = {"GET",   "HEAD",   "POST",    "PUT",
@@ -260,7 +259,7 @@ static void try_strangers(world *w)
             }
         }
     }
-    /* Nothing tells a token that has expired from one that never was. */
+    /* An expired token is answered like an unknown one. */
     if (first[2].body != NULL && first[3].body != NULL &&
         !are_alike(&first[2], "", &first[3], "")) {
         found(w, "an expired token is told from a wrong one");
@@ -287,8 +286,8 @@ static double revision_of(world *w, const char *mesh)
     return number;
 }
 
-/* A role that is too small is told which would do, and changes nothing; one that is not is let
- * in. */
+/* A role that is too small gets the sufficient role in its refusal, and changes nothing; a
+ * sufficient one is admitted. */
 static void try_roles(world *w)
 {
     double before = revision_of(w, "m");
@@ -321,7 +320,7 @@ static void try_roles(world *w)
     }
 }
 
-/* What is only tried is a read. */
+/* A dry run is a read. */
 static void try_rehearsals(world *w)
 {
     double before = revision_of(w, "m");
@@ -344,7 +343,7 @@ static void try_rehearsals(world *w)
     }
 }
 
-/* A mesh outside the prefixes is answered with the bytes of one that does not exist. */
+/* A mesh outside the prefixes is answered with the same bytes as one that does not exist. */
 static void try_prefixes(world *w)
 {
     double before = revision_of(w, "left-m");
@@ -383,7 +382,7 @@ static void try_prefixes(world *w)
     must(w, "right", "GET", "/v1/meshes/also-right.m", NULL, 200);
 }
 
-/* Ids of meshes that the name's list has, in its order, page by page. */
+/* The ids in the list of the token with this name, in order, page by page. */
 static void try_list(world *w, const char *name, const char *wanted)
 {
     char target[TARGET] = "/v1/meshes?limit=1", ids[400] = "";
@@ -449,7 +448,7 @@ static void try_bodies_and_ids(world *w)
     }
 }
 
-/* A job is there for the token that began it, and for an admin. */
+/* A job exists for the token that began it, and for an admin. */
 static void try_jobs(world *w)
 {
     static const char *const async[] = {"Prefer", "respond-async", NULL};
@@ -494,7 +493,7 @@ static void set_flag(void *context)
     *(bool *)context = true;
 }
 
-/* What a stream has to give, up to where it waits or ends; false at its end. */
+/* Reads a stream up to where it waits; returns false at its end. */
 static bool read_on(const api_source *live, char *out, size_t size)
 {
     int64_t got;
@@ -506,7 +505,8 @@ static bool read_on(const api_source *live, char *out, size_t size)
     return got == API_READ_WAIT;
 }
 
-/* A reload that drops a token wakes its streams, which say goodbye and end; others go on. */
+/* A reload that revokes a token wakes its streams, which send their closing message and end; others
+ * continue. */
 static void try_streams(world *w)
 {
     static const char *const names[] = {"left", "boss"};
@@ -564,7 +564,7 @@ static void try_url(world *w, const char *method, const char *target, int status
     bench_done(r);
 }
 
-/* `url` is the path with its ticket. */
+/* Requests a ticket; `url` is the path with it. */
 static void ask_ticket(world *w, const char *name, const char *target, char url[TARGET])
 {
     char body[TARGET + 20];
@@ -578,7 +578,7 @@ static void ask_ticket(world *w, const char *name, const char *target, char url[
     bench_done(r);
 }
 
-/* A ticket is one GET of its path, as its token might ask for it. */
+/* A ticket allows one GET of its path, with the rights of its token. */
 static void try_tickets(world *w)
 {
     char url[TARGET], other[TARGET], file[FILE_BYTES];
@@ -614,7 +614,7 @@ static void try_tickets(world *w)
     must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
 }
 
-/* A key is that of a token: another one's of the same text is another, with a mesh and without. */
+/* A key belongs to a token: equal keys of two tokens are independent, with a mesh and without. */
 static void try_keys(world *w)
 {
     static const char *const key[] = {"Idempotency-Key", "one", NULL};

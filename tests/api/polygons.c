@@ -50,8 +50,8 @@ static void link_halfedges(pg_mesh *pg)
         }
         pg->face_first[f] = find_halfedge(pg, pg->corners[f][0], pg->corners[f][1]);
     }
-    /* On the boundary the one that leaves where this one arrives. At a bow-tie there are several:
-     * pg_learn_next says which. */
+    /* On the boundary, the half-edge that leaves where this one arrives. At a bow-tie there are
+     * several: pg_learn_next decides. */
     for (unsigned h = 0; h < pg->halfedges; h++) {
         for (unsigned k = 0; k < pg->halfedges && pg->face[h] == PG_NONE; k++) {
             if (pg->face[k] == PG_NONE && pg->origin[k] == target(pg, h)) {
@@ -113,7 +113,7 @@ void pg_make(pg_mesh *pg, const char *faces, unsigned vertices)
     pg_make_corners(pg, corners, count, vertices);
 }
 
-/* --- what may be chosen --- */
+/* --- choices of the API --- */
 
 bool pg_is_isolated(const pg_mesh *pg, unsigned v)
 {
@@ -321,7 +321,7 @@ void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_
     }
 }
 
-/* The half-edge after `h`, PG_NONE where the walk ends. */
+/* Returns the half-edge after `h`, PG_NONE where the walk ends. */
 static unsigned onward(const pg_mesh *pg, bool across, unsigned h)
 {
     pg_list about = {.count = 0};

@@ -30,13 +30,13 @@ struct api_bench {
     api_job_table *jobs;
     piece waiting[BENCH_JOBS];
     size_t waits, most;
-    api_tokens *tokens; /* NULL: nobody needs one */
-    const char *file;   /* of tokens, to be read by a reload; NULL: nothing is read */
-    char bearer[300];   /* "": none is sent */
+    api_tokens *tokens; /* NULL: no token is needed */
+    const char *file;   /* file of tokens for the next reload; NULL: there is none */
+    char bearer[300];   /* "": no token is sent */
     uint64_t address;
     bool is_beyond;
-    const char *kept; /* what a backup gives */
-    bool is_lent;     /* and has not been freed */
+    const char *kept; /* contents of a backup */
+    bool is_lent;     /* the backup exists */
     api_service *service;
 };
 
@@ -267,7 +267,7 @@ static bool take_signal(signal *s, bool wait)
     return set;
 }
 
-/* One thread does the jobs in their order. */
+/* One thread runs the jobs in order. */
 static void wait_for_jobs(api_bench *b)
 {
     signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
@@ -275,7 +275,7 @@ static void wait_for_jobs(api_bench *b)
     (void)take_signal(&done, true);
 }
 
-/* What is there now, what the jobs have in hand, and the goodbye. */
+/* Reads what is available now, then runs the jobs, and reads up to the closing message. */
 static void read_live(api_bench *b, const api_source *live, bench_reply *r)
 {
     signal woken = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
@@ -377,7 +377,7 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     return true;
 }
 
-/* Tests that starve the api are left out: what it then says is as short as it can be. */
+/* Tests with failing allocations are not recorded: their answers are as short as possible. */
 static void record(const char *method, const char *target, const char *const *headers,
                    const char *body, size_t length, const bench_reply *r)
 {
@@ -403,7 +403,7 @@ static void record(const char *method, const char *target, const char *const *he
         fprintf(out, "%s: %s\r\n", r->headers[i].name, r->headers[i].value);
     }
     fclose(out);
-    /* It is the server that keeps the body of a HEAD to itself. */
+    /* The server, not the api, leaves out the body of a HEAD. */
     bool head = strcmp(method, "HEAD") == 0;
     const traffic_message asked = {heads[0], body == NULL ? "" : body, length};
     const traffic_message said = {heads[1], head ? "" : r->body, head ? 0 : r->length};

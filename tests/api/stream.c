@@ -20,7 +20,8 @@ static void wake(void *context)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* NULL where it is refused for want of memory; else the status is 200. */
+/* Returns NULL if the request was refused because memory is out; any other refusal fails the
+ * test. */
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last)
 {
     api_request request = {.method = "GET",
@@ -73,7 +74,8 @@ static void wait_for_wake(listener *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* The next event; "" at the end of the stream, and where it would wait and `patient` is false. */
+/* Returns the name of the next event; "" at the end of the stream, and where it would wait if
+ * `patient` is false. */
 const char *stream_next(listener *l, bool patient)
 {
     char buffer[777];
@@ -116,7 +118,7 @@ st_mesh *stream_mesh(api_bench *b)
     return mesh;
 }
 
-/* What the mesh is now. */
+/* Copies the present state of the mesh. */
 void stream_dump(api_bench *b, mirror *m)
 {
     st_mesh *mesh = stream_mesh(b);
@@ -139,7 +141,7 @@ void stream_require(api_bench *b, const mirror *copy, const char *after)
     mirror_clear(&fresh);
 }
 
-/* Read everything there is. How often the copy had to be taken anew. */
+/* Reads all events; returns how often the copy had to be fetched again. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy)
 {
     unsigned anew = 0;

@@ -1,4 +1,5 @@
-/* Another mesh named in an edit: found, taken as it was, refused where it cannot be had. */
+/* Another mesh that an edit names: it is found, its present state is used, and it is refused if it
+ * is not available. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -158,7 +159,7 @@ static void attributes_of_one_name_and_two_types_are_refused(void **state)
     bench_free(b);
 }
 
-/* Among the attributes of a mesh those that another brings count like any others. */
+/* Attributes that another mesh brings count like those of the mesh itself. */
 static void no_mesh_gets_more_attributes_than_it_may(void **state)
 {
     (void)state;
@@ -181,7 +182,7 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
     bench_free(b);
 }
 
-/* Long enough to claim the mesh; what is appended is what there was, whoever is locked. */
+/* Large enough to claim the mesh; the earlier state is appended, whichever mesh is locked. */
 static void a_large_mesh_takes_in_and_is_taken_in(void **state)
 {
     (void)state;

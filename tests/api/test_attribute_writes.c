@@ -1,5 +1,5 @@
-/* Writing attributes: sets that stand for lists, what makes a revision and what does not, undo of
- * what is large, and how many there may be. */
+/* Writing attributes: sets in place of lists, when a revision is made, undo of large writes, and
+ * the maximum number. */
 #include "tests/api/strip.h"
 
 #include "api/json/text.h"
@@ -161,7 +161,7 @@ static void there_is_a_largest_number_of_attributes(void **state)
     bench_free(b);
 }
 
-/* What an edit adds counts too, and an edit that would add too much changes nothing. */
+/* What an edit adds counts, too, and an edit that would add too much changes nothing. */
 static void an_edit_adds_no_more_attributes_or_labels(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Attributes: what is written is read back bit for bit, by JSON, by octets, through documents,
- * copies, compact, undo and redo; what is wrong is refused with its pointer. */
+/* Attributes: values read back bit for bit, by JSON, by octets, through documents, copies, compact,
+ * undo and redo; mistakes are refused with their pointer. */
 #include "tests/api/strip.h"
 
 #include "tests/model/random.h"
@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-/* The answer's body, for the caller to free. */
+/* Returns the answer's body, which the caller frees. */
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
     const char *const headers[] = {"Accept", accept, NULL};
@@ -100,7 +100,7 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
     }
 }
 
-/* Everything there is to a mesh but its id and times. */
+/* Dumps everything about a mesh except its id and times. */
 static char *dump(api_bench *b, const char *mesh, size_t *length)
 {
     static char text[1 << 20];
@@ -166,7 +166,7 @@ static void documents_carry_every_value(void **state)
         strip_send(b, 201, "PUT", "/v1/meshes/three", two);
         char *three = read_all(b, "/v1/meshes/three/content", "application/json", &third);
         assert_string_equal(document, three);
-        /* The same bits, where ids are the same. */
+        /* Equal bits, where ids are equal. */
         for (unsigned d = 0; i == 0 && d < 5; d++) {
             for (unsigned a = 0; a < 15; a++) {
                 snprintf(target, sizeof target, "/v1/meshes/plain/attributes/%s/a%u", domains[d],
@@ -200,8 +200,8 @@ static void copies_and_compact_keep_values(void **state)
     char *copy = dump(b, "twin", &other);
     assert_int_equal(length, other);
     assert_memory_equal(before, copy, length);
-    /* The document numbers without holes, as compact does, but for edges: these it numbers by
-     * faces. So vertices, faces and the mesh must read the same. */
+    /* Like compact, the document numbers without gaps; but it numbers edges by faces. So vertices,
+     * faces and the mesh must read equal. */
     char *document = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
     strip_send(b, 200, "POST", "/v1/meshes/edited/edits", "{\"op\":\"compact\"}");
     char *compact = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
@@ -280,7 +280,7 @@ static void undo_and_redo_lead_back_bit_for_bit(void **state)
     for (int round = 0; round < 20; round++) {
         api_bench *b = bench_new();
         size_t first, last, length;
-        /* Steps end where the mesh was made. */
+        /* Undo ends where the mesh was created. */
         strip_send(
             b, 201, "POST", "/v1/meshes?id=m",
             "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0],[0,1,0],[1,1,0],[2,1,0]],"
@@ -536,7 +536,7 @@ static void documents_are_read_whole_or_not_at_all(void **state)
     bench_free(b);
 }
 
-/* A file may bring such names along. */
+/* A file may contain such names. */
 static void a_name_with_a_slash_is_reached_by_an_escaped_one(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Lists of ten thousand operations: read one at a time, one revision, one undo step, all or none,
- * and told beforehand by a dry run. */
+/* Lists of ten thousand operations: parsed one at a time, one revision, one undo step, all or
+ * nothing, and predicted by a dry run. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -15,7 +15,8 @@
 
 enum { MANY = 10000 };
 
-/* `count` edge splits, each of an edge that the one before made; `last` in place of the last. */
+/* Writes `count` edge splits, each of an edge that the one before made; `last` replaces the last
+ * one. */
 static void write_chain(api_text *body, const char *before, size_t count, const char *last)
 {
     api_text_empty(body);
@@ -43,7 +44,7 @@ static api_bench *begin(void)
     return b;
 }
 
-/* The mesh as it is, ids that were issued included. */
+/* A copy of the mesh, with its issued ids. */
 static he_mesh *copy_of(api_bench *b)
 {
     st_store *store = bench_store(b);
@@ -69,7 +70,7 @@ static state_of take(api_bench *b)
                       bench_expect(200, bench_get(b, "/v1/meshes/m/edits"))};
 }
 
-/* Was nothing changed since? */
+/* Requires that nothing changed since. */
 static void expect_same(api_bench *b, state_of *before)
 {
     state_of now = take(b);
@@ -252,7 +253,8 @@ static void *count(void *context, void *memory, size_t size)
     return block + 2;
 }
 
-/* What a list costs beyond what it leaves, from the first byte to the answer. */
+/* Returns the memory that a list needs at most beyond what stays allocated, from the first byte to
+ * the answer. */
 static size_t peak_of(api_bench *b, const api_text *body)
 {
     most = held;
@@ -264,7 +266,7 @@ static size_t peak_of(api_bench *b, const api_text *body)
     return most - before;
 }
 
-/* A parsed document of this many values would take fifteen times its text. */
+/* A parsed document with this many values would take fifteen times its text. */
 static void a_list_costs_its_text_and_its_results(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* GET .../check: what it says of defects, by which thresholds, and as a job. */
+/* GET .../check: the defects reported, their thresholds, and running as a job. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -43,7 +43,7 @@ static double threshold(const bench_reply *r, const char *name)
     return cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, "thresholds"), name)->valuedouble;
 }
 
-/* The first that is listed of a code. */
+/* Returns the first listed defect of a code. */
 static const cJSON *first(const bench_reply *r, const char *code)
 {
     const cJSON *defect;
@@ -67,8 +67,7 @@ static void expect_first(const bench_reply *r, const char *code, const char *kin
     assert_true(strlen(cJSON_GetObjectItem(defect, "detail")->valuestring) > 0);
 }
 
-/* Two triangles that cut through each other, one twisted quadrilateral, and a vertex of the first
- * once more. */
+/* Two intersecting triangles, a twisted quadrilateral, and a vertex at the position of another. */
 static const char mess[] =
     "{\"vertices\":[[0,0,0],[2,0,0],[0,2,0],[0.5,0.5,-1],[0.5,0.5,1],[3,3,0],[9,0,0],[10,0,1],"
     "[10,1,0],[9,1,1],[2,0,0]],\"faces\":[[0,1,2],[3,4,5],[6,7,8,9]]}";
@@ -212,7 +211,7 @@ static void a_check_can_be_a_job(void **state)
 /* --- memory --- */
 
 static struct {
-    long calls, at; /* the request that fails, 0: none */
+    long calls, at; /* the allocation that fails, 0: none */
 } memory;
 
 static void *resize(void *context, void *block, size_t size)
@@ -242,11 +241,11 @@ static void a_starved_check_says_so(void **state)
         memory.at = 0;
         done = memory.calls < n;
         if (any) {
-            /* What can do without the memory answers all the same. */
+            /* An answer that can do without the memory is still complete. */
             assert_true(r.status == 200 || (!done && r.status == 507));
             bench_reply_free(&r);
         }
-        /* What was begun is not kept. */
+        /* A partial result is not kept. */
         bench_reply again = check(b, "?self_intersections=true");
         assert_int_equal(total(&again, "self_intersection"), 1);
         bench_reply_free(&again);

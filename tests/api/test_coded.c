@@ -1,4 +1,5 @@
-/* Content codings through the api: bodies that come in gzip and zstd, answers that go out so. */
+/* Content codings: bodies that arrive compressed by gzip or zstd, and answers compressed by
+ * them. */
 #include "tests/api/request.h"
 
 #include "tests/codings.h"
@@ -47,7 +48,7 @@ static bench_reply get(api_bench *b, const char *target, const char *accept)
     return bench_send(b, "GET", target, HEADERS("Accept-Encoding", accept), NULL);
 }
 
-/* A request with its body in a coding. */
+/* Sends a request with a compressed body. */
 static bench_reply send_packed(api_bench *b, const char *method, const char *target,
                                const char *coding, const char *type, const char *body,
                                size_t length)
@@ -74,7 +75,7 @@ static api_bench *with_grid(void)
     return b;
 }
 
-/* Unfold an answer in place of its body. */
+/* Replaces the body of an answer by its decompressed form. */
 static void unfold(bench_reply *r, const char *coding)
 {
     assert_string_equal(bench_header(r, "Content-Encoding"), coding);
@@ -127,7 +128,7 @@ static void answers_unfold_to_what_they_are_plain(void **state)
             assert_string_equal(bench_header(&r, "Vary"), bench_header(&plain, "Vary"));
             assert_string_equal(bench_header(&r, "Content-Type"),
                                 bench_header(&plain, "Content-Type"));
-            /* A strong tag of its own. */
+            /* The compressed answer has its own strong tag. */
             const char *of_plain = bench_header(&plain, "ETag");
             snprintf(tag, sizeof tag, "%.*s-%s\"", (int)strlen(of_plain) - 1, of_plain, both[c]);
             assert_string_equal(bench_header(&r, "ETag"), tag);
@@ -155,7 +156,7 @@ static void what_is_short_or_live_stays_plain(void **state)
         assert_string_equal(bench_header(&r, "Vary"), live ? "" : "Accept-Encoding");
         bench_reply_free(&r);
     }
-    /* A small file, whose length is not known before: then it is. */
+    /* A small file whose length is not known in advance: it is determined first. */
     done(expect(201, bench_send(b, "PUT", "/v1/meshes/c", NULL, "{\"shape\":\"tetrahedron\"}")));
     bench_reply r = expect(200, get(b, "/v1/meshes/c/content?format=off", "zstd"));
     assert_string_equal(bench_header(&r, "Content-Encoding"), "");
@@ -164,7 +165,8 @@ static void what_is_short_or_live_stays_plain(void **state)
     bench_free(b);
 }
 
-/* Even what is short is coded for who takes nothing plain; and who takes nothing is told. */
+/* Even a short answer is compressed for a client that refuses identity; a client that refuses
+ * everything gets an error. */
 static void identity_may_be_refused(void **state)
 {
     (void)state;
@@ -202,7 +204,8 @@ static void tags_of_each_coding_are_good(void **state)
         snprintf(list, sizeof list, "\"other\", W/%s", tag);
         bench_reply_free(&r);
         for (size_t k = 0; k < 3; k++) {
-            /* Who can still read what it has may keep it; 304 names that. */
+            /* A client that can still decode its copy may keep it; the 304 names the tag of that
+             * copy. */
             bool good = i == 0 || i == k;
             r = expect(good ? 304 : 200,
                        bench_send(b, "GET", target,
@@ -216,7 +219,7 @@ static void tags_of_each_coding_are_good(void **state)
             }
             bench_reply_free(&r);
         }
-        /* A write looks at the state. */
+        /* If-Match compares only the state. */
         char name[24];
         snprintf(name, sizeof name, "{\"name\":\"%s\"}", wanted[i]);
         for (int again = 0; again < 2; again++) {
@@ -316,7 +319,7 @@ static void every_format_comes_back(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         bench_reply plain = expect(200, bench_send(b, "GET", files[i].target, NULL, NULL));
         for (size_t c = 0; c < 2; c++) {
-            /* What the server packed it takes again, and what others pack. */
+            /* The server accepts what it compressed, and what others compressed. */
             bench_reply file = expect(200, get(b, files[i].target, both[c]));
             char again[100];
             snprintf(again, sizeof again, "/v1/meshes/again%s", strrchr(files[i].target, '/'));
@@ -338,7 +341,7 @@ static void every_format_comes_back(void **state)
     bench_free(b);
 }
 
-/* Text that packs, but not so well that it is refused for that. */
+/* Text that compresses, but not so well that it is refused for that. */
 static char *long_text(size_t length)
 {
     char *text = malloc(length + 1);
@@ -358,7 +361,7 @@ static void what_unfolds_counts_against_the_limits(void **state)
     api_bench *b = with_grid();
     char *text = long_text(9 << 20);
     for (size_t c = 0; c < 2; c++) {
-        /* To its last byte a body may be as long as a plain one. */
+        /* The maximum length applies to the decompressed body, to the byte. */
         text[API_MAX_CONTROL] = '\0';
         memcpy(text, "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}", 37);
         done(expect(200, send_json(b, "POST", "/v1/meshes/m/traverse", both[c], text)));
@@ -398,7 +401,7 @@ static void what_is_not_the_coding_is_refused(void **state)
         assert_string_equal(bench_header(&r, "Accept-Encoding"), "gzip, zstd");
         refused(415, "unsupported_encoding", "\"supported\":[\"gzip\",\"zstd\",\"identity\"]", r);
     }
-    /* Another 415 is not about the coding. */
+    /* Another 415, not because of the coding. */
     bench_reply other = expect(
         415, bench_send(b, "POST", "/v1/meshes", HEADERS("Content-Type", "text/plain"), json));
     assert_string_equal(bench_header(&other, "Accept-Encoding"), "");
@@ -418,7 +421,7 @@ static void what_is_not_the_coding_is_refused(void **state)
                     bench_send_bytes(b, "POST", "/v1/meshes", headers, packed, length));
         }
         free(packed);
-        /* Nothing in a coding is nothing. */
+        /* A compressed empty body is an empty body. */
         refused(400, "missing_body", "", send_json(b, "POST", "/v1/meshes", both[c], ""));
         done(expect(409, send_json(b, "POST", "/v1/meshes/m/undo", both[c], "")));
     }
@@ -428,7 +431,7 @@ static void what_is_not_the_coding_is_refused(void **state)
     bench_free(b);
 }
 
-/* An OBJ file in zstd, whose body is to come: the frame has begun, and may look back over 8 MiB. */
+/* An OBJ file in zstd before its body: the frame has begun with a window of 8 MiB. */
 static api_exchange *begin_wide(api_bench *b, api_step *step)
 {
     static const char frame[] = {0x28,   (char)0xB5, 0x2F, (char)0xFD, 0,   13 << 3,
@@ -450,7 +453,7 @@ static api_exchange *begin_wide(api_bench *b, api_step *step)
     return x;
 }
 
-/* Another KiB of such a body: a block of zeros. */
+/* Sends another KiB of such a body: a block of zeros. */
 static api_step more_of(api_exchange *x)
 {
     static const char block[] = {2 | 1 << 3, 32, 0, '\n'}; /* RLE, 1025 times */
@@ -470,7 +473,7 @@ static void expect_gave_way(api_exchange *x)
     assert_true(later);
 }
 
-/* One body comes on while many others begin and then say nothing. */
+/* One body continues while many others begin and then send nothing. */
 static void slow_senders_give_way_to_others(void **state)
 {
     (void)state;
@@ -491,7 +494,7 @@ static void slow_senders_give_way_to_others(void **state)
     for (size_t i = 0; i < MANY; i++) {
         if (more_of(open[i]) != API_MORE) {
             expect_gave_way(open[i]);
-            assert_int_equal(gone, i); /* those that waited the longest went first */
+            assert_int_equal(gone, i); /* those that waited longest were evicted first */
             gone++;
         }
     }
@@ -504,7 +507,7 @@ static void slow_senders_give_way_to_others(void **state)
     bench_free(b);
 }
 
-/* How a body was packed for the way says nothing about what is asked. */
+/* The coding of a body is not part of the request. */
 static void a_key_is_of_the_unfolded_body(void **state)
 {
     (void)state;
@@ -524,7 +527,7 @@ static void a_key_is_of_the_unfolded_body(void **state)
         assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
         bench_reply_free(&r);
         free(packed);
-        /* And the answer that is kept is plain: each gets it as it can read it. */
+        /* The kept answer is uncompressed: each client gets it in a coding that it accepts. */
         char accept[40];
         snprintf(accept, sizeof accept, "%s, identity;q=0", both[c]);
         r = expect(200,
@@ -541,7 +544,7 @@ static void a_key_is_of_the_unfolded_body(void **state)
     bench_free(b);
 }
 
-/* A job reads a coded body like another, and what it leaves is plain. */
+/* A job reads a compressed body like any other, and its result is stored uncompressed. */
 static void a_job_of_a_coded_upload(void **state)
 {
     (void)state;
@@ -583,7 +586,7 @@ static void *resize(void *context, void *bytes, size_t size)
     return memory.fail_at > 0 && ++memory.calls == memory.fail_at ? NULL : realloc(bytes, size);
 }
 
-/* Is this request, whatever allocation fails, answered as it should be or with 507? */
+/* Whichever allocation fails, the request must be answered as expected or with 507. */
 static void starve(api_bench *b, const char *method, const char *target, const char *const *headers,
                    const char *body, size_t length, const bench_reply *expected)
 {
@@ -626,7 +629,7 @@ static void every_allocation_may_fail(void **state)
         const char *const accept[] = {"Accept-Encoding", both[c], NULL};
         for (size_t i = 0; i < READ; i++) {
             if (strstr(read[i].target, "stl") != NULL) {
-                continue; /* takes memory for each corner, which is not what this is about */
+                continue; /* allocates for each corner, which this test does not measure */
             }
             bench_reply plain = expect(200, bench_send(b, "GET", read[i].target, NULL, NULL));
             starve(b, "GET", read[i].target, accept, NULL, 0, &plain);

@@ -1,4 +1,5 @@
-/* What was made is answered as it was made, whatever others did to it before the answer. */
+/* An answer shows a new mesh as it was made, whatever other requests did to it before the
+ * answer. */
 #include "edit/local/erase.h"
 #include "tests/api/request.h"
 #include "tests/writing.h"
@@ -23,10 +24,10 @@ static int vertices_of(const bench_reply *summary)
     return cJSON_GetObjectItem(counts, "vertices")->valueint;
 }
 
-/* Somebody else changes a new mesh before the request that made it is answered: the linker gives
- * calls of st_create_from to the wrapper (Makefile). */
+/* Changes a new mesh before the request that made it is answered: the linker redirects calls of
+ * st_create_from to the wrapper (Makefile). */
 static bool meddling;
-static uint32_t victim; /* a vertex that they delete */
+static uint32_t victim; /* a vertex that the other request deletes */
 
 st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
                                 const st_cause *cause, const st_shown *from, st_mesh **out);
@@ -71,7 +72,7 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
         snprintf(path, sizeof path, "/v1/meshes/%s", text_of(&r, "id"));
         int vertices = vertices_of(&r);
         bench_reply_free(&r);
-        /* Nor is it kept as what the mesh is now. */
+        /* Nor is it kept as the present state of the mesh. */
         r = bench_expect(200, bench_get(b, path));
         assert_non_null(strstr(r.body, "\"revision\":2,"));
         assert_true(vertices_of(&r) < vertices);

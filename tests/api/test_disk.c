@@ -79,16 +79,16 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
             cases[i].status, bench_send(b, "PATCH", "/v1/meshes/m", NULL, "{\"name\":\"y\"}"));
         assert_string_equal(text_of(&r, "code"), cases[i].code);
         assert_string_equal(bench_header(&r, "Retry-After"), cases[i].retry);
-        /* It waits for nothing, and so is never taken for a change that was lost. */
+        /* The refusal waits for nothing, so it is never replaced by one about a lost change. */
         assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
         bench_reply_free(&r);
         bench_free(b);
     }
 }
 
-/* --- what is read of another mesh is lost before it is used --- */
+/* --- a mesh is lost between reading it and using it --- */
 
-static st_status loss_between; /* the reading and the commit */
+static st_status loss_between; /* result between the read and the commit */
 
 st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
                                 const st_cause *cause, const st_shown *from, st_mesh **out);
@@ -118,7 +118,7 @@ st_status __wrap_st_write_commit(st_write *w, const char *ops)
     return __real_st_write_commit(w, ops);
 }
 
-/* The disk is good again by then: only that the source is lost stops it. */
+/* The disk works again by then: only the loss of the source prevents the commit. */
 static void what_was_lost_is_not_copied_or_appended(void **state)
 {
     (void)state;
@@ -163,11 +163,12 @@ static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
     bench_free(b);
 }
 
-/* --- a list whose changes are many --- */
+/* --- a list with many changes --- */
 
 static api_bench *staging_for;
 
-/* While the list is on its way to the disk: its mesh is read as it was, and another is written. */
+/* While the list is written to the disk, its mesh can be read in the old state, and another mesh
+ * can be written. */
 static void look_and_write(void)
 {
     bench_reply r = bench_expect(200, bench_get(staging_for, "/v1/meshes/m"));
@@ -220,7 +221,7 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     assert_int_equal(journal.staged_edits, 0);
     staging_for = b;
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    /* Each of them, on the worker or beside it, is a claim's by its rows. */
+    /* Each of them, on a worker or not, needs a claim because of its rows. */
     splits(b, API_CLAIM_EDITS);
     assert_int_equal(journal.staged_edits, 1);
     bench_free(b);

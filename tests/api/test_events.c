@@ -1,5 +1,5 @@
-/* The messages of an event stream, without sockets: exact for every operation there is, from the
- * feed and from the history, whatever memory does. */
+/* The messages of an event stream, without sockets: exact for every operation, from the queue and
+ * from the history, whichever allocation fails. */
 #include "tests/api/stream.h"
 #include "tests/random_edit.h"
 #include "tests/writing.h"
@@ -40,7 +40,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* A closed one: some operations want that. */
+/* A closed mesh, which some operations need. */
 static const char TETRAHEDRON[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n"
                                   "g base\nf 1//1 3//1 2//1\n"
                                   "g sides\nf 1//1 2//1 4//1\nf 2//1 3//1 4//1\nf 3//1 1//1 4//1\n";
@@ -62,7 +62,7 @@ static void put_mesh(api_bench *b)
 
 enum { ROWS = 256 };
 
-/* The row that succeeded least often. */
+/* Returns the row that succeeded least often. */
 static size_t rarest(const unsigned done[ROWS])
 {
     size_t least = 0;
@@ -121,7 +121,7 @@ static void every_operation_undo_and_redo_is_told_exactly(void **state)
     bench_free(b);
 }
 
-/* The linker gives calls of these functions to the wrappers (Makefile). */
+/* The linker redirects calls of these functions to the wrappers (Makefile). */
 static unsigned finds;
 
 he_status __real_he_changes_find(const he_mesh *mesh, const he_delta *delta, size_t from, size_t to,
@@ -147,7 +147,7 @@ he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts
     return __real_he_changes_sum(mesh, parts, count, out, err);
 }
 
-/* The answer, the history and the listeners are served by one search. */
+/* One search serves the answer, the history and the listeners. */
 static void what_a_request_changes_is_found_once(void **state)
 {
     (void)state;
@@ -173,7 +173,7 @@ static void what_a_request_changes_is_found_once(void **state)
     bench_free(b);
 }
 
-/* Through the store, as no request makes columns. */
+/* Through the store, because no request makes columns in this way. */
 static void columns_that_come_and_go_are_told(void **state)
 {
     (void)state;
@@ -217,7 +217,7 @@ static void columns_that_come_and_go_are_told(void **state)
     bench_free(b);
 }
 
-/* A column that takes the place of one with its name and type loses the values of the other. */
+/* A column that replaces one with its name and type has none of its values. */
 static void a_column_written_over_is_told(void **state)
 {
     (void)state;
@@ -283,7 +283,7 @@ static void what_is_no_edit_has_events_of_its_own(void **state)
     bench_free(b);
 }
 
-/* 200 x 200 faces do not fit in an event; what fits is complete. */
+/* 200 x 200 faces do not fit into an event; smaller ones are complete. */
 static void the_list_of_meshes_counts_listeners(void **state)
 {
     (void)state;
@@ -354,7 +354,7 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
     bench_free(b);
 }
 
-/* More than the feed holds: from the history, a batch at a time, then from the feed. */
+/* More events than the queue holds: they come from the history in batches, then from the queue. */
 static void who_is_far_behind_is_told_from_the_history(void **state)
 {
     (void)state;
@@ -368,9 +368,9 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     stream_dump(b, &now);
     stream_dump(b, &copy);
     while (now.revision < EDITS) {
-        /* compact would cut the history off; a finer mesh, and an attribute that comes with a
-         * material, are not told from the history. The mesh stays so small that what makes all of
-         * it anew fits a message; what emptied it is taken back. */
+        /* Excluded are compact, which would cut the history off, and edits that the history cannot
+         * describe: a finer mesh, and an attribute added with a material. The mesh stays so small
+         * that an edit of all of it fits into a message; an edit that emptied it is undone. */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
         size_t faces = mirror_count(&now, HE_FACE);
@@ -398,7 +398,7 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
     stream_require(b, &copy, "the history and an undo");
     stream_close(l);
-    /* In the middle, and left in the middle. */
+    /* Begun in the middle, and closed in the middle. */
     l = stream_open(b, "/v1/meshes/m/events", "since=2", NULL);
     assert_string_equal(stream_next(l, true), "metadata");
     assert_string_equal(stream_next(l, true), "edit");
@@ -472,7 +472,7 @@ static void what_cannot_be_told_is_one_resync(void **state)
     bench_free(b);
 }
 
-/* Read nothing while the feed runs over: one resync, and on from the head. */
+/* Reads nothing until the queue overflows: one resync, and then from the newest event on. */
 static void a_slow_listener_is_told_to_fetch_anew(void **state)
 {
     (void)state;
@@ -498,7 +498,7 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
 static void too_many_listeners_are_503(void **state)
 {
     (void)state;
-    api_bench *b = bench_new(); /* 2 a mesh, 3 in all */
+    api_bench *b = bench_new(); /* 2 about a mesh, 3 in total */
     put_mesh(b);
     assert_int_equal(send(b, "PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     listener *first = stream_open(b, "/v1/meshes/m/events", "", NULL);
@@ -521,7 +521,7 @@ static void too_many_listeners_are_503(void **state)
 
 typedef struct famine {
     pthread_t tester;
-    bool jobs; /* the job pool's allocations fail, else those of the tester */
+    bool jobs; /* allocations of the job pool fail, else those of the test's thread */
     uint32_t left;
     bool struck;
 } famine;
@@ -544,8 +544,8 @@ static void *resize_until(void *context, void *memory, size_t size)
     return realloc(memory, size);
 }
 
-/* Whatever allocation fails when an edit is told, it is made, and the listener is told the truth:
- * the edit, or that it must fetch anew. */
+/* Whichever allocation fails while an event is made, the edit is made, and the listener gets either
+ * the event or a resync. */
 static void a_failed_allocation_loses_no_listener(void **state)
 {
     (void)state;
@@ -586,7 +586,7 @@ static void a_failed_allocation_loses_no_listener(void **state)
     assert_true(told > 0);
 }
 
-/* The same from the history: what is there comes in order, then perhaps a resync. */
+/* From the history: events come in order, then perhaps a resync. */
 static void a_failed_allocation_in_the_history_is_a_resync(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The examples of the OpenAPI document are what the server answers. */
+/* The examples of the OpenAPI document must be the server's answers. */
 #include "tests/api/request.h"
 
 #include "api/describe/examples.h"
@@ -30,7 +30,8 @@ static bool is_one_of(const char *name, const char *const *names)
     return *names != NULL;
 }
 
-/* What differs from run to run and from machine to machine keeps its form. */
+/* Replaces values that differ between runs and machines by those of the example, if they have the
+ * same form. */
 static void settle(cJSON *answer, const cJSON *example)
 {
     static const char *const times[] = {"created",  "modified", "time", "started",
@@ -76,7 +77,7 @@ static void settle(cJSON *answer, const cJSON *example)
     }
 }
 
-/* The incarnation is another one each time. */
+/* The incarnation differs each time. */
 static void settle_ids(char *stream)
 {
     static const char fixed[] = "5d1b27c0e4a9f386";
@@ -120,7 +121,7 @@ static void start_job(api_bench *b, const char *method, const char *target, cons
     bench_reply_free(&r);
 }
 
-/* The jobs examples.h tells of; their places go to `done` and `waiting`. */
+/* Starts the jobs of examples.h; their paths go to `done` and `waiting`. */
 static void start_jobs(api_bench *b, char done[64], char waiting[64])
 {
     start_job(b, "POST", "/v1/meshes?id=disk", "{\"shape\":\"disk\",\"segments\":3}", done);
@@ -131,7 +132,7 @@ static void start_jobs(api_bench *b, char done[64], char waiting[64])
     start_job(b, "PUT", "/v1/meshes/later", "{\"shape\":\"cube\"}", waiting);
 }
 
-/* The target with the place of the job that the example names, if it names one. */
+/* Replaces the job that the example names by its path. */
 static void name_job(const char *target, const char *done, const char *waiting, char *out,
                      size_t size)
 {
@@ -155,7 +156,7 @@ static void each_example_is_a_real_answer(void **state)
     for (size_t i = 0; i < api_example_count(); i++) {
         const api_example *row = api_example_at(i);
         const api_route *route = route_of(row->route);
-        /* A refusal is a problem whatever is accepted. */
+        /* A refusal is a problem whatever the client accepts. */
         const char *accept = row->status < 400 ? row->produces : "*/*";
         const char *headers[] = {"Accept", accept, "Content-Type", row->consumes, NULL};
         headers[2] = row->consumes == NULL ? NULL : headers[2];
@@ -181,7 +182,7 @@ static const cJSON *member(const cJSON *object, const char *name)
     return found;
 }
 
-/* `content` has the body as the example of its media type. */
+/* Requires the body as the example of its media type in `content`. */
 static void find_in(const cJSON *content, const char *media, const char *body)
 {
     const cJSON *shown = member(member(content, media), "example");
@@ -225,7 +226,7 @@ static void the_description_shows_them(void **state)
     bench_free(b);
 }
 
-/* These are as long as the tables they show. */
+/* These are as long as the tables that they show. */
 static const char *const too_long[] = {"operations_get", "openapi_get", NULL};
 
 static void no_route_is_without_one(void **state)

@@ -1,5 +1,5 @@
-/* Mesh files through the api: exported in every encoding, and read back under every name that says
- * what they are. */
+/* Mesh files: exported in every encoding, and read back under every name that identifies the
+ * format. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -91,7 +91,7 @@ static void each_encoding_has_its_tag(void **state)
         }
         bench_reply_free(&file);
     }
-    /* what is written unless an encoding is named, by format and by media type */
+    /* the default encoding, by format and by media type */
     static const char *const accept[] = {"Accept", "model/ply", NULL};
     bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
     assert_string_equal(bench_header(&r, "Content-Type"), "model/ply");
@@ -106,7 +106,7 @@ static void each_encoding_has_its_tag(void **state)
     bench_free(b);
 }
 
-/* The header has at most 1000 bytes; 40 attributes are more, and more than notes have room for. */
+/* The header has at most 1000 bytes; 40 attributes need more, and more than notes can hold. */
 static void warnings_that_find_no_room_are_counted(void **state)
 {
     (void)state;
@@ -151,7 +151,7 @@ static void a_position_that_no_float_holds_is_named(void **state)
     bench_free(b);
 }
 
-/* One of its own, with the same mesh inside. */
+/* It has its own tag, with the same mesh inside. */
 static void a_compressed_export_is_another_representation(void **state)
 {
     (void)state;
@@ -238,7 +238,7 @@ static void a_wrong_file_names_its_place(void **state)
     bench_free(b);
 }
 
-/* A file of JSON is told from our own document by its type, its name, or its first bytes. */
+/* A JSON file is distinguished from a mesh document by its type, its name, or its first bytes. */
 static void gltf_is_read_and_what_is_outside_never(void **state)
 {
     (void)state;
@@ -267,7 +267,7 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
-/* A file that leaves the worker, up to where it does. */
+/* A file that leaves the worker, up to that point. */
 static api_exchange *upload_gltf(api_bench *b, const char *text, size_t length)
 {
     const api_request request = {.method = "POST",
@@ -295,7 +295,7 @@ static bool give_up_reading(void *context, const char *phase, double done)
     return *told < 3 || done < 0;
 }
 
-/* It is read with what is made of it, away from the worker, and can be given up meanwhile. */
+/* It is read and built away from the worker, and can be cancelled. */
 static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
 {
     (void)state;
@@ -320,7 +320,7 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     free(text);
 }
 
-/* A few bytes of it may be a large mesh. */
+/* A few bytes may be a large mesh. */
 static void a_small_file_that_is_read_at_its_end_leaves_the_worker(void **state)
 {
     (void)state;
@@ -341,7 +341,7 @@ static const char *warning(const cJSON *report, int i)
     return item == NULL ? "" : cJSON_GetObjectItem(item, "code")->valuestring;
 }
 
-/* The edges of a file are only counted when they are made, and a repair may make others. */
+/* The edges of a file are counted when they are made, and a repair may make others. */
 static void a_report_says_what_was_read_and_what_was_not(void **state)
 {
     (void)state;
@@ -380,8 +380,7 @@ static void a_report_says_what_was_read_and_what_was_not(void **state)
     bench_free(b);
 }
 
-/* The type or ?format= decides, ?format= before the type; a refusal says when the bytes look
- * otherwise. */
+/* ?format= decides first, then the type; a refusal says if the bytes look like another format. */
 static void a_body_of_another_format_is_told(void **state)
 {
     (void)state;
@@ -414,7 +413,7 @@ static void a_body_of_another_format_is_told(void **state)
     bench_free(b);
 }
 
-/* Whatever it was said to be: bytes of a picture are no number of facets. */
+/* Whatever the declared format: bytes of a picture are not taken for a number of facets. */
 static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
-/* The gate holds; and with any one of its checks taken out, the same questions notice.
+/* The gate works; and if any one of its checks is left out, the same tests notice.
  *
- * The linker gives this program the calls of each check (Makefile), so that a check can be left out
- * here and nowhere else. */
+ * The linker redirects the calls of each check (Makefile), so that a check can be left out in this
+ * program. */
 #include "tests/api/gate.h"
 
 #include "api/request/gate.h"
@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-/* X(name, type of the result, parameters, arguments, what it gives when it is left out) */
+/* X(name, type of the result, parameters, arguments, result when it is left out) */
 #define CHECKS(X)                                                                                  \
     X(api_gate_enter, bool, (api_exchange * x), (x), true)                                         \
     X(api_gate_sees, bool, (const api_exchange *x, const char *mesh), (x, mesh), true)             \

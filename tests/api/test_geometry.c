@@ -1,4 +1,4 @@
-/* The arrays to draw from, against the polygons of the mesh. */
+/* The arrays to draw, compared with the polygons of the mesh. */
 #include "tests/api/specimens.h"
 
 #include "unit/fixture.h"
@@ -34,7 +34,7 @@ static float float_at(const char *p)
     return value;
 }
 
-/* An answer taken apart. */
+/* A parsed answer. */
 typedef struct arrays {
     bench_reply reply;
     uint64_t revision, layout;
@@ -81,7 +81,7 @@ static unsigned face_of(const arrays *a, unsigned triangle)
     return corner_of(a, triangle, 3) & ((1u << 29) - 1);
 }
 
-/* Is from -> to the half-edge of a face, and which? */
+/* Returns the index of the half-edge of the face from -> to. */
 static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned to)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -92,7 +92,7 @@ static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned t
     return PG_NONE;
 }
 
-/* Half of the cross products of a face's triangles, in the mesh's own coordinates. */
+/* Adds half of the cross products of a face's triangles, in the mesh's own coordinates. */
 static void add_area(const pg_mesh *pg, const arrays *a, unsigned triangle, double sum[3])
 {
     const double *p = pg->position[corner_of(a, triangle, 0)];
@@ -177,7 +177,7 @@ static void edit(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* What is deleted leaves a gap among the vertices and none among the triangles. */
+/* A deletion leaves a gap among the vertices and none among the triangles. */
 static void test_rows_keep_their_ids_when_others_die(void **state)
 {
     (void)state;
@@ -199,7 +199,7 @@ static void test_rows_keep_their_ids_when_others_die(void **state)
     bench_free(b);
 }
 
-/* An edit and its undo give the rows there were: only the revision differs. */
+/* An edit and its undo give the old rows: only the revision differs. */
 static void test_undo_brings_the_same_rows(void **state)
 {
     (void)state;
@@ -265,13 +265,13 @@ static void test_refusals(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the answer is whole or a refusal, never something between. */
+/* Each allocation in turn fails: the answer is complete or a refusal. */
 static void test_each_allocation_failing(void **state)
 {
     (void)state;
     pg_mesh pg;
     api_bench *b = bench_new();
-    /* A star, which is no fan. */
+    /* A star-shaped polygon, which cannot be triangulated as a fan. */
     pg_make(&pg, "01234567", 0);
     for (unsigned v = 0; v < 8; v++) {
         double radius = v % 2 == 0 ? 4 : 1, angle = v * acos(-1) / 4;

@@ -1,4 +1,4 @@
-/* Arrays kept up to date by the changes of GET .../geometry?since=, against all rows fetched anew.
+/* Arrays updated by the changes of GET .../geometry?since=, compared with all rows fetched again.
  *
  * EDITS (3000) and SEED (from the clock) come from the environment. */
 #include "tests/api/arrays.h"
@@ -46,7 +46,7 @@ static uint32_t any(world *w, const he_mesh *m, he_kind kind)
     return id;
 }
 
-/* What is appended, a vertex: made once. */
+/* The mesh that append adds, a vertex: made once. */
 static const he_mesh *a_vertex(void)
 {
     static he_mesh *made;
@@ -84,7 +84,7 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
         arg->number = p->flags & HE_RANGE && p->max < 1e6
                           ? p->min + (0.1 + 0.8 * md_unit(&w->r)) * (p->max - p->min)
                           : 0.05 + md_unit(&w->r);
-        if (p->flags & HE_WHOLE) { /* more steps would make a large mesh of it */
+        if (p->flags & HE_WHOLE) { /* more steps would make the mesh large */
             arg->number = p->max < 1e6 ? p->min : md_below(&w->r, 200);
         }
         break;
@@ -121,7 +121,8 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
     }
 }
 
-/* One random operation with random arguments; most that are refused need a place of their own. */
+/* Runs one random operation with random arguments; most of those that are refused need special
+ * places. */
 static bool run_one(world *w, he_mesh *m, bool *barrier)
 {
     const he_op *op = he_op_at(md_below(&w->r, (uint32_t)he_op_count()));
@@ -223,7 +224,7 @@ static void end(world *w)
     bench_free(w->b);
 }
 
-/* Two clients, one that asks often and one that asks seldom. */
+/* Two clients: one asks often, one rarely. */
 static void test_patched_arrays_equal_fresh_ones(void **state)
 {
     (void)state;
@@ -310,7 +311,7 @@ static void test_an_edit_costs_what_it_touched(void **state)
     arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
     bench_reply r = arrays_ask(w.b, "m", &c);
-    /* A vertex, and two quadrilaterals that became pentagons: four slots freed, six taken. */
+    /* A vertex, and two quadrilaterals that became pentagons: four slots freed, six used. */
     assert_int_equal(arrays_u32(r.body + 88), 1);
     assert_true(arrays_u32(r.body + 92) <= 10);
     assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
@@ -319,7 +320,7 @@ static void test_an_edit_costs_what_it_touched(void **state)
     end(&w);
 }
 
-/* The tag names the revision, the layout, and where the changes begin. */
+/* The tag contains the revision, the layout, and the base of the changes. */
 static void test_tags(void **state)
 {
     (void)state;
@@ -374,7 +375,7 @@ static void test_hostile_parameters(void **state)
         assert_int_equal(r.status, 400);
         bench_reply_free(&r);
     }
-    /* A revision that is still to come is refused; of another layout nothing is known. */
+    /* A later revision is refused; of another layout nothing is known. */
     arrays ahead = {.revision = c.revision + 1, .layout = c.layout};
     bench_reply r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 400);
@@ -384,7 +385,7 @@ static void test_hostile_parameters(void **state)
     assert_int_equal(r.status, 200);
     assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
-    /* What was before the slots were made is not remembered. */
+    /* Changes before the slots were made are not known. */
     poke(w.b, 0);
     poke(w.b, 1);
     put(w.b, starts[1]);
@@ -417,7 +418,7 @@ static void test_a_layout_ends_when_it_must(void **state)
     arrays c = {0};
     arrays_update(w.b, "m", &c);
     uint64_t first = c.layout;
-    /* Faces that come and go, steps, a vertex that stays inside. */
+    /* Faces added and removed, undo and redo, a vertex that stays inside. */
     assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"faces\":[1,2,3,4,5]}") == first);
     post(w.b, "/v1/meshes/m/undo", NULL);
     arrays_update(w.b, "m", &c);
@@ -425,11 +426,11 @@ static void test_a_layout_ends_when_it_must(void **state)
     assert_true(layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,0.01]}") ==
                 first);
     assert_true(c.whole == 1);
-    /* One that leaves the ball. */
+    /* A vertex that leaves the ball. */
     uint64_t second =
         layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,100]}");
     assert_true(second != first);
-    /* More than half of the vertices, to where another frame is better. */
+    /* More than half of the vertices move, for which another frame is better. */
     uint64_t third = layout_after(
         &w, &c, "{\"op\":\"transform\",\"matrix\":[0.01,0,0,0,0,0.01,0,0,0,0,0.01,0,0,0,0,1]}");
     assert_true(third != second);
@@ -456,7 +457,7 @@ static void test_a_layout_ends_when_it_must(void **state)
     end(&w);
 }
 
-/* A mesh too large for a worker: what is sent is the same. */
+/* A mesh too large for a worker: the answer is equal. */
 static void test_a_large_mesh(void **state)
 {
     (void)state;
@@ -513,7 +514,7 @@ static void test_a_face_of_many_corners(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the answer is whole or a refusal, and the slots go on to serve. */
+/* Each allocation in turn fails: the answer is complete or a refusal, and the slots still work. */
 static void test_each_allocation_failing(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The history of a mesh: undo, redo and steps to a revision, and what is said when the budget cuts
- * the history short. */
+/* The history of a mesh: undo, redo and steps to a revision, and the answers when the budget cuts
+ * the history. */
 #include "tests/api/history.h"
 
 #include "mesh/walk.h"
@@ -26,7 +26,7 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Every element with all its links and values, and the document. `revision` 0 is the present. */
+/* Dumps every element with all links and values, and the document. `revision` 0 is the present. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -116,8 +116,8 @@ static const cJSON *set_of(const bench_reply *r, const char *set, he_kind kind)
     return cJSON_GetObjectItemCaseSensitive(sets, he_kind_plural(kind));
 }
 
-/* Created and deleted are exactly the elements that live on one side only; a vertex that moved is
- * among the modified. */
+/* Created and deleted must be exactly the elements that are live on one side only; a vertex that
+ * moved must be modified. */
 static void check_sets(const bench_reply *r, const he_mesh *before, const he_mesh *after)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -144,12 +144,12 @@ static void check_sets(const bench_reply *r, const he_mesh *before, const he_mes
 
 /* --- random histories --- */
 
-/* What the server should know: the edits done and undone, by the revision that made them. */
+/* The expected state of the server: edits done and undone, by the revision that made them. */
 typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
     size_t done_count, undone_count;
-    uint64_t state[MOST]; /* of each revision: the edit on top, 1 for none */
+    uint64_t state[MOST]; /* for each revision: the edit on top, 1 for none */
     char *dumps[MOST];
 } model;
 
@@ -176,7 +176,7 @@ static void redo_one(model *m)
     m->state[++m->head] = top(m);
 }
 
-/* How many steps lead to a state; -1: none do. */
+/* Returns the number of steps to a state; -1: unreachable. */
 static int steps_to(const model *m, bool undo, uint64_t state)
 {
     if (state == top(m)) {
@@ -196,7 +196,7 @@ static int steps_to(const model *m, bool undo, uint64_t state)
     return -1;
 }
 
-/* The revisions a request made between are seen only when they are asked for. */
+/* Revisions in between that a request made exist only when they are requested. */
 static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
                        const he_mesh *before)
 {
@@ -309,7 +309,7 @@ static void every_revision_stays_what_it_was(void **state)
     while (m->done_count == 0) {
         edit_once(b, m, &random);
     }
-    /* All the way back, all the way forward, each depth compared inside. */
+    /* All the way back, all the way forward, comparing at each depth. */
     he_mesh *end = content_of(b);
     size_t deepest = m->done_count + m->undone_count;
     while (m->undone_count > 0 && m->head < MOST - 40) {
@@ -326,7 +326,7 @@ static void every_revision_stays_what_it_was(void **state)
     char *again = dump(b, 0);
     assert_string_equal(again, last);
     printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
-    /* In any order, what was read then is read now. */
+    /* In any order: what was read then is read now. */
     for (uint64_t i = 0; i < m->head; i++) {
         uint64_t revision = 1 + (i * 37 + 11) % m->head;
         char *then = dump(b, revision);
@@ -391,7 +391,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
             snprintf(body, sizeof body, "{\"to_revision\":%" PRIu64 "}", oldest - 1);
             r = history_post(b, "undo", body);
             assert_true(r.status == 410 || r.status == 200);
-            if (r.status == 200) { /* its content is there again, and under another revision too */
+            if (r.status == 200) { /* its content exists again, under another revision, too */
                 char *same = dump(b, 0);
                 assert_string_equal(same, dumps[oldest - 1]);
                 free(same);
@@ -411,7 +411,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     bench_free(b);
 }
 
-/* Add `edits` vertices; what is left to undo. */
+/* Adds `edits` vertices; returns how many steps can be undone. */
 static uint32_t fill_history(api_bench *b, int edits)
 {
     bench_done(
@@ -427,8 +427,8 @@ static uint32_t fill_history(api_bench *b, int edits)
     return left;
 }
 
-/* Take steps; what the answer says of both stacks must be what the history says right after, and
- * is `undo` and `redo`. */
+/* Makes steps; the stacks in the answer must be those in the history right afterwards, `undo` and
+ * `redo`. */
 static void expect_stacks(api_bench *b, const char *which, uint32_t steps, uint32_t undo,
                           uint32_t redo)
 {
@@ -463,8 +463,8 @@ static void all_that_was_undone_in_a_full_history_can_be_done_again(void **state
     bench_free(b);
 }
 
-/* The entries of undos displace the oldest, and with them the oldest steps to undo: never one to
- * redo. */
+/* The entries of undos displace the oldest entries, and with these the oldest steps to undo: never
+ * one to redo. */
 static void an_undo_never_costs_a_redo(void **state)
 {
     (void)state;
@@ -487,7 +487,7 @@ static void an_undo_never_costs_a_redo(void **state)
     bench_free(b);
 }
 
-/* Undone, a subdivision's step holds the fine mesh, which alone is beyond the budget. */
+/* After undo, the step of a subdivision holds the fine mesh, which alone exceeds the budget. */
 static void what_an_edit_made_does_not_count_against_its_redo(void **state)
 {
     (void)state;
@@ -508,7 +508,7 @@ static void what_an_edit_made_does_not_count_against_its_redo(void **state)
         assert_int_equal(history_number(r.json, "undo"), 1);
         bench_done(r);
     }
-    /* When it cannot be done again it counts as what it holds, and goes. */
+    /* When it cannot be redone it counts with what it holds, and is dropped. */
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL)));
     bench_done(bench_expect(
         200, bench_post(b, "/v1/meshes/c/edits", "{\"op\":\"face_poke\",\"face\":0}")));
@@ -590,11 +590,11 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     assert_string_equal(before, after);
     free(before);
     free(after);
-    /* To where it is already takes no step, and makes no revision. */
+    /* Undo to the present state makes no step and no revision. */
     bench_reply r = bench_expect(200, history_post(b, "undo", "{\"to_revision\":2}"));
     assert_int_equal(history_number(r.json, "revision"), 4);
     bench_done(r);
-    /* What was undone and edited over can be read, and not stepped to. */
+    /* A state that was undone and replaced by other edits can be read, but not reached by steps. */
     bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
     r = bench_expect(409, history_post(b, "undo", "{\"to_revision\":3}"));
     assert_string_equal(history_code(&r), "unreachable_revision");
@@ -627,7 +627,7 @@ static void a_finer_mesh_is_one_step_of_the_history(void **state)
     bench_done(bench_expect(200, history_post(b, "redo", "{\"steps\":2}")));
     char *again = dump(b, 0);
     assert_string_equal(again, after);
-    /* What it issued is not issued again. */
+    /* Ids that it issued are not issued again. */
     bench_done(bench_expect(200, history_post(b, "undo", "{\"steps\":3}")));
     r = bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
     const cJSON *results = cJSON_GetObjectItem(r.json, "results");

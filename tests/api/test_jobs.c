@@ -1,5 +1,5 @@
-/* Work that outlives its request: each state of a job, and what a long edit means for others. Jobs
- * run when a test says so; there are no threads. */
+/* Work that outlives its request: each state of a job, and the effects of a long edit on other
+ * requests. Jobs run when a test says so; there are no threads. */
 #include "tests/api/request.h"
 
 #include "api/header/prefer.h"
@@ -55,7 +55,7 @@ static void send(int status, const char *method, const char *target, const char 
     bench_reply_free(&r);
 }
 
-/* A job; its path goes to `path`. */
+/* Submits a job; its path goes to `path`. */
 static void submit(const char *method, const char *target, const char *body, char path[64])
 {
     bench_reply r = expect(202, method, target, async, body);
@@ -74,7 +74,7 @@ static bench_reply job_in(const char *path, const char *state)
     return r;
 }
 
-/* A member of the job by name, then a member of that. */
+/* Returns a member of a member of the job. */
 static const cJSON *inside(const bench_reply *r, const char *outer, const char *inner)
 {
     const cJSON *found = cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, outer), inner);
@@ -198,7 +198,7 @@ static void beyond_the_queue_jobs_are_refused(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "too_many_jobs");
     assert_string_not_equal(bench_header(&r, "Retry-After"), "");
     bench_reply_free(&r);
-    /* A claim that found no place is given back. */
+    /* A claim for which the queue has no space is released. */
     send(201, "PUT", "/v1/meshes/m", LARGE);
     r = expect(503, "POST", "/v1/meshes/m/edits", async, TRANSFORM);
     bench_reply_free(&r);
@@ -230,7 +230,7 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Refused, because of this job, which it names. */
+/* Requires a refusal because of this job, which it names. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);
@@ -317,14 +317,14 @@ static void a_refused_long_edit_gives_the_mesh_back(void **state)
     assert_string_equal(inside(&r, "problem", "pointer")->valuestring, "/ops/1");
     bench_reply_free(&r);
     submit("POST", "/v1/meshes/m/edits", TRANSFORM, path);
-    r = expect(202, "DELETE", path, NULL, NULL); /* it never began */
+    r = expect(202, "DELETE", path, NULL, NULL); /* it had not begun */
     bench_reply_free(&r);
     r = expect(200, "POST", "/v1/meshes/m/edits", NULL, POKE);
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
     bench_reply_free(&r);
 }
 
-/* The answers are still being read, and their exchanges are there. */
+/* The answers are still being read, and their exchanges exist. */
 static void who_has_the_answer_to_a_long_edit_may_write(void **state)
 {
     (void)state;
@@ -379,7 +379,7 @@ static void compact_as_a_job_ends_the_undo_stack(void **state)
     bench_reply_free(&r);
 }
 
-/* By what it makes, not by what it begins with. */
+/* Because of what it makes, not what it starts with. */
 static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
 {
     (void)state;
@@ -396,7 +396,7 @@ static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
     send(410, "GET", "/v1/meshes/m/faces/6", NULL);
 }
 
-/* Without a job, and the mesh is free afterwards. */
+/* Without a job; the mesh is free afterwards. */
 static void more_steps_than_ids_allow_are_refused_at_once(void **state)
 {
     (void)state;
@@ -430,7 +430,7 @@ static void a_dry_run_changes_nothing_as_a_job_either(void **state)
     bench_reply_free(&r);
 }
 
-/* Without asking, a client waits no longer than for a second's work, or for as long as it says. */
+/* Unless it says otherwise, a client waits at most for a second of work. */
 static void what_is_estimated_above_a_second_becomes_a_job(void **state)
 {
     (void)state;
@@ -488,7 +488,7 @@ static size_t read_some(const api_source *live, char *text, size_t size, int64_t
     return length;
 }
 
-/* Begin to listen to a job; the exchange is the caller's. */
+/* Begins to listen to a job; the caller frees the exchange. */
 static api_exchange *listen_to(const char *job, const api_source **live)
 {
     char path[80];
@@ -503,7 +503,7 @@ static api_exchange *listen_to(const char *job, const api_source **live)
     return x;
 }
 
-/* A mesh that got the id of one that a job was about has nothing to do with that job. */
+/* Another mesh that got the id of a job's mesh has nothing to do with that job. */
 static void a_job_is_told_to_followers_of_its_own_mesh_only(void **state)
 {
     (void)state;
@@ -547,7 +547,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"queued\""));
     assert_int_equal(wakes, 0);
     bench_run_jobs(bench, 1);
-    assert_int_equal(wakes, 1); /* and not again before it has read */
+    assert_int_equal(wakes, 1); /* and not again before it was read */
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "\"state\":\"done\""));
@@ -555,7 +555,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "event: bye\ndata: {\"reason\":\"ended\"}"));
     api_free(x);
 
-    /* Who comes late hears the end at once. */
+    /* A late listener gets the end at once. */
     x = listen_to(path, &live);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
@@ -578,7 +578,7 @@ static void a_listener_is_told_that_the_server_stops(void **state)
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "stopping"));
     api_free(x);
-    bench_run_jobs(bench, 1); /* nobody is woken who has left */
+    bench_run_jobs(bench, 1); /* a listener that left is not woken */
 }
 
 /* --- without memory --- */
@@ -612,8 +612,8 @@ static const char *state_of(const char *path, char out[16])
     return out;
 }
 
-/* The N-th request for memory fails, at submission or in the job: either the client is refused, or
- * the job fails with the mesh as it was, or all is well. */
+/* The N-th allocation fails, at submission or in the job: the client is refused, or the job fails
+ * and the mesh is unchanged, or everything succeeds. */
 static void starve(const char *method, const char *target, const char *body)
 {
     bool reached = true;

@@ -1,4 +1,4 @@
-/* Idempotency-Key: done once, answered alike each time. */
+/* Idempotency-Key: executed once, answered equally each time. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -30,7 +30,7 @@ static int revision(api_bench *b)
     return value;
 }
 
-/* A mesh with something to undo and something to do again. */
+/* A mesh with something to undo and something to redo. */
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
@@ -90,7 +90,7 @@ static void a_write_is_done_once_and_answered_twice(void **state)
         for (size_t h = 0; h < sizeof headers / sizeof *headers; h++) {
             assert_string_equal(bench_header(&first, headers[h]), bench_header(&again, headers[h]));
         }
-        /* What it shows is held back until it is durable, as it was the first time. */
+        /* The repeated answer is also held back until it is durable. */
         const st_shown *shown = &api_answer_of(first.exchange)->shown;
         assert_true(shown->position > 0 && shown->incarnation != 0);
         assert_memory_equal(shown, &api_answer_of(again.exchange)->shown, sizeof *shown);
@@ -118,7 +118,7 @@ static void a_key_is_of_one_request(void **state)
             bench_send(b, "PATCH", "/v1/meshes/m",
                        (const char *const[]){"Idempotency-Key", "k", NULL}, "{}"));
     assert_int_equal(revision(b), now);
-    /* Another key, another mesh and the store's own keys are others. */
+    /* Keys with other names, of another mesh, and of the store are independent. */
     bench_done(bench_expect(
         200, keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
     bench_done(bench_expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
@@ -183,7 +183,7 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 2);
 
-    /* The create was answered, and is not done again. */
+    /* The creation was answered, and is not done again. */
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     r = bench_expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}"));
     assert_string_equal(bench_header(&r, "Location"), "/v1/meshes/m");
@@ -193,7 +193,7 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_free(b);
 }
 
-/* Its body is not kept, but that it was done is. */
+/* Its body is not kept, but the fact that it was done is. */
 static void a_huge_answer_is_given_again_without_its_body(void **state)
 {
     (void)state;
@@ -259,7 +259,7 @@ static void a_job_that_came_to_nothing_gives_its_key_back(void **state)
     refused(503, "too_many_jobs", keyed_job(b, poke));
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 6);
-    /* The mesh, and its keys with it, may go while one is busy. */
+    /* The mesh, with its keys, may be deleted while one is in use. */
     bench_limit_jobs(b, 1);
     bench_done(bench_expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
                                             (const char *const[]){"Idempotency-Key", "other",

@@ -1,5 +1,5 @@
-/* What one client may have: requests and bytes a second of tokens and addresses, connections, jobs.
- * The clock is the test's own. */
+/* Limits per client: requests and bytes a second of tokens and addresses, connections, jobs. The
+ * test sets the clock. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -70,7 +70,7 @@ static void an_address_has_its_requests_and_then_waits(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"requests\";r=0;t=2");
     assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
     expect_code(r, 429, "rate_limit", "the address may have 2 requests a second");
-    /* Whatever it asks for, but for what watches the server. */
+    /* Every request, except those of monitoring. */
     expect(b, 429, "/nowhere");
     expect(b, 429, "/v1/openapi.json");
     expect_code(bench_send(b, "BREW", "/v1/meshes", NULL, NULL), 429, "rate_limit", "2 requests");
@@ -111,7 +111,7 @@ static void a_body_is_not_read_of_a_request_that_is_not_let_in(void **state)
     assert_non_null(x);
     assert_int_equal(step, API_READY);
     assert_int_equal(api_answer_of(x)->status, 429);
-    assert_true(api_answer_of(x)->close); /* its body is in the way */
+    assert_true(api_answer_of(x)->close); /* its body has not been read */
     assert_int_equal(api_answer_of(x)->shown.position, 0);
     api_free(x);
     bench_free(b);
@@ -128,14 +128,14 @@ static void bytes_are_counted_both_ways_and_a_debt_is_waited_for(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"bytes\";r=200;t=0");
     const uint64_t taken = sizeof cube - 1 + r.length;
     bench_done(r);
-    assert_true(taken > 200); /* so that the answer made a debt */
+    assert_true(taken > 200); /* so the answer made a debt */
     const uint64_t wait = (taken - 200) / 100 + 1;
     r = bench_expect(429, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(strtoull(bench_header(&r, "Retry-After"), NULL, 10), wait);
     assert_true(strncmp(bench_header(&r, "RateLimit"), "\"bytes\";r=0;t=", 14) == 0);
     expect_code(r, 429, "rate_limit", "the address may have 100 bytes a second");
     for (int i = 0; i < 50; i++) {
-        expect(b, 429, "/v1/meshes/m"); /* what it is told costs it nothing */
+        expect(b, 429, "/v1/meshes/m"); /* a refusal costs it nothing */
     }
     pass_seconds(wait);
     bench_done(
@@ -182,7 +182,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
         status = r.status;
         bench_done(r);
     }
-    assert_int_equal(status, 429); /* each has said hello and goodbye */
+    assert_int_equal(status, 429); /* each gets its opening and closing messages */
     assert_true(streams > 1);
     bench_free(b);
 }
@@ -197,13 +197,13 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
     expect(b, 200, "/v1/meshes");
     expect_code(bench_get(b, "/v1/meshes"), 429, "rate_limit",
                 "the token may have 1 requests a second");
-    expect(b, 200, "/v1/openapi.json"); /* open: that is the address's */
+    expect(b, 200, "/v1/openapi.json"); /* an open route uses the bucket of the address */
     bench_use_token(b, "prueba");
     for (int i = 0; i < 4; i++) {
         expect(b, 200, "/v1/meshes");
     }
     expect(b, 429, "/v1/meshes");
-    /* Who has no token, or tries some, is an address. */
+    /* A client without a token, or with unknown ones, is an address. */
     bench_use_address(b, 6, false);
     bench_use_token(b, NULL);
     for (int i = 0; i < 6; i++) {
@@ -233,7 +233,7 @@ static void a_reload_limits_at_once_and_forgets_no_debt(void **state)
     bench_change_tokens(b, ALICE " requests=3\n" BOB " requests=1\n");
     bench_done(bench_expect(200, bench_post(b, "/v1/admin/reload", NULL)));
     expect(b, 200, "/v1/meshes");
-    expect(b, 200, "/v1/meshes"); /* the reload itself was before the limit */
+    expect(b, 200, "/v1/meshes"); /* the reload itself came before the limit */
     expect(b, 429, "/v1/meshes");
     bench_use_token(b, "test");
     expect(b, 200, "/v1/meshes");
@@ -301,7 +301,8 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
     expect_code(bench_post(b, "/v1/meshes/m/copy", NULL), 507, "quota", "2 meshes");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the meshes that the token made may take 20000 bytes");
-    /* Another one's writes count for her who made the mesh; what she may have is not told. */
+    /* Writes of another token count for the token that made the mesh; the message does not say what
+     * that token's quota is. */
     bench_use_token(b, "prueba");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the token that made this one");

@@ -1,5 +1,5 @@
-/* Long edits beside everything else that happens to a mesh: what listeners hear of them, and what
- * the history keeps. */
+/* Long edits beside everything else that happens to a mesh: the events that listeners get, and the
+ * history. */
 #include "tests/api/stream.h"
 
 #include "api/job/job_table.h"
@@ -24,7 +24,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* 202; the exchange is the caller's. */
+/* Expects 202; the caller frees the exchange. */
 static api_exchange *submit(api_bench *b, const char *path, const char *body)
 {
     api_request request = {
@@ -86,7 +86,7 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     assert_job(l, "cancelled");
     bench_run_jobs(b, 1);
     assert_string_equal(stream_next(l, false), "");
-    /* Deleted under a job: the stream has ended. */
+    /* Deleted during a job: the stream has ended. */
     api_free(submit(b, "/v1/meshes/m/edits", poke));
     assert_int_equal(send(b, "DELETE", "/v1/meshes/m", NULL), 204);
     bench_run_jobs(b, 1);
@@ -96,11 +96,11 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     bench_free(b);
 }
 
-/* --- what long edits, attributes and steps make together --- */
+/* --- long edits, attributes and steps together --- */
 
 enum { REVISIONS = 80, SOME = 6 };
 
-/* Large enough that what costs the mesh claims it and is published as a copy. */
+/* Large enough that edits of the whole mesh claim it and publish a copy. */
 static void put_large(api_bench *b)
 {
     int status =
@@ -165,8 +165,8 @@ static void do_something(api_bench *b, md_random *random, int turn)
     }
 }
 
-/* Copy the revisions that were made since, each as it is when it is read back; the newest is what
- * the mesh is. Of those before, some are read once more. */
+/* Copies the new revisions, each as it reads back; the newest must equal the mesh. Some of the
+ * earlier ones are read once more. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
     st_mesh *mesh = stream_mesh(b);

@@ -1,11 +1,11 @@
-/* Measures, rays, nearest points and self-intersections, asked by POST .../query. */
+/* Measures, rays, nearest points and self-intersections in POST .../query. */
 #include "tests/api/specimens.h"
 
 static const double PI = 3.14159265358979323846;
 
 static const char QUERY[] = "/v1/meshes/m/query";
 
-/* A mesh named m. */
+/* Creates a mesh named m. */
 static void put(api_bench *b, const char *body)
 {
     bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, body);
@@ -13,7 +13,7 @@ static void put(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* The answer to one question, which is in `r`. */
+/* Returns the answer to one question, which is in `r`. */
 static const cJSON *ask(api_bench *b, const char *question, bench_reply *r)
 {
     char body[2048];
@@ -248,7 +248,7 @@ static void a_mesh_that_changes_is_asked_anew(void **state)
 static void faces_that_meet_are_listed_up_to_a_limit(void **state)
 {
     (void)state;
-    /* Three triangles through one another. */
+    /* Three intersecting triangles. */
     static const char star[] = "{\"vertices\":[[-2,-1,0],[2,-1,0],[0,2,0],[0,-2,-1],[0,2,-1],"
                                "[0,0,2],[-1,0,-2],[-1,0,2],[2,0,0]],"
                                "\"faces\":[[0,1,2],[3,4,5],[6,7,8]]}";
@@ -263,7 +263,7 @@ static void faces_that_meet_are_listed_up_to_a_limit(void **state)
     bench_free(b);
 }
 
-/* A thousand triangles in one place: all questions but the first pay what they cost. */
+/* A thousand triangles in one place: all questions but the first pay for their steps. */
 static void crowded_places_have_a_budget(void **state)
 {
     (void)state;
@@ -290,7 +290,7 @@ static void crowded_places_have_a_budget(void **state)
     assert_true(in(found, "total")->valuedouble >= 1 << 20);
     assert_true(cJSON_IsFalse(in(found, "complete")));
     bench_reply_free(&r);
-    /* Each looks at two or three thousand boxes. */
+    /* Each visits two or three thousand boxes. */
     enum { RAYS = 9000, RAYS_TEXT = RAYS * 64 };
     char *rays = malloc(RAYS_TEXT);
     assert_non_null(rays);
@@ -317,8 +317,8 @@ static void crowded_places_have_a_budget(void **state)
 
 /* --- far vertices --- */
 
-/* The answer to a request about a cube, with an isolated vertex that far away or, for 0, at the
- * origin, which is in no face's way either. */
+/* Returns the answer to a request about a cube with an isolated vertex that far away, or at the
+ * origin for 0, where it is also on no face. */
 static bench_reply ask_cube(api_bench *b, double far, const char *method, const char *target,
                             const char *body)
 {

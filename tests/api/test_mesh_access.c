@@ -1,4 +1,4 @@
-/* A handler that reads is entered with its mesh at hand, and once. */
+/* A handler that reads is called once, with its mesh in x->content. */
 #include "tests/api/request.h"
 
 #include "api/request/mesh_access.h"
@@ -101,7 +101,7 @@ static api_bench *bench_of_two_revisions(void)
     return b;
 }
 
-/* The status; `*step` is what became of the request on the worker. */
+/* Returns the status; `*step` is the state of the request after the worker. */
 static int ask(api_service *service, const char *word, const char *query, const char *tag,
                api_step *step)
 {
@@ -204,7 +204,7 @@ static void a_handler_that_leaves_the_worker_is_entered_anew(void **state)
     bench_free(b);
 }
 
-/* --- each row of the API says what it reads --- */
+/* --- each row of the API declares what it reads --- */
 
 static void rows_that_read_content_say_so(void **state)
 {
@@ -232,9 +232,9 @@ static void rows_that_read_content_say_so(void **state)
     }
 }
 
-/* --- two that make slots at a time --- */
+/* --- two requests make slots at the same time --- */
 
-static api_bench *interrupted; /* whose next slots are made while another request makes some */
+static api_bench *interrupted; /* its slots are made while another request makes some */
 static uint64_t others_layout;
 
 static uint64_t layout_of(const bench_reply *r)

@@ -1,4 +1,4 @@
-/* The served description holds together and says what the tables say. */
+/* The served OpenAPI document is consistent and agrees with the tables. */
 #include "tests/api/request.h"
 
 #include "algo/shape.h"
@@ -29,7 +29,7 @@ static const cJSON *resolve(const cJSON *root, const char *reference)
     return member(member(member(root, "components"), group), name);
 }
 
-/* Follow every reference below `at`, and mark what is reached. */
+/* Follows every reference below `at`, and marks the schemas reached. */
 static void follow(const cJSON *root, cJSON *at, size_t *references)
 {
     cJSON *child;
@@ -92,7 +92,7 @@ static void shapes_are_those_of_the_table(void **state)
     bench_free(b);
 }
 
-/* Members that a body may not have would be a lie in its schema. */
+/* A schema must not list members that the body may not have. */
 static void bodies_take_what_their_schemas_list(void **state)
 {
     (void)state;
@@ -125,7 +125,7 @@ static void bodies_take_what_their_schemas_list(void **state)
     bench_free(b);
 }
 
-/* Does the list, in which names are parted by ", ", have this one? */
+/* Does the list, whose names are separated by ", ", contain this one? */
 static bool is_exposed(const char *name)
 {
     size_t length = strlen(name);

@@ -85,7 +85,7 @@ static const unsigned char corners[36] = {[14] = 0x80, [15] = 0x3F, [30] = 0x80,
 #define OBJ "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
 #define MTL "newmtl red\nKd 1 0 0\n"
 
-/* Made of three vertices and one face; and what was said of it. */
+/* Requires three vertices and one face; returns the answer. */
 static bench_reply expect_triangle(const char *format, bench_reply r)
 {
     r = bench_expect(201, r);
@@ -119,7 +119,7 @@ static void a_gltf_finds_its_buffers_by_name(void **state)
         {{"a.gltf", NULL, GLTF("the%20%C3%BC.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("100%25.bin"), 0}, {"100%25.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("the \\u00fc.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
-        /* folders stay behind where files are chosen in a browser */
+        /* folders are left out when files are chosen in a browser */
         {{"a.gltf", NULL, GLTF("./a.bin"), 0}, {"a.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("a.bin"), 0}, {"dir\\a.bin", NULL, BIN}},
         {{"d/a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -178,7 +178,7 @@ static void an_obj_comes_with_its_library(void **state)
         "obj", send_files(b, "/v1/meshes",
                           (file[MOST_FILES]){{"a.mtl", NULL, MTL, 0}, {"a.obj", NULL, OBJ, 0}}));
     bench_reply_free(&r);
-    /* what nothing names is told */
+    /* a file that is not referred to is reported */
     r = expect_triangle("obj", send_files(b, "/v1/meshes",
                                           (file[MOST_FILES]){{"a.obj", "text/plain", OBJ, 0},
                                                              {"b.png", "image/png", "1", 0}}));
@@ -268,10 +268,10 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     const char *const mixed[] = {"Content-Type", "multipart/mixed; boundary=xyz", NULL};
     expect_refused(415, "unsupported_media_type", "multipart/mixed",
                    bench_send_bytes(b, "POST", "/v1/meshes", mixed, packed.bytes, packed.length));
-    packed.length -= 4; /* the last hyphens and the line's end */
+    packed.length -= 4; /* the last hyphens and the line break */
     expect_refused(400, "bad_multipart", "ends before its last delimiter",
                    send_body(b, "POST", "/v1/meshes", &packed));
-    /* what is wrong in the mesh's file is told before the rest has come */
+    /* a mistake in the mesh file is reported before the rest has arrived */
     const file wrong[MOST_FILES] = {{"a.obj", NULL, "v 1 2\n", 0}, {"a.mtl", NULL, MTL, 0}};
     expect_refused(400, "syntax", "line 1", send_files(b, "/v1/meshes", wrong));
     bench_free(b);
@@ -300,7 +300,7 @@ static void another_boundary_is_the_same_request(void **state)
         bench_reply_free(&r);
     }
     free(first);
-    /* other names or bytes are another one */
+    /* other names or bytes make another request */
     for (size_t i = 0; i < 2; i++) {
         file *changed = &files[1];
         *changed = i == 0 ? (file){"b.mtl", NULL, MTL, 0} : (file){"a.mtl", NULL, MTL "\n", 0};

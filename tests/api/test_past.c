@@ -1,4 +1,4 @@
-/* What was: earlier revisions read as they were, and the list of them. */
+/* Earlier revisions: reading them, and listing them. */
 #include "tests/api/history.h"
 
 #include <inttypes.h>
@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-/* --- reading what was --- */
+/* --- reading earlier revisions --- */
 
 static void elements_are_those_of_the_revision(void **state)
 {
@@ -20,7 +20,7 @@ static void elements_are_those_of_the_revision(void **state)
         int status;
     } rows[] = {
         {"/v1/meshes/m/vertices/8", 200},
-        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* made by the next revision */
+        {"/v1/meshes/m/vertices/8?revision=1", 404}, /* created by the next revision */
         {"/v1/meshes/m/vertices/8?revision=2", 200},
         {"/v1/meshes/m/faces/1?revision=2", 200},
         {"/v1/meshes/m/faces/1?revision=3", 410},
@@ -50,7 +50,7 @@ static void elements_are_those_of_the_revision(void **state)
     assert_int_equal(history_number(counts, "faces"), 8);
     assert_int_equal(history_number(counts, "boundary_loops"), 1);
     bench_done(r);
-    /* The summary that is kept is that of the present. */
+    /* The cached summary is that of the present. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(history_number(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
     bench_done(r);
@@ -73,7 +73,7 @@ static void a_tag_names_the_revision_that_was_read(void **state)
         bench_done(r);
         const char *const known[] = {"If-None-Match", etag, NULL};
         bench_done(bench_expect(304, bench_send(b, "GET", target, known, NULL)));
-        /* Of the present it says nothing. */
+        /* Without a revision it is not named. */
         *strstr(target, "revision=2") = '\0';
         target[strlen(target) - 1] = '\0';
         bench_done(bench_expect(200, bench_send(b, "GET", target, known, NULL)));
@@ -81,7 +81,7 @@ static void a_tag_names_the_revision_that_was_read(void **state)
     bench_free(b);
 }
 
-/* What no step leads to any more can be had again as a mesh of its own. */
+/* A state that no step reaches any more can be copied to a mesh of its own. */
 static void an_earlier_revision_can_be_copied(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void every_allocation_of_a_reader_may_fail(void **state)
             more = memory.calls >= n;
             memory.fail_at = 0;
             if (answered) {
-                /* The cache of a summary, or a copy's slack, can be done without. */
+                /* The cache of a summary, or a copy's spare capacity, is optional. */
                 assert_true(r.status == 200 || (more && (r.status == 507 || r.status == 503)));
                 bench_reply_free(&r);
             }

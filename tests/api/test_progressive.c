@@ -1,4 +1,4 @@
-/* Meshes from coarse to fine, read by a decoder of its own that knows the bytes' description only:
+/* Meshes from coarse to fine, read by a decoder written from the description of the bytes only:
  * faces as corners and edges as ends, without links. */
 #include "tests/api/request.h"
 
@@ -102,7 +102,7 @@ static void add_face(level *l, uint32_t face, uint32_t a, uint32_t b, uint32_t c
     }
 }
 
-/* The edge from v to x goes over to u. */
+/* Moves the edge from v to x to u. */
 static void move_edge(level *l, uint32_t v, uint32_t x, uint32_t u)
 {
     for (uint32_t e = 0; e < l->edges; e++) {
@@ -215,7 +215,7 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
-/* The mesh of the present revision, which must be this one. */
+/* Requires that the mesh of the present revision equals this one. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
     st_store *store = bench_store(b);
@@ -228,7 +228,7 @@ static void assert_is(api_bench *b, const char *id, const level *l, uint64_t rev
     st_release(mesh);
 }
 
-/* Every level where there are few splits, else some. */
+/* Checks every level if there are few splits, else some. */
 static void replay(api_bench *b, const char *id)
 {
     char path[64];
@@ -289,7 +289,7 @@ static void splits_lead_back_to_the_mesh(void **state)
     bench_free(b);
 }
 
-/* Dead rows and bent surfaces: what edits leave. */
+/* Dead rows and curved surfaces, as edits leave them. */
 static void ids_that_are_not_in_order_come_back(void **state)
 {
     (void)state;
@@ -360,7 +360,7 @@ static void a_large_mesh_is_decimated_in_a_job(void **state)
     bench_free(b);
 }
 
-/* --- given up, short of memory, and what it holds --- */
+/* --- cancelling, memory, and what it holds --- */
 
 #define LARGE "{\"shape\":\"icosphere\",\"subdivisions\":4}"
 
@@ -383,7 +383,7 @@ static api_exchange *ask(api_bench *b, const char *query,
     return x;
 }
 
-/* False from the n-th time on; never for 0. */
+/* Returns false from the n-th call on; never for 0. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -403,7 +403,7 @@ static void it_can_be_given_up_at_any_time(void **state)
         int status = api_answer_of(x)->status;
         api_free(x);
         if (left > 0) {
-            assert_int_equal(status, 200); /* it was not asked so often */
+            assert_int_equal(status, 200); /* there were fewer polls */
             break;
         }
         assert_int_equal(status, 503);
@@ -430,13 +430,13 @@ static void every_allocation_may_fail(void **state)
             assert_int_equal(status, 200);
             break;
         }
-        assert_true(status == 507 || status == 200); /* it can do without room to give back */
+        assert_true(status == 507 || status == 200); /* shrinking a block is optional */
     }
     replay(b, "m");
     bench_free(b);
 }
 
-/* What is held, as malloc sees it. */
+/* Allocated bytes, as malloc counts them. */
 static size_t held;
 
 static void *count_resize(void *context, void *memory, size_t size)
@@ -453,7 +453,7 @@ static void *count_resize(void *context, void *memory, size_t size)
     return resized;
 }
 
-/* While it is sent, however slowly, it holds what is to be sent and not the mesh. */
+/* While it is sent, however slowly, it holds what is still to be sent and not the mesh. */
 static void an_answer_holds_little_more_than_its_bytes(void **state)
 {
     (void)state;
@@ -482,7 +482,7 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* Written word by word, and as one replace: the history has it as long as it has the edit. */
+/* Recorded word by word, and as one replacement: the history has it as long as it has the edit. */
 static void the_history_keeps_the_record_of_a_decimation(void **state)
 {
     (void)state;

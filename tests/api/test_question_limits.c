@@ -1,4 +1,4 @@
-/* What questions refuse, what they cost, and what happens when memory is out. */
+/* Refusals and costs of questions, and failing allocations. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -151,7 +151,7 @@ static const refusal refusals[] = {
     {QUERY, "{\"queries\":[],\"limit\":1}", 400, "unknown_member", "/limit"},
 };
 
-/* What is wrong with one question stays in its place, here the second. */
+/* A mistake in one question is reported in its place, here the second. */
 static const refusal bad_questions[] = {
     {NULL, "1", 400, "wrong_type", ""},
     {NULL, "{}", 400, "missing_member", ""},
@@ -393,7 +393,7 @@ static void a_cursor_is_of_its_revision(void **state)
     int revision = (int)number_of(r.json, "revision");
     int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    /* Edits change nothing about the page, which goes on at its revision. */
+    /* Edits do not affect the next page, which is of the same revision. */
     edit(b, "{\"op\":\"face_poke\",\"face\":3}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 200);
@@ -425,7 +425,7 @@ typedef struct driven {
     size_t length;
 } driven;
 
-/* A worker that has no time at all. */
+/* A worker without any time. */
 static bool is_hurried;
 
 static bool has_no_time(void *context, const char *phase, double done)
@@ -436,7 +436,8 @@ static bool has_no_time(void *context, const char *phase, double done)
     return false;
 }
 
-/* Step by step, to see whether the worker was left; streams are read in odd pieces. */
+/* Runs the steps one by one, to see whether the request left the worker; streams are read in pieces
+ * of odd sizes. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
 {
@@ -496,7 +497,7 @@ static void expect_place(api_bench *b, const char *path, const char *accept, con
     }
 }
 
-/* What a question costs, and not the size of its mesh, sends it to the job pool. */
+/* The cost of a question, not the size of its mesh, decides whether it moves to the job pool. */
 static void long_questions_leave_the_worker(void **state)
 {
     (void)state;
@@ -530,14 +531,15 @@ static void long_questions_leave_the_worker(void **state)
     expect_place(b, query, NULL,
                  "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":\"all\"}}]}",
                  true);
-    /* The first who asks has the tree made, the next one asks it where he is. */
+    /* The first question has the tree made; the next one uses it on the worker. */
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", true);
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", false);
     expect_place(b, query, NULL, "{\"queries\":[{\"self_intersections\":{}}]}", true);
     bench_free(b);
 }
 
-/* Two faces of many corners back to back: each has one neighbour, which costs all corners to find.
+/* Two faces of many corners back to back: each has one neighbour, and finding it visits all
+ * corners.
  */
 static char *pillow(unsigned corners)
 {
@@ -574,8 +576,8 @@ static char *repeated(const char *question, unsigned times)
     return text;
 }
 
-/* What is told to stop on a worker begins anew where it may take its time, and is answered the same
- * way. What changes something goes on. */
+/* A read that is stopped on a worker starts again on another thread, with the same answer. A write
+ * continues. */
 static void a_read_that_outstays_the_worker_begins_anew(void **state)
 {
     (void)state;
@@ -608,7 +610,7 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* The client waits: without that the question would become a job. */
+/* The client waits; otherwise the question would become a job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};
@@ -623,7 +625,7 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     cJSON_ArrayForEach(result, results)
     {
         const char *code = text_of(result, "code");
-        /* Once it is used up nothing more is answered. */
+        /* After the budget is used up nothing more is answered. */
         assert_true(code != NULL || !refused);
         refused = code != NULL;
         answered += code == NULL;
@@ -639,7 +641,7 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     free(body);
 }
 
-/* Every kind of question of forty bytes that looks at a whole mesh, more often than is allowed. */
+/* Every kind of question of forty bytes that visits a whole mesh, more often than allowed. */
 static void the_work_of_a_query_is_bounded(void **state)
 {
     (void)state;
@@ -656,8 +658,8 @@ static void the_work_of_a_query_is_bounded(void **state)
     bench_free(b);
 }
 
-/* Nor does the answer depend on who has asked before: whoever finds the tree made pays for it as
- * who makes it does. */
+/* The answer does not depend on earlier requests: a question that finds the tree pays as much as
+ * one that makes it. */
 static void a_tree_costs_everybody_the_same(void **state)
 {
     (void)state;
@@ -713,7 +715,7 @@ static void *resize(void *context, void *block, size_t size)
     return ++f->calls == f->fail_at ? NULL : realloc(block, size);
 }
 
-/* Fail the N-th request for memory, for N = 1, 2, 3 ... until none is left to fail. */
+/* Fails the N-th allocation, for N = 1, 2, 3 ... until none fails. */
 static void try_without_memory(api_bench *b, const char *path, const char *accept, const char *body)
 {
     const char *method = body == NULL ? "GET" : "POST";
@@ -726,7 +728,7 @@ static void try_without_memory(api_bench *b, const char *path, const char *accep
             assert_int_equal(d.length, whole.length);
             break;
         }
-        /* What can do without the memory may answer all the same. */
+        /* An answer that can do without the memory may still be complete. */
         bool same = d.status == 200 && d.length == whole.length;
         if (!d.none && !d.cut && d.status != 507 && !same) {
             fail_msg("%s %s, allocation %ld: %d", path, body, memory.fail_at, d.status);

@@ -1,5 +1,5 @@
-/* Searches in space are charged for what they look at: a fan of thousands is searched whole, and a
- * short request that asks for much work is refused by the limit that it meets. */
+/* Spatial searches are charged for what they visit: a fan of thousands is searched completely, and
+ * a short request for much work is refused by its limit. */
 #include "tests/api/fan.h"
 
 #include "api/limits.h"
@@ -137,7 +137,7 @@ static void a_search_that_was_refused_has_used_up_the_steps_of_its_request(void 
     bench_free(b);
 }
 
-/* --- what is about all of a mesh --- */
+/* --- questions about the whole mesh --- */
 
 static bench_reply ask(api_bench *b, const char *target, const char *accept, const char *wait,
                        const char *body)
@@ -158,7 +158,7 @@ static void expect_result(api_bench *b, const bench_reply *begun, const bench_re
     bench_done(r);
 }
 
-/* A client that waits for 0 s, since it takes a million faces to take longer than the usual one. */
+/* A client that waits for 0 s, because only a million faces would take longer than the default. */
 static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_waits(void **state)
 {
     (void)state;
@@ -189,7 +189,7 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
         bench_done(wanted);
         bench_done(begun);
     }
-    /* The tree is there, and what concerns few elements takes no time. */
+    /* The tree exists, and a question about few elements takes no time. */
     bench_done(bench_expect(200, ask(b, QUERY, json, "wait=0", cases[0].body)));
     bench_done(bench_expect(200, ask(b, walks, json, "wait=0",
                                      "{\"walk\":\"rings\",\"from\":{\"vertex\":0},\"depth\":2}")));

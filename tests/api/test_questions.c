@@ -1,4 +1,4 @@
-/* Elements, adjacency and queries, against what searching the polygons finds. */
+/* Elements, adjacency and queries, compared with searching the polygons. */
 #include "tests/api/specimens.h"
 
 /* --- elements --- */
@@ -295,7 +295,7 @@ static void queries_answer_in_order(void **state)
     for_each_specimen(try_query);
 }
 
-/* All elements of a kind by rising id, or all of them backwards as a list. */
+/* All elements of a kind by ascending id, or all of them backwards as a list. */
 static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const char *what,
                                bool backwards)
 {
@@ -354,7 +354,7 @@ static void dense_answers_are_offsets_and_ids(void **state)
     for_each_specimen(try_dense);
 }
 
-/* As octets, in problems of single questions, and of a walk. */
+/* As octets, in problems of single questions, and for a walk. */
 static void questions_are_of_the_revision(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Long reads as jobs: what each would have answered is fetched when the job has ended, in the
- * bytes, type and tag that it would have had, be it JSON, lines, octets or a file. */
+/* Long reads as jobs: the answer is fetched when the job has ended, with the bytes, type and tag
+ * that the request would have had, be it JSON, lines, octets or a file. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -35,7 +35,7 @@ static api_bench *bench_of_sphere(void)
     return b;
 }
 
-/* A read; `accept` NULL for any. */
+/* A read; `accept` NULL: anything. */
 typedef struct reading {
     const char *method, *target, *body, *accept;
     bool linked; /* its answer is no JSON, or a whole mesh: it is not in the job itself */
@@ -142,7 +142,7 @@ static void each_long_read_can_be_a_job_with_the_answer_it_would_have_given(void
     bench_free(b);
 }
 
-/* A job that has begun; its path goes to `path`. */
+/* Starts a job; its path goes to `path`. */
 static void begin(api_bench *b, const char *target, char path[PATH])
 {
     const reading r = {"GET", target, NULL, NULL, true};
@@ -246,7 +246,7 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     bench_free(b);
 }
 
-/* Also where it is about an earlier revision, which is brought back first. */
+/* Also for an earlier revision, which would have to be restored first. */
 static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state)
 {
     (void)state;
@@ -270,7 +270,7 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
     bench_free(b);
 }
 
-/* Drawn anew in part: `since` names another representation. */
+/* Only changed rows: `since` names another representation. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;
@@ -292,7 +292,7 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* All rows are another representation, and a revision to come is refused where it is looked at.
+    /* All rows are another representation, and a later revision is refused when it is read.
      */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
@@ -301,7 +301,7 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_free(b);
 }
 
-/* A tag of the revision that comes while the job waits. */
+/* The tag of a revision that is made while the job waits. */
 static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **state)
 {
     (void)state;
@@ -313,7 +313,7 @@ static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **st
         bench_reply now = bench_expect(200, send(b, r, false));
         snprintf(tag, sizeof tag, "%s", bench_header(&now, "ETag"));
         bench_done(now);
-        bool slots = strstr(r->target, "geometry") != NULL; /* their number is not to be guessed */
+        bool slots = strstr(r->target, "geometry") != NULL; /* their number cannot be predicted */
         if (tag[0] == '\0' || !present || slots) {
             continue;
         }
@@ -385,7 +385,7 @@ static void a_result_that_the_client_has_is_not_sent_again(void **state)
     bench_free(b);
 }
 
-/* The reader of a result has it for as long as it reads, whatever becomes of the job. */
+/* A reader of a result keeps it as long as it reads, whatever happens to the job. */
 static void a_result_outlives_its_job_while_it_is_read(void **state)
 {
     (void)state;
@@ -410,7 +410,7 @@ static void a_result_outlives_its_job_while_it_is_read(void **state)
     bench_free(b);
 }
 
-/* The job is begun when the memory of the request's headers is used for something else. */
+/* The job begins when the memory of the request's headers is used for something else. */
 static void a_job_has_copies_of_its_headers(void **state)
 {
     (void)state;
@@ -433,7 +433,7 @@ static void a_job_has_copies_of_its_headers(void **state)
 /* --- memory --- */
 
 static struct {
-    long calls, at; /* the request that fails, 0: none */
+    long calls, at; /* the allocation that fails, 0: none */
 } memory;
 
 static void *resize(void *context, void *block, size_t size)

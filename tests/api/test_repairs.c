@@ -1,5 +1,5 @@
-/* Repairs through the api: what is refused names the repairs that let it pass, and with them it
- * passes; the import report accounts for what each did. */
+/* Repairs: a refusal names the repairs with which the body passes, and with them it does; the
+ * import report lists what each did. */
 #include "tests/api/request.h"
 
 #include "unit/fixture.h"
@@ -31,7 +31,7 @@ static bench_reply post_json(api_bench *b, const char *query, const char *body)
     return post(b, query, "application/json", body, strlen(body));
 }
 
-/* "?repair=a,b" from the problem's member; false where it names none. */
+/* Makes "?repair=a,b" from the problem's member; returns false if it names none. */
 static bool named_repairs(const bench_reply *r, char query[120])
 {
     const cJSON *list = cJSON_GetObjectItem(r->json, "repair"), *one;
@@ -55,7 +55,7 @@ static void expect_valid(api_bench *b, const bench_reply *created)
     bench_reply_free(&r);
 }
 
-/* Refused, and then not: the code is that of the first refusal. */
+/* Refused first, then accepted with repairs; the code is that of the first refusal. */
 static void expect_mended(api_bench *b, const char *type, const char *body, size_t length,
                           const char *code, const char *repairs)
 {
@@ -393,7 +393,7 @@ static void a_band_that_cannot_be_oriented_is_told(void **state)
     bench_free(b);
 }
 
-/* What is refused after some repairs still has the numbers and lines of the file. */
+/* A refusal after some repairs still has the numbers and lines of the file. */
 static void a_refusal_after_repairs_names_the_file(void **state)
 {
     (void)state;
@@ -412,8 +412,8 @@ static void a_refusal_after_repairs_names_the_file(void **state)
     bench_free(b);
 }
 
-/* Two faces that repeat a corner, around many that do not and one so large that looking at it takes
- * memory. */
+/* Two faces that repeat a corner, among many that do not and one so large that checking it
+ * allocates memory. */
 static char *broken_file(size_t *length)
 {
     enum { FACES = 20000, LARGE = 40 };
@@ -435,7 +435,7 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Upload it with the given watch; the status, and of a 422 the number of defects it tells. */
+/* Uploads it with the given watch; returns the status, and for a 422 the number of defects. */
 static int upload_broken(api_bench *b, const char *text, size_t length,
                          bool (*tell)(void *context, const char *phase, double done), void *context,
                          int *total)
@@ -474,7 +474,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     return status;
 }
 
-/* False from the n-th time on; never for 0. */
+/* Returns false from the n-th call on; never for 0. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -493,7 +493,7 @@ static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
         int left = n;
         status = upload_broken(b, text, length, count_down, &left, &total);
         if (left > 0) {
-            break; /* it was not asked so often */
+            break; /* there were fewer polls */
         }
         assert_int_equal(status, 503);
         given_up++;
@@ -591,7 +591,7 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
         expect(201, post_json(b, "?id=a&repair=weld,drop_degenerate,drop_duplicates", document));
     expect_member(repair_at(&r, 0, "weld"), "moved", "1");
     bench_reply_free(&r);
-    /* 11 was another vertex than 10, and its corner says so still */
+    /* 11 was another vertex than 10, and its corner still has its value */
     r = expect(200, bench_send(b, "GET", "/v1/meshes/a/attributes/halfedges/v", NULL, NULL));
     expect_member(r.json, "values", "[11,0,12,0,13,0]");
     bench_reply_free(&r);
@@ -609,8 +609,8 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
     bench_free(b);
 }
 
-/* Other programs write a vertex for each corner whose values differ: the faces then lie apart, and
- * the report says how they come together. */
+/* Other programs write one vertex per corner with different values: the faces are then separate,
+ * and the report says how to join them. */
 static void faces_apart_along_coinciding_edges_are_told(void **state)
 {
     (void)state;
@@ -647,7 +647,7 @@ static void values_of_edges_are_not_guessed(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
     expect_member(r.json, "pointer", "\"/attributes/0/values\"");
     bench_reply_free(&r);
-    /* where nothing has to be done they stay */
+    /* nothing has to be repaired, so they stay */
     r = expect(201, post_json(b, "?repair=split,orient",
                               "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]],"
                               "\"attributes\":[{\"domain\":\"edges\",\"name\":\"e\",\"type\":"

@@ -1,5 +1,5 @@
-/* Who makes a snapshot: never a worker of a large mesh, and nobody for a client that has the
- * present state. */
+/* Which thread makes a snapshot: never a worker for a large mesh, and none for a client that has
+ * the present state. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -11,7 +11,7 @@
 
 static int snapshots;
 
-/* The linker gives calls of these functions to the wrappers (Makefile). */
+/* The linker redirects calls of these functions to the wrappers (Makefile). */
 st_status __real_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __wrap_st_snapshot_take(st_mesh *mesh, st_snapshot **out);
 st_status __real_st_snapshot_held(st_mesh *mesh, st_snapshot **out);
@@ -65,7 +65,7 @@ static const struct {
     {"POST", "/v1/meshes/m/copy", NULL, 201},
 };
 
-/* The request up to where a worker hands it over; `none` is its If-None-Match. */
+/* Runs the request on a worker; `none` is its If-None-Match. */
 static api_exchange *send(fixture *f, size_t i, const char *none, api_step *step)
 {
     api_request request = {
@@ -114,7 +114,7 @@ static void nobody_makes_one_for_whom_nothing_changed(void **state)
             if (cases[i].status != 200) {
                 continue;
             }
-            /* Somebody asked before, so that all is there of which a tag is made. */
+            /* After an earlier request, everything from which a tag is made exists. */
             api_exchange *x = send(&f, i, NULL, &step);
             if (step == API_WORK) {
                 api_work(x);

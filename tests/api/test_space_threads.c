@@ -1,5 +1,5 @@
-/* Many who ask about space at once: the tree is made once a revision, whoever comes meanwhile waits
- * for it, and answers are of the revision they name while others write. */
+/* Many spatial queries at once: the tree is made once per revision, requests in the meantime wait
+ * for it, and answers are of the revision that they name while others write. */
 #include "tests/api/request.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 
 enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
-/* So large that trees are not made by workers. */
+/* So large that workers do not make the trees. */
 #define GRID    "{\"shape\":\"grid\",\"columns\":80,\"rows\":80,\"width\":8,\"height\":8}"
 #define UP      "{\"op\":\"transform\",\"matrix\":[1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,0,1]}"
 #define NEAREST "{\"queries\":[{\"closest\":[0,0,-3]}]}"
@@ -30,7 +30,7 @@ typedef struct reader {
     const char *strange; /* what was wrong first */
 } reader;
 
-/* The grid lies at the height that is its revision, less one. */
+/* The grid lies at the height revision - 1. */
 static const char *judge(const reader *r, const cJSON *answer, double *revision)
 {
     const cJSON *asked = cJSON_GetObjectItem(answer, "revision");
@@ -100,9 +100,9 @@ static void answers_are_of_the_revision_they_name_while_others_write(void **stat
     bench_free(b);
 }
 
-/* --- the first two --- */
+/* --- the first two requests --- */
 
-/* The linker gives calls of these functions to the wrappers (Makefile). */
+/* The linker redirects calls of these functions to the wrappers (Makefile). */
 st_derived *__real_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 st_derived *__wrap_st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_end(st_mesh *mesh, st_derived_kind kind);
@@ -110,20 +110,20 @@ void __wrap_st_derived_end(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 
-/* While it is closed, the store holds its first asker up, with the tree still to be made, until
- * another one waits for that or has his answer. */
+/* While it is closed, the store delays the first asker, before it makes the tree, until another one
+ * waits for the tree or is answered. */
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool closed;
     bool begun, met;
     atomic_bool making; /* the first asker is about to make the tree */
-    /* Under the place. */
+    /* Protected by the lock of the place. */
     st_derived *place;
     bool held;
     int waited;
-    bool *leaves;   /* patience of the first, who gives up when the second is there; NULL: stays */
-    bool *gives_up; /* who waits, as soon as he does; NULL: he does not */
+    bool *leaves;   /* makes the first asker stop when the second one is there; NULL: it stays */
+    bool *gives_up; /* set as soon as the second one waits, which then stops; NULL: it does not */
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)
@@ -180,7 +180,7 @@ void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind)
     __real_st_derived_wait(mesh, kind);
 }
 
-/* An impatient asker gives up the tree, and no work that is done before it. */
+/* An impatient asker gives up waiting for the tree, but not earlier work. */
 static bool give_up(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -279,7 +279,7 @@ static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
     assert_true(gate.waited > 0);
 }
 
-/* The first one goes on only when the second has his answer. */
+/* The first one continues only when the second one is answered. */
 static void who_waits_for_a_tree_may_give_up(void **state)
 {
     (void)state;

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* A request in order; later ones see what earlier ones did. */
+/* A request; later ones see the effects of earlier ones. */
 typedef struct step {
     const char *method, *target;
     int status;
@@ -325,7 +325,7 @@ static void take(api_bench *b, const char *method, const char *target, int statu
     bench_reply_free(&r);
 }
 
-/* A cursor that was good and of a mesh that had the id before. */
+/* A cursor that was valid for a mesh that had the id before. */
 static void take_stale_cursor(api_bench *b, const char *collection)
 {
     char target[300];
@@ -344,7 +344,7 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     take(b, "GET", target, 410, NULL, NULL, 0);
 }
 
-/* The rows of elements differ in their kind and relation alone. What was replaced is no revision
+/* The rows of elements differ only in kind and relation. A replaced mesh has no earlier revision
  * that can be read. */
 static void take_elements(api_bench *b)
 {
@@ -371,8 +371,8 @@ static void take_elements(api_bench *b)
     }
 }
 
-/* The same request, with its path for a key, twice at a time, so long that it waits for a thread,
- * and then another one. */
+/* Sends a request with its path as a key twice at the same time, so long that it waits for a
+ * thread, and then another one with the key. */
 static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
 {
     enum { LONG = 300 << 10 };
@@ -497,7 +497,7 @@ static void test_each_declared_status(void **state)
         const api_route *route = &api_routes().rows[i];
         if (strncmp(route->path, "/assets", 7) == 0 || strcmp(route->path, "/") == 0 ||
             strcmp(route->path, "/docs") == 0) {
-            continue; /* there is no page without a server: tests/e2e and tests/web ask for it */
+            continue; /* there is no page without a server: tests/e2e and tests/web request it */
         }
         for (const int *status = route->statuses; *status != 0; status++) {
             if (!seen[i][*status]) {

@@ -1,5 +1,5 @@
-/* The traps that files of the wild have held, through the api: each is made here, with what is to
- * be said about it, and by which repair it passes. */
+/* Defects of real files: each is made here, with the expected refusal and the repair with which it
+ * passes. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ static void put_many(file *f, const char *text, int times)
     }
 }
 
-/* --- what they are --- */
+/* --- the files --- */
 
 /* Binary STL of a tetrahedron. */
 static void put_facets(file *f, const char *header, uint32_t count)
@@ -167,14 +167,14 @@ static void moebius(file *f)
            "f 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n");
 }
 
-/* --- what is said --- */
+/* --- the expected answers --- */
 
 static const struct {
     const char *format;
     void (*make)(file *f);
     int status;
     const char *words;
-    const char *repair; /* NULL: none would help */
+    const char *repair; /* NULL: no repair helps */
     const char *then;
 } traps[] = {
     {"stl", solid_with_a_stray_byte, 201, "\"trailing_bytes\"", NULL, NULL},

@@ -1,5 +1,5 @@
-/* Decoders of many bodies on several threads: each body unfolds or gives way, and what they hold
- * stays below its ceiling. */
+/* Decoders of many bodies on several threads: each body is decompressed or evicted, and their
+ * memory stays below the ceiling. */
 #include "api/header/unpack.h"
 
 #include <pthread.h>
@@ -22,7 +22,7 @@ static bool take(void *context, const char *bytes, size_t length)
     return true;
 }
 
-/* A frame that may look back over 8 MiB, an empty block, blocks of 1,024 zeros, the last of them.
+/* A frame with a window of 8 MiB, an empty block, blocks of 1,024 zeros, the last of them.
  */
 static const char head[] = {0x28, (char)0xB5, 0x2F, (char)0xFD, 0, 13 << 3, 0, 0, 0};
 static const char block[] = {2, 1 << 5, 0, '\0'}, last[] = {3, 1 << 5, 0, '\0'};
@@ -37,7 +37,7 @@ static bool feed(api_unpack *u, const char *bytes, size_t length)
     return good;
 }
 
-/* More windows than there is room for, in turn; every body that was not cut off is whole. */
+/* More windows than fit into memory, in turn; every body that was not evicted is complete. */
 static void *unfold_many(void *context)
 {
     (void)context;

@@ -1,4 +1,4 @@
-/* Walks and the mesh as a whole, against what searching the polygons finds. */
+/* Walks and the mesh as a whole, compared with searching the polygons. */
 #include "tests/api/specimens.h"
 
 #include "format/text/number.h"
@@ -17,7 +17,7 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* The walk in JSON, then what it leads to. `until` NULL: only the count ends it. */
+/* Writes the walk in JSON, then its result. `until` NULL: only the count ends it. */
 static void try_path(api_bench *b, const pg_mesh *pg, unsigned from, const char *letters,
                      unsigned repeat, const char *until)
 {
@@ -164,7 +164,7 @@ static unsigned at(const cJSON *list, int i)
     return (unsigned)cJSON_GetArrayItem(list, i)->valuedouble;
 }
 
-/* Of several shortest paths any will do, so the answer is checked rather than compared. */
+/* Any of several shortest paths is correct, so the answer is checked rather than compared. */
 static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigned to, bool length,
                          double wanted)
 {
@@ -296,7 +296,7 @@ static void try_components(api_bench *b, const pg_mesh *pg)
     }
 }
 
-/* Six times the volume of the component whose lowest face this is, 0 where it is open. The
+/* Returns six times the volume of the component with this lowest face, 0 if it is open. The
  * coordinates are whole numbers, so this is one, too. */
 static double six_volumes(const pg_mesh *pg, const unsigned *lowest, unsigned face)
 {

@@ -1,5 +1,5 @@
-/* Writes: whole or not at all whatever memory there is, refused before they cost too much, and
- * answered by what became of them. */
+/* Writes: all or nothing whichever allocation fails, refused before they cost too much, and
+ * answered according to their outcome. */
 #include "tests/api/request.h"
 #include "store/write.h"
 #include "tests/slow_journal.h"
@@ -47,7 +47,7 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
-    enum { ONCE, BEFORE, DRY } how; /* BEFORE: it was done already, with the same key */
+    enum { ONCE, BEFORE, DRY } how; /* BEFORE: it was done already, with an equal key */
 } write;
 
 #define BATCH                                                           \
@@ -133,10 +133,10 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* It has bodies coded and contents staged, so that their memory fails too. */
+/* It has bodies encoded and contents staged, so that these allocations fail, too. */
 static slow_journal journal;
 
-/* A mesh with something to undo, something to do again, and a dead face. */
+/* A mesh with something to undo, something to redo, and a dead face. */
 static api_bench *begin_over(const st_journal *over)
 {
     api_bench *b = bench_new_over(over);
@@ -161,7 +161,7 @@ static api_bench *begin(void)
     return begin_over(&kept);
 }
 
-/* All that a client can see. */
+/* Dumps everything that a client can see. */
 static char *state_of(api_bench *b)
 {
     static const char *const targets[] = {"/v1/meshes",         "/v1/meshes/m",
@@ -171,7 +171,7 @@ static char *state_of(api_bench *b)
     assert_non_null(state);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
         bench_reply r = bench_get(b, targets[i]);
-        /* What a mesh takes includes room that a refused edit had asked for. */
+        /* The memory of a mesh includes capacity that a refused edit reserved. */
         char *bytes = strstr(r.body, "\"memory_bytes\":");
         if (bytes != NULL) {
             memset(bytes, ' ', strcspn(bytes, ","));
@@ -182,7 +182,7 @@ static char *state_of(api_bench *b)
     return state;
 }
 
-/* The client did not get the answer, and asks again now that there is memory. */
+/* The client did not get the answer, and sends the request again now that there is memory. */
 static void expect_done_once(api_bench *b, const write *w, const char *const *headers,
                              const bench_reply *first)
 {
@@ -202,7 +202,7 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
     free(after);
 }
 
-/* False when the allocation to fail was never reached. */
+/* Returns false if there were fewer allocations. */
 static bool try_write(const write *w, long fail_at, bool sticky)
 {
     memory.fail_at = 0;
@@ -233,7 +233,7 @@ static bool try_write(const write *w, long fail_at, bool sticky)
                      fail_at, sent ? r.status : 0, same ? "" : " not");
         }
     } else {
-        /* Where memory did not suffice for the answer, its status still tells. */
+        /* If there was no memory for the answer, its status is still correct. */
         bool bare = r.status == (w->status == 201 ? 201 : 204) && r.length == 0;
         if (same != (w->how != ONCE) || (r.status != w->status && !bare)) {
             fail_msg("%s %s, allocation %ld: %d", w->method, w->target, fail_at, r.status);
@@ -290,7 +290,7 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     }
     assert_string_equal(text_of(&r, "code"), code);
     assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
-    /* It waits for nothing, and so is never taken for a change that was lost. */
+    /* The refusal waits for nothing, so it is never replaced by one about a lost change. */
     assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
     assert_true(journal.groups == groups);
     assert_int_equal(journal.out, 0);
@@ -337,7 +337,7 @@ static void a_full_disk_takes_removals(void **state)
 
 /* --- preconditions --- */
 
-/* The linker gives calls of these functions to the wrappers (Makefile). */
+/* The linker redirects calls of these functions to the wrappers (Makefile). */
 static bool writing, removed_under_lock;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -424,7 +424,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     bench_free(b);
 }
 
-/* A refusal that shows a revision waits for it to be durable, as any answer does. */
+/* A refusal that shows a revision waits until that is durable, like any answer. */
 static void a_stale_write_shows_a_state(void **state)
 {
     (void)state;
@@ -439,7 +439,7 @@ static void a_stale_write_shows_a_state(void **state)
     bench_free(b);
 }
 
-/* The tag a write will make may be guessed; its answer is no "not modified" all the same. */
+/* A client may guess the tag that a write will make; the write is still not answered by 304. */
 static void a_write_is_never_not_modified(void **state)
 {
     (void)state;
@@ -461,7 +461,7 @@ static void a_write_is_never_not_modified(void **state)
 
 /* --- costs --- */
 
-/* Without becoming a job. */
+/* Waits, so that it does not become a job. */
 static bench_reply post_and_wait(api_bench *b, const char *target, const char *body)
 {
     return bench_send(b, "POST", target, (const char *const[]){"Prefer", "wait=3600", NULL}, body);
@@ -513,11 +513,11 @@ static void lists_of_operations_have_a_price(void **state)
     api_text_clear(&body);
 }
 
-/* A disk of so many triangles; the vertex of that id is its hub. */
+/* A disk of so many triangles; this vertex is its hub. */
 enum { SPOKES = 20000 };
 
-/* The second operation names what the first one made, and the list goes on about the hub: each of
- * these looks at all half-edges there, from which it takes one. */
+/* The second operation names a result of the first one, and the list continues at the hub: each
+ * operation visits all half-edges there and removes one. */
 static void write_hub_list(api_bench *b, api_text *body, int operations)
 {
     char path[100];
@@ -556,7 +556,7 @@ static void a_list_about_one_hub_becomes_a_job(void **state)
     char job[100];
     (void)snprintf(job, sizeof job, "%s", bench_header(&r, "Location"));
     bench_reply_free(&r);
-    /* Rolled back: others read the mesh as it was, and cannot write until the job has ended. */
+    /* Rolled back: other requests read the old mesh, and cannot write until the job has ended. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);
@@ -603,7 +603,7 @@ static api_step step_of(api_bench *b, const char *path, const char *body)
     return step;
 }
 
-/* Two rows of so many points, joined so that flips grow with the square of their number. */
+/* Two rows of points, connected so that flips grow with the square of their number. */
 static void put_rows(api_bench *b, int row)
 {
     api_text body = {0};
@@ -622,8 +622,8 @@ static void put_rows(api_bench *b, int row)
     api_text_clear(&body);
 }
 
-/* 20,000 elements are few enough for a worker, but not again and again, and not where flips go on
- * and on. */
+/* 20,000 elements are few enough for a worker, but not repeatedly, and not if flips do not end
+ * soon. */
 static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
 {
     (void)state;
@@ -644,7 +644,7 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each of these looks at all that is about the hub, too. */
+    /* Each of these visits all elements around the hub, too. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",
@@ -689,7 +689,7 @@ static void huge_elements_are_no_work_for_a_worker(void **state)
     bench_free(b);
 }
 
-/* --- refusals that help --- */
+/* --- helpful refusals --- */
 
 static void has_supported(bench_reply r, const char *type)
 {
@@ -742,7 +742,7 @@ static void refusals_name_the_value_and_the_limit(void **state)
     bench_free(b);
 }
 
-/* With the type in what the server tells of its operations. */
+/* The type is as in the server's description of its operations. */
 static void whole_numbers_have_no_fraction(void **state)
 {
     (void)state;
