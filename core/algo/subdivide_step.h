@@ -26,7 +26,7 @@ typedef struct he_sizes {
 typedef enum he_source_how {
     HE_FROM_NOWHERE, /* the default */
     HE_FROM_ROW,     /* half-edge a */
-    HE_FROM_MIDDLE,  /* of half-edges a and b */
+    HE_FROM_MIDDLE,  /* the middle of half-edges a and b */
     HE_FROM_THIRD,   /* 2/3 of half-edge a, 1/3 of half-edge b */
     HE_FROM_FACE,    /* the mean over the face of half-edge a */
     HE_FROM_NEW      /* a copy of half-edge a of the finer content */

@@ -8,7 +8,7 @@
 struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *top; /* of the heap */
+    st_wait *top; /* top of the heap */
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;

@@ -29,7 +29,7 @@ typedef struct st_keys {
     pthread_mutex_t lock;
     struct st_keyed **buckets;        /* a power of two, NULL before the first */
     size_t bucket_count, count;       /* buckets; entries in all */
-    struct st_keyed *oldest, *newest; /* of the entries with a kept answer */
+    struct st_keyed *oldest, *newest; /* list of the entries with a kept answer */
     size_t kept;
     uint64_t bytes; /* bytes of the entries with a kept answer */
     uint64_t secret[2];

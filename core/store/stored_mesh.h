@@ -17,7 +17,7 @@
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
-    double time; /* of a copy of an earlier revision: when that was made */
+    double time; /* when the earlier revision that it is a copy of was made */
     he_replay *replay;
     st_store_counts *counts; /* to which `bytes` were added */
     uint64_t bytes;
@@ -54,10 +54,10 @@ struct st_mesh {
     _Atomic bool waiting;
 
     pthread_mutex_t snapshot_lock;
-    st_copy *copy; /* of the present revision; NULL: not cached */
+    st_copy *copy; /* copy of the present revision; NULL: not cached */
 
     pthread_mutex_t past_lock;
-    st_copy *past; /* of an earlier revision; NULL: not cached */
+    st_copy *past; /* copy of an earlier revision; NULL: not cached */
 
     pthread_mutex_t cache_lock;
     void *cache;

@@ -13,7 +13,7 @@ void he_seam_clear(he_seam *seam)
 typedef struct plan {
     he_ids cuts;    /* the edges in rising order: new edge i is cut from cuts[i] */
     he_ids ends;    /* their ends, in rising order */
-    he_ids parts;   /* for each part that gets a new vertex, the half-edge at which it begins */
+    he_ids parts;   /* half-edges at which the parts begin that get a new vertex */
     size_t moved;   /* half-edges of those parts that leave the vertex, old and new */
     uint64_t *once; /* edges whose sides nothing else separates at one of their ends */
     bool marked;

@@ -135,7 +135,7 @@ typedef struct he_gltf_accessor {
     uint64_t count;
     const unsigned char *bytes; /* NULL: zeros */
     size_t stride;
-    uint64_t place;   /* of the first element in the input, or HE_GLTF_NOWHERE */
+    uint64_t place;   /* place of the first element in the input, or HE_GLTF_NOWHERE */
     uint64_t changed; /* elements of a sparse accessor that differ from `bytes` */
     const unsigned char *changed_index, *changed_value;
     he_gltf_type changed_type; /* type of their indices, which rise */

@@ -73,7 +73,7 @@ typedef enum he_lexer_state {
     HE_JSON_NAME_OR_END,  /* after '{' */
     HE_JSON_NAME,         /* after ',' in an object */
     HE_JSON_AFTER,        /* ',' or a closing bracket */
-    HE_JSON_DONE,         /* blanks */
+    HE_JSON_DONE,         /* only blanks may follow */
     HE_JSON_IN_STRING,    /* from here on: within a token */
     HE_JSON_IN_NUMBER,
     HE_JSON_IN_WORD,

@@ -31,7 +31,7 @@ typedef struct he_notes {
     he_note items[HE_NOTES];
     size_t count;
     uint64_t more;
-    he_note_spot spots[HE_NOTE_SPOTS]; /* of all notes together, the first occurrences */
+    he_note_spot spots[HE_NOTE_SPOTS]; /* the first occurrences of all notes together */
     size_t spot_count;
 } he_notes;
 
