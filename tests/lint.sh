@@ -89,12 +89,16 @@ for words in '/* The same for the other end. */' '/* Of both ends. */' '/* For c
     expect "a comment that begins '$words' is found" 'names what it is about' plain
     cp "$OLDPWD/core/mesh/walk.h" core/mesh/walk.h
 done
+plain() { sh .ci/lint-words api/limits.h; }
+printf '\n/* Of both ends. */\n' >>api/limits.h
+expect 'such a comment is found outside of core, too' 'names what it is about' plain
+cp "$OLDPWD/api/limits.h" api/limits.h
 
 for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c
 
-# Of tests the pages need the names alone, of which the copy has none.
+# The pages need only the names of tests, and the copy has no tests.
 for file in $(cd "$OLDPWD" && find tests -type f -not -path '*/.*'); do
     mkdir -p "$(dirname "$file")" && : >"$file"
 done

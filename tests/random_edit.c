@@ -163,7 +163,7 @@ static void put_value(draft *d, const he_param *p)
     }
 }
 
-/* Of alternative parameters, one is chosen at random. */
+/* Chooses one of several alternative parameters at random. */
 static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];

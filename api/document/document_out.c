@@ -25,7 +25,7 @@ struct api_document_out {
     api_text text;  /* the text before the vertices, then pieces of the attributes */
     bool from_text; /* begin and end are positions in `text`, not in the buffer */
     uint32_t *rank; /* number of each live vertex; NULL if none is dead */
-    /* For each edge of the document, the half-edge in the face that comes first in the document.
+    /* By edge of the document: the half-edge in the face that comes first in the document.
      * NULL if no attribute needs it. */
     uint32_t *edges;
     size_t column; /* slot of the attribute being written */

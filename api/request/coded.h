@@ -12,7 +12,7 @@
 
 #include "api/request/exchange.h"
 
-/* For a request with a body: fills x->coding_in, or refuses with 415. */
+/* Fills x->coding_in for a request with a body, or refuses with 415. */
 bool api_coded_body(api_exchange *x);
 /* Fills x->codings, or refuses with 406. */
 bool api_coded_accept(api_exchange *x);

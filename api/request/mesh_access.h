@@ -30,7 +30,7 @@ void api_read_as(api_exchange *x, const api_reading *reading);
  * x->content is a snapshot from then on, so handlers call this also before long work. Returns false
  * with the problem filled when memory is out. */
 bool api_keep_mesh(api_exchange *x);
-/* For a handler that finds its work too much for a worker: after this call it returns, its output
+/* A handler that finds its work too much for a worker calls this and returns: its output
  * is dropped, and it is called again on a thread that may block. */
 void api_begin_elsewhere(api_exchange *x);
 

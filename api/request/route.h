@@ -120,7 +120,7 @@ typedef struct api_route {
      * api_read in the end. */
     bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* called in api_end or in api_work */
-    /* For a mesh that is not in memory, on a thread that may block, with x->info from its card:
+    /* Handles a mesh that is not in memory, on a thread that may block, with x->info from its card:
      * answers without loading the mesh, or returns with neither answer nor problem. NULL: the mesh
      * is loaded.
      */

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Of all lines of one header: their number, and their bytes with a comma or a NUL after each. */
+/* All lines of one header: their number, and their bytes with a comma or a NUL after each. */
 typedef struct line_sum {
     size_t count, bytes;
 } line_sum;

@@ -16,7 +16,7 @@ curl -sf -o /dev/null -H 'Content-Type: application/json' "$base/v1/meshes?id=be
 element=$base/v1/meshes/bench/faces/1000
 adjacency=$base/v1/meshes/bench/vertices/100/faces
 
-# The same with tokens, of which requests carry one.
+# A server with tokens; requests carry one of them.
 "$hedged" --new-token bench write >"$work/token"
 tail -n 1 "$work/token" >"$work/tokens"
 bearer="Authorization: Bearer $(head -n 1 "$work/token")"

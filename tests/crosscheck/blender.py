@@ -14,7 +14,7 @@ import peers
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ALL = ('uv', 'normal', 'color')
-# Of corners; materials are compared where the file has some.
+# Attributes of corners; materials are compared where the file has some.
 EXPORTS = [('obj', '', ALL + ('material',)), ('glb', '', ALL + ('material',)),
            ('ply', '', ('uv', 'color')), ('ply', 'ascii', ('uv', 'color')),
            ('ply', 'binary_big_endian', ('uv', 'color')), ('stl', '', ()), ('stl', 'ascii', ())]

@@ -246,7 +246,7 @@ class Verdict:
         removed = [self.trace.came.get(n) for n, mesh in traffic.removals
                    if n == name or mesh == seen.gone]
         for came in removed:
-            # Of a 404 the latest removal before it counts; the mesh may have been made since.
+            # A 404 is explained by the latest removal before it; the mesh may have been made since.
             if came is not None and came < sent and seen.kind in ('delete', '404') and came == max(
                     r for r in removed if r is not None and r < sent):
                 written = next((at for at, _ in self.trace.written if at > came), None)

@@ -214,7 +214,7 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     end_and_begin();
     expect_job(waiting, told);
     free(told);
-    /* The same request is none that was done. */
+    /* This request has not been done before. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            again);
     told = await(again);

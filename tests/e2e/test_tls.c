@@ -296,7 +296,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(daemon_run(ARGUMENTS("--listen", longest), said, sizeof said), 2);
 }
 
-/* Who takes nothing of a long answer is closed, as over TCP. */
+/* A client that reads nothing of a long answer is closed, as over TCP. */
 static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 {
     (void)state;

@@ -166,7 +166,7 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
     }
 }
 
-/* Of alternatives just one is given where one must be. */
+/* Exactly one of several alternatives is given, where one is required. */
 static bool is_wanted(fuzz_tape *t, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];

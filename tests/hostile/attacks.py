@@ -62,7 +62,7 @@ PACKED = get('packed GLB', '/content?format=glb&compress=meshopt')
 JSON = get('JSON', '/content?format=json')
 ASCII = get('PLY text', '/content?format=ply&encoding=ascii')
 GEOMETRY = get('geometry', '/geometry')
-# Of a mesh of triangles only.
+# The mesh has triangles only.
 PROGRESSIVE = get('progressive', '/progressive', 200, 202, 413, 422)
 RAY = query('ray', {'ray': {'origin': [0.3, 0.2, -1e5], 'direction': [0, 0, 1]}})
 RAYS = query('500 rays', *[{'ray': {'origin': [i % 25 * 999 - 9000.0, i // 25 * 999 - 9000.0, -1e5],
@@ -100,7 +100,7 @@ TABLES = [get('a page of vertices', '/vertices?limit=10000'), get('summary', '')
 POLYGON = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, RAY, CLOSEST, *MEASURES[3:5],
            edit('triangulate'), Ask('undo', 'POST', '/undo'),
            edit('dual', (200, 202, 422)), edit('face_poke', face=0)]
-# Of a mesh with large faces, which stays as it is.
+# The mesh has large faces and is not changed.
 FACETS = [CHECK, STL, GLB, GEOMETRY, RAY, CLOSEST,
           edit('triangulate', ENDS, dry_run=True), edit('dual', ENDS, dry_run=True)]
 SURFACE = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, PROGRESSIVE, RAYS, SIDEWAYS, CLOSEST, CROSS,
@@ -124,7 +124,7 @@ def listed(name, ops):
     return Ask(name, 'POST', '/edits', {'dry_run': True, 'ops': kept}, ENDS)
 
 
-# Of a fan about vertex 0 whose triangle i is (0, i + 1, i + 2): edge 0 and the even ones are spokes.
+# The mesh is a fan around vertex 0; triangle i is (0, i + 1, i + 2), edge 0 and even edges are spokes.
 AT_HUB = [
     listed('the hub split at each spoke', ({'op': 'vertex_split', 'vertex': 0, 'left': i,
                                             'right': i + 1, 'to': [0, 0, 1]}

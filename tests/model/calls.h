@@ -14,8 +14,8 @@ const char *md_missing(void);
 bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool far, bool room);
 /* Runs the call on the oracle, before hedge runs it. Returns the set of refusals that apply. */
 uint64_t md_play(const md_call *c, or_mesh *o, const he_mesh *m);
-/* For operations whose steps hedge may order freely: after hedge succeeded, applies the reported
- * steps to the oracle. Returns false with a sentence if they are wrong. */
+/* Follows operations whose steps hedge may order freely: after hedge succeeded, applies the
+ * reported steps to the oracle. Returns false with a sentence if they are wrong. */
 bool md_follow(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
 
 #endif

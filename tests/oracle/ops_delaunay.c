@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* For angles closer to pi than this, both answers are allowed. */
+/* Both answers are allowed for angles closer to pi than this. */
 static const double SLACK = 1e-6;
 
 static bool is_triangle(const or_mesh *o, uint32_t f)

@@ -50,8 +50,8 @@ static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
 }
 
-/* Of all pairings of the corners of two loops of equal length by which no two edges join the same
- * two vertices: returns the least sum of squares, infinite if there is no such pairing. */
+/* Considers all pairings of the corners of two loops of equal length by which no two edges join the
+ * same two vertices: returns the least sum of squares, infinite if there is no such pairing. */
 static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
 {
     double least = INFINITY;
@@ -132,7 +132,7 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-/* For loops of equal length, of which hedge tries all rotations: is there no allowed one with
+/* Loops of equal length, of which hedge tries all rotations: is there no allowed one with
  * shorter rungs? */
 static bool is_least_twisted(const or_mesh *o)
 {

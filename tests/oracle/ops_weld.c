@@ -85,7 +85,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     return refused;
 }
 
-/* Of edges with the same ends the lowest stays, unless it has no face left. */
+/* If several edges have equal ends, the lowest stays, unless it has no face left. */
 static void weld_edges(or_mesh *o, const uint32_t *to)
 {
     for (uint32_t e = 0; e < o->edges; e++) {

@@ -7,7 +7,7 @@
 import { countIssued, numbersFrom, randomEdit } from '../web/random.mjs';
 
 const GUESTS = 4;
-// Of the keeper; an edit of it stays undoable.
+// The mesh of the keeper; an edit of it stays undoable.
 const KEEPER = { shape: 'torus', major_segments: 60, minor_segments: 60 };
 const FORMATS = ['obj', 'off', 'ply', 'ply&encoding=ascii', 'stl', 'stl&encoding=ascii', 'glb', 'json'];
 // Formats that keep polygons, and so the number of faces.
@@ -190,7 +190,7 @@ export class Mix {
             body: { id },
             headers: { Prefer: 'wait=600' },
         });
-        // Of dead ids it has as many.
+        // It has as many dead ids.
         const { issued } = mesh; // the dead ones, too
         this.guests.push({ ...this.describe(id, value), issued: { ...issued }, clean: false });
     }
@@ -380,7 +380,7 @@ export class Mix {
         }
     }
 
-    // Of a read that was answered as a job, whose result would be kept for an hour.
+    // The job of a read, whose result would be kept for an hour.
     async outcome({ headers: { location } }, expected) {
         await this.client.send('GET', `${location}/events`, [200]);
         await this.client.send('GET', `${location}/result`, expected);
@@ -415,7 +415,7 @@ export class Mix {
         }
     }
 
-    // Of a guest: a feed goes on collecting for a while when its listeners have gone.
+    // The mesh of a guest: a feed goes on collecting for a while when its listeners have gone.
     async listen() {
         const mesh = this.guests[0];
         if (mesh !== undefined) {

@@ -45,7 +45,7 @@ const { values: options } = parseArgs({
 
 const STEPS = 60; // of a round
 const SAMPLES = 250; // milliseconds between two looks at what is resident under load
-// Of a mesh; soon full, for entries of what was undone and compacted stay in a history.
+// Budget of a mesh; soon full, for entries of what was undone and compacted stay in a history.
 const UNDO_BUDGET = '512K';
 // What is flat: MiB, or a share of the level where that is more. In a shorter run heaps still find
 // their size, and the histories of the keepers come up to their budgets.
@@ -59,7 +59,7 @@ const LOADED_SLOPE = { share: 0.1, least: 2 };
 // What a client left behind when it went is found out and freed a moment later.
 const MOST_LOOKS = 1000;
 const LEFT_BEHIND = 0.0625;
-// Of a run of minutes: so often it is quiet for as long as the daemon needs to give back what it
+// In a run of minutes: so often it is quiet for as long as the daemon needs to give back what it
 // freed, which it does in the second after one without work.
 const REST_EVERY = 10; // seconds
 const MOST_REST = 5;

@@ -189,7 +189,7 @@ static void the_error_stays_below_its_limit(void **state)
     he_mesh_free(first);
 }
 
-/* For each remaining edge either the error is larger or the collapse is refused: errors are means,
+/* At each remaining edge either the error is larger or the collapse is refused: errors are means,
  * and those of edges that were too expensive may have fallen since. */
 static void no_edge_is_left_within_the_limit(void **state)
 {

@@ -297,7 +297,7 @@ static void test_normals(void **state)
         assert_normal(m, domain, 2, 0, 0, -1);
         he_mesh_free(m);
     }
-    /* For some vertices: their rows, their corners, and faces that move as a whole. */
+    /* A list of vertices: their rows, their corners, and faces that move as a whole. */
     he_mesh *m = script_mesh("012,023,324", NULL);
     add_normals(m, HE_VERTEX, HE_DOUBLE);
     add_normals(m, HE_HALFEDGE, HE_FLOAT);

@@ -57,7 +57,7 @@ static bool is_clearly_crooked(const he_mesh *m, uint32_t e)
     return is_inner(m, e) && opposite(m, h) + opposite(m, he_twin(h)) > 3.14159265358979 + 1e-6;
 }
 
-/* For z = 0: how far d is inside the circle through a, b and c, relative to its size. */
+/* In the plane z = 0: how far d is inside the circle through a, b and c, relative to its size. */
 static double depth_in_circle(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
     long double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y;

@@ -152,7 +152,7 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* Of two alternatives, which are consecutive, one is chosen at the first. */
+            /* One of two alternatives, which are consecutive, is chosen at the first. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;
             }

@@ -304,7 +304,7 @@ static void entity_tags_name_state_and_representation(void **state)
     assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
     assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
-    /* For a write, any representation of the present state is valid. */
+    /* In a write, any representation of the present state is valid. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));

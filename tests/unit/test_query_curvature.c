@@ -241,7 +241,7 @@ static void planes_do_not_bend(void **state)
     he_mesh_free(m);
 }
 
-/* For any faces and positions, with bow-ties and reflex corners. */
+/* Holds for any faces and positions, with bow-ties and reflex corners. */
 static void angle_defects_sum_to_the_euler_number(void **state)
 {
     (void)state;

@@ -162,7 +162,7 @@ static void bytes_are_bounded(void **state)
     assert_int_equal(c->answer.length, ST_KEPT_BODY + 1);
     st_keyed_end(c);
 
-    /* For a request that changed nothing, executing it again is better than an answer without its
+    /* If a request changed nothing, executing it again is better than an answer without its
      * body. */
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     keep(c, body, ST_KEPT_BODY + 1, false);

@@ -219,7 +219,7 @@ export async function readCanvas(page) {
     return readPicture(await page.screenshot({ clip }));
 }
 
-// The same of any picture.
+// Reads the pixels of any picture.
 export function readPicture(png) {
     const { width, channels, pixels } = readPng(png);
     const count = pixels.length / channels;
@@ -229,7 +229,7 @@ export function readPicture(png) {
         colour(x, y) {
             return colourOf(Math.round(y) * width + Math.round(x));
         },
-        // Of how many pixels a test of [red, green, blue] is true.
+        // Counts the pixels for which a test of [red, green, blue] is true.
         countOf(test) {
             let found = 0;
             for (let pixel = 0; pixel < count; pixel++) {

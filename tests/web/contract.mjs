@@ -337,7 +337,7 @@ export class Contract {
         }
     }
 
-    // Of a request that was taken.
+    // A request that was accepted.
     checkParameters({ template, parameters }, operation, path, query, { headers }, wrong) {
         const values = variablesOf(template, path);
         for (const { name, schema } of parameters) {

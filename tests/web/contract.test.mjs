@@ -49,7 +49,7 @@ async function ask(method, target, body, headers = {}) {
     };
 }
 
-// The same with another body, told by a function of its text or of its JSON value.
+// The exchange with another body, given by a function of its text or of its JSON value.
 function rewrite(part, change) {
     const text = Buffer.from(part.body, 'base64').toString();
     const body = Buffer.from(change(text));
@@ -72,7 +72,7 @@ function answeringHead(change) {
     return ({ answer, ...rest }) => ({ ...rest, answer: { ...answer, head: change(answer.head) } });
 }
 
-// The same as it would have been sent in gzip.
+// The exchange as it would be in gzip.
 function gzipped({ head, body }) {
     const packed = gzipSync(Buffer.from(body, 'base64'));
     return {

@@ -31,7 +31,7 @@ const waitForFrames = (page) =>
             }),
     );
 
-// The same as openMesh(), with levels that come as the test lets them.
+// Opens a mesh like openMesh(), with levels that arrive when the test lets them.
 async function openHeld(t, options) {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', SPHERE);
@@ -102,7 +102,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     assert.equal(await page.locator('#level-faces').textContent(), '320 of 320 faces');
     assert.ok(await page.locator('#level-progress').isHidden());
 
-    // Who works by keys is at the slider.
+    // A keyboard user has the focus at the slider.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'level');
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
@@ -154,7 +154,7 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
 
     await levels(page).click();
     await waitForFaces(page, FACES + 2);
-    // Who picks for a field wants the mesh, who wants levels no longer picks.
+    // Picking for a field needs the mesh, so showing levels ends it.
     await page.getByRole('button', { name: 'Pick position in the view' }).click();
     await waitForMesh(page);
     await page.getByText('Click a vertex for position').waitFor();
@@ -219,7 +219,7 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     const answer = await ask();
     const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
-    // Of the levels that run by nothing is to be heard.
+    // Levels that are played are not announced.
     assert.equal(await valueText(), 'Playing');
     await page.getByRole('button', { name: 'Pause' }).click();
     await page.getByRole('button', { name: 'Play' }).waitFor();

@@ -38,7 +38,7 @@ const content = (url, id, format) => fetch(`${url}/v1/meshes/${id}/content?forma
 const materials = async (url, id) =>
     (await (await fetch(`${url}/v1/meshes/${id}/materials`)).json()).materials;
 
-// Of each triangle the place of its middle, and what three.js draws it with.
+// Returns the centre of each triangle, and the material with which three.js draws it.
 async function drawn(glb) {
     const { scene } = await new GLTFLoader().parseAsync(glb, '');
     const triangles = [];

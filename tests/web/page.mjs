@@ -17,7 +17,7 @@ export function readMembers(page) {
     );
 }
 
-// The same of an element of the API.
+// Does so for an element of the API.
 function membersOf(element) {
     const text = (value) => (value === null ? 'none' : String(value));
     return Object.fromEntries(

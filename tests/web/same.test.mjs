@@ -52,7 +52,7 @@ function keepTextures() {
         }
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
-    // Of each format there are two, of the mesh and of the materials of its faces. That of the mesh
+    // Each format has two, of the mesh and of the materials of its faces. That of the mesh
     // was sent from its array, and from nothing else.
     window.readTextures = ({ vertices, triangles }) => {
         const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;

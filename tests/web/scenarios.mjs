@@ -148,7 +148,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
         } else if (param.includes(' ')) {
             await page.getByLabel(param, { exact: true }).fill(value);
         } else if ((await field.evaluate(({ tagName }) => tagName)) === 'SELECT') {
-            // Of meshes, which have no names to know beforehand, the one that is open.
+            // Meshes have no names to know beforehand: the one that is open.
             await field.selectOption(param === 'mesh' ? mesh : value);
         } else {
             await field.fill(value);

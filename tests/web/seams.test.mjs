@@ -34,7 +34,7 @@ function cornersOfObj(text) {
     }))].sort();
 }
 
-// The same of a mesh of three.js, where v runs down.
+// Reads a mesh of three.js, where v runs down.
 function cornersOfThree(mesh) {
     const { position, uv } = mesh.geometry.attributes;
     return [...new Set(Array.from(mesh.geometry.index.array, (i) =>

@@ -88,7 +88,7 @@ function sameFace(a, b, size) {
         a.every((corner, i) => same(corner, b[(i + turn) % b.length])));
 }
 
-// Of each face how many of its sides are seams: sides with other texture coordinates across.
+// Counts the sides of each face that are seams: sides with other texture coordinates across.
 // `sides` lists them as [face, side].
 function seamsOf(faces) {
     const met = new Map();

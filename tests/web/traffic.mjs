@@ -9,7 +9,7 @@ import { appendFileSync } from 'node:fs';
 import { Agent, createServer, request as send } from 'node:http';
 import path from 'node:path';
 
-// Of a body; what is not JSON is not looked into.
+// Bytes kept of a body; a body that is not JSON is not checked.
 const JSON_BYTES = 1024 * 1024;
 const OTHER_BYTES = 4 * 1024;
 

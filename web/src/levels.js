@@ -28,7 +28,7 @@ export class Levels {
     #placeOf; // by id, starting from 1
     #triangleOf;
     #faces = 0;
-    // For each split: the vertex that is split and its position at the other level; the ends of the
+    // By split: the vertex that is split and its position at the other level; the ends of the
     // lists of triangles that it moves and creates.
     #from;
     #other;

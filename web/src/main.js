@@ -189,7 +189,7 @@ function label() {
           };
 }
 
-// For tests, which compare it with what the server sends.
+// Tests use this; they compare it with what the server sends.
 Object.defineProperty(canvas, 'geometry', { get: () => session.shown?.geometry ?? null });
 
 function showSelection() {

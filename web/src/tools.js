@@ -134,7 +134,7 @@ export class Tools {
         this.#onArm(param && { name: param.name, kind: kindOf(param), isList: isList(param) });
     }
 
-    // Of alternative parameters, only the last one typed is kept.
+    // Only the last one typed of several alternative parameters is kept.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
         const { group } = field.param;

@@ -169,7 +169,7 @@ bench_pick *bench_picks(const bench_input *input, uint32_t *count)
     for (uint32_t i = 0; i < halfedges && picked < *count; i++) {
         uint32_t f = order[i] / input->degree, k = order[i] % input->degree;
         const uint32_t *corners = input->corners + f * input->degree;
-        /* Of the two half-edges of an edge, only the one to the larger vertex is taken. */
+        /* Only one half-edge of each edge is taken: the one to the larger vertex. */
         if (corners[k] < corners[(k + 1) % input->degree]) {
             picks[picked++] = (bench_pick){f, k};
         }
