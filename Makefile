@@ -15,22 +15,22 @@ SHELL  := /bin/sh
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
-# As many jobs as cores, unless the caller said otherwise.
+# Runs as many jobs as there are cores, unless the caller chose a number.
 ifeq ($(MAKELEVEL)$(filter -j% --jobserver%,$(MAKEFLAGS)),0)
 MAKEFLAGS += -j$(shell nproc)
 endif
 
-# V=1 shows the commands whole.
+# V=1 shows whole commands.
 Q        := $(if $(V),,@)
 CC       := $(if $(filter fuzz,$(CONFIG)),clang,gcc)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
-# Line tables are all of it that a sanitizer's report names.
+# A sanitizer's report needs line tables only.
 DEBUG    ?= $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
-# Lazy: evaluated when a program is linked, after .ci/deps has run.
+# Evaluated lazily, when a program is linked: .ci/deps has run by then.
 DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
 # Some two hundred programs hold the whole of the daemon each, in every configuration: lld needs half of
@@ -74,7 +74,7 @@ MAIN_C     := server/boot/main.c server/version.c
 SERVER_C   := $(sort $(filter-out $(MAIN_C),$(shell find server -name '*.c')))
 SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
-# What only random edits are checked by, which the threaded tests do without.
+# Sources of the random tests, which the threaded tests do not need.
 ORACLE_C   := $(sort $(wildcard tests/oracle/*.c tests/unit/scenarios_*.c) \
                 $(filter-out tests/model/test_% $(patsubst %,tests/model/%.c,corpus marks parts shapes), \
                     $(wildcard tests/model/*.c)))
@@ -129,7 +129,7 @@ WITH_TRANSPORT = $(filter transport,$(TESTS))
 # TRANSPORT=tls or unix has the daemons of e2e reached like that; these programs always are.
 export TRANSPORT
 TRANSPORTED = $(addprefix $(BUILD)/tests/e2e/test_,vertical history tokens limits metrics proxy service)
-# What a narrower choice asks does not reach every route.
+# A narrower choice of tests does not request every route.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
 WITH_DAEMON = $(filter e2e transport web install soak hostile durable tests/e2e/% tests/web/%,$(TESTS))
 
@@ -354,7 +354,7 @@ proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, 
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
 
-# A load below 1 leaves the machine to others for the rest of the time.
+# With a load below 1 the machine is left to others for the rest of the time.
 MINUTES ?= 60
 LOAD    ?= 1
 soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
@@ -366,7 +366,7 @@ hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what ea
 	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
 	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)
 
-# Preloaded into a daemon, whatever that was compiled with.
+# Preloaded into a daemon, whatever flags that was compiled with.
 $(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
@@ -526,7 +526,7 @@ install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	    install -D -m 644 "$$file" "$(DESTDIR)$(PREFIX)/share/hedge/web/$${file#$(PAGE)/}" || exit 1; \
 	done
 
-# Meshes and settings stay.
+# Meshes and settings are kept.
 uninstall: ## what install put there, with its DESTDIR and PREFIX; stop and disable the service first
 	rm -f $(DESTDIR)$(PREFIX)/bin/hedged $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8 \
 	    $(DESTDIR)$(UNITS)/hedged.service
