@@ -1,6 +1,7 @@
 #include "store/durability_wait.h"
 
 #include "base/mem.h"
+#include "system/clock.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -8,7 +9,8 @@
 struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
-    st_wait *top; /* top of the heap */
+    st_wait *top;          /* top of the heap */
+    pthread_cond_t caught; /* `durable` was raised, or the waits are stopped; for st_waits_block */
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
@@ -146,6 +148,7 @@ static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
     pthread_mutex_lock(&waits->lock);
+    pthread_cond_broadcast(&waits->caught);
     while (waits->top != NULL && is_over(waits, waits->top)) {
         st_wait *wait = waits->top;
         waits->top = without_top(wait);
@@ -173,6 +176,7 @@ st_waits *st_waits_new(void)
     if (waits != NULL) {
         waits->rest = (st_loss){.from = UINT64_MAX};
         pthread_mutex_init(&waits->lock, NULL);
+        st_clock_condition(&waits->caught);
     }
     return waits;
 }
@@ -180,6 +184,7 @@ st_waits *st_waits_new(void)
 void st_waits_free(st_waits *waits)
 {
     if (waits != NULL) {
+        pthread_cond_destroy(&waits->caught);
         pthread_mutex_destroy(&waits->lock);
         he_mem_free(waits->losses);
         he_mem_free(waits);
@@ -230,6 +235,17 @@ bool st_waits_add(st_waits *waits, st_wait *wait)
     }
     pthread_mutex_unlock(&waits->lock);
     return !over;
+}
+
+bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until)
+{
+    pthread_mutex_lock(&waits->lock);
+    while (position > atomic_load(&waits->durable) && !waits->stopped &&
+           st_clock_wait(&waits->caught, &waits->lock, until)) {
+    }
+    const bool caught = position <= atomic_load(&waits->durable);
+    pthread_mutex_unlock(&waits->lock);
+    return caught;
 }
 
 void st_waits_stop(st_waits *waits)

@@ -62,6 +62,10 @@ bool st_waits_is_durable(st_waits *waits, const st_shown *shown);
 /* Will a record that this shows never be durable? */
 bool st_waits_is_lost(st_waits *waits, const st_shown *shown);
 
+/* Blocks until every record up to `position` is durable or lost. Returns false if st_clock_micros
+ * comes to `until`, or the waits are stopped, before. */
+bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until);
+
 /* Adds a wait. Returns false if it is over already: `end` is then filled in, and resume is not
  * called. */
 bool st_waits_add(st_waits *waits, st_wait *wait);

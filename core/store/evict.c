@@ -17,8 +17,13 @@ enum { BATCH = 64 };
  * an eviction found nothing, none is tried for BARREN_MICROS. */
 enum { COLD_MICROS = 60 * 1000 * 1000, BARREN_MICROS = 50 * 1000 };
 
-/* How long a thread waits for the lock of the table. */
-enum { LOCK_NANOS = 100 * 1000 * 1000, SECOND_NANOS = 1000 * 1000 * 1000 };
+/* How long a thread waits for the lock of the table, and for the disk if what could be evicted is
+ * not durable yet. */
+enum {
+    LOCK_NANOS = 100 * 1000 * 1000,
+    SECOND_NANOS = 1000 * 1000 * 1000,
+    DISK_MICROS = 250 * 1000
+};
 
 void st_mesh_use(st_mesh *mesh)
 {
@@ -148,13 +153,11 @@ static uint64_t missing(uint64_t bytes, uint64_t share)
     return wanted > budget ? wanted - budget : 0; /* other threads free memory meanwhile */
 }
 
-void st_make_room(st_store *store, uint64_t bytes)
+static void make_room(st_store *store, uint64_t bytes)
 {
-    uint64_t budget = st_memory_budget(), share = budget / 16;
+    const uint64_t budget = st_memory_budget();
+    uint64_t share = budget / 16;
     bool locked;
-    if (budget == 0 || bytes > budget - share || missing(bytes, share) == 0) {
-        return;
-    }
     /* A thread that waited for this lock may find that another one has made room. */
     pthread_mutex_lock(&store->room);
     if (missing(bytes, share) > 0) {
@@ -172,6 +175,37 @@ void st_make_room(st_store *store, uint64_t bytes)
     pthread_mutex_unlock(&store->room);
 }
 
+/* Returns the newest position if records are on their way to the disk, else 0. Their meshes cannot
+ * be evicted before they are durable. */
+static uint64_t on_its_way(const st_store *store)
+{
+    const uint64_t newest = st_waits_newest(store->followers.waits);
+    return newest > st_waits_durable(store->followers.waits) ? newest : 0;
+}
+
+/* Waits until what was on its way before an eviction is durable. Returns whether another eviction
+ * may find more. */
+static bool await_disk(st_store *store, uint64_t newest, uint64_t until)
+{
+    return store->journal.keeps && newest != 0 &&
+           st_waits_block(store->followers.waits, newest, until);
+}
+
+void st_make_room(st_store *store, uint64_t bytes)
+{
+    const uint64_t budget = st_memory_budget(), share = budget / 16;
+    if (budget == 0 || bytes > budget - share || missing(bytes, share) == 0) {
+        return;
+    }
+    const uint64_t until = st_clock_micros() + DISK_MICROS;
+    uint64_t newest;
+    do {
+        newest = on_its_way(store);
+        make_room(store, bytes);
+        /* An edit asks for no bytes and does not wait: what is free may be enough for it. */
+    } while (bytes > 0 && !st_memory_has(bytes + share) && await_disk(store, newest, until));
+}
+
 /* The function of a memory giver: the thread may hold any lock but the table's and those that
  * st_store_shed takes. */
 static bool give_room(void *context, uint64_t bytes)
@@ -182,10 +216,15 @@ static bool give_room(void *context, uint64_t bytes)
     if (!store->journal.keeps || bytes > budget - share || now < atomic_load(&store->barren)) {
         return false;
     }
-    bool locked;
-    const bool freed = evict(store, missing(bytes, 2 * share), UINT64_MAX, &locked) > 0;
+    bool locked, freed = false;
+    uint64_t newest;
+    do {
+        newest = on_its_way(store);
+        freed = evict(store, missing(bytes, 2 * share), UINT64_MAX, &locked) > 0 || freed;
+    } while (locked && !st_memory_has(bytes + share) &&
+             await_disk(store, newest, now + DISK_MICROS));
     if (!freed && locked) {
-        atomic_store(&store->barren, now + BARREN_MICROS);
+        atomic_store(&store->barren, st_clock_micros() + BARREN_MICROS);
     }
     return freed;
 }

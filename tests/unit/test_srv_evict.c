@@ -2,6 +2,7 @@
  * them: each is loaded once for all threads that need it, and nothing is lost or doubled. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
+#include "tests/slow_journal.h"
 #include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -389,6 +390,98 @@ static void a_request_under_locks_is_not_stopped(void **state)
     close_full();
 }
 
+/* --- what is on its way to the disk --- */
+
+static slow_journal slow;
+static bool disk_moves; /* while a thread waits for it */
+static unsigned waits;
+
+bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
+bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
+
+/* Lets the disk catch up, or the time pass, in place of the wait. */
+bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
+{
+    if (!slow.is_heard) {
+        return __real_st_clock_wait(condition, lock, until);
+    }
+    waits++;
+    if (disk_moves) {
+        pthread_mutex_unlock(lock);
+        slow_journal_advance(&slow, slow_journal_newest(&slow));
+        pthread_mutex_lock(lock);
+    }
+    return disk_moves;
+}
+
+/* A store whose one mesh, which is not on the disk yet, holds memory that is all but used up. */
+static void open_full_and_slow(void)
+{
+    st_mesh *mesh = NULL;
+    st_memory_install(BUDGET);
+    store = st_store_new(&(st_store_options){
+        .undo_budget = 2000, .max_meshes = 10, .journal = slow_journal_open_keeping(&slow)});
+    he_mesh *content = dense_grid(SIDE, NULL, 1);
+    assert_int_equal(st_create(store, "a", "", content, NULL, &mesh), ST_OK);
+    st_release(mesh);
+    st_memory_set_budget(st_memory_used() + LARGE / 64);
+    waits = 0;
+}
+
+static void close_slow(void)
+{
+    disk_moves = true;
+    slow_journal_advance(&slow, slow_journal_newest(&slow));
+    st_store_serve(NULL);
+    st_memory_set_budget(BUDGET);
+    st_store_free(store);
+    he_mem_set_hook(NULL);
+}
+
+static st_status make_small(void)
+{
+    st_mesh *mesh = NULL;
+    he_mesh *content = fixture_mesh("012,023,031");
+    const st_status status = st_create(store, "b", "", content, NULL, &mesh);
+    if (status == ST_OK) {
+        st_release(mesh);
+    } else {
+        he_mesh_free(content);
+    }
+    return status;
+}
+
+static void a_creation_waits_for_the_disk_before_it_is_refused(void **state)
+{
+    (void)state;
+    open_full_and_slow();
+    disk_moves = false;
+    assert_int_equal(make_small(), ST_BUDGET);
+    assert_int_equal(waits, 1);
+    disk_moves = true;
+    assert_int_equal(make_small(), ST_OK);
+    assert_int_equal(waits, 2);
+    assert_int_equal(in_memory(), 1);
+    close_slow();
+}
+
+static void a_request_waits_for_the_disk_before_it_is_refused(void **state)
+{
+    (void)state;
+    open_full_and_slow();
+    st_store_serve(store);
+    disk_moves = true;
+    void *memory = he_mem_alloc(LARGE / 2);
+    assert_non_null(memory);
+    assert_int_equal(waits, 1);
+    assert_int_equal(in_memory(), 0);
+    /* Nothing is on its way any more. */
+    assert_null(he_mem_alloc(st_memory_budget() - st_memory_budget() / 8));
+    assert_int_equal(waits, 1);
+    he_mem_free(memory);
+    close_slow();
+}
+
 static void what_was_not_used_for_a_minute_leaves(void **state)
 {
     (void)state;
@@ -463,6 +556,8 @@ int main(void)
         cmocka_unit_test(for_what_never_fits_nothing_goes),
         cmocka_unit_test(a_request_gets_what_cold_meshes_hold),
         cmocka_unit_test(a_request_under_locks_is_not_stopped),
+        cmocka_unit_test(a_creation_waits_for_the_disk_before_it_is_refused),
+        cmocka_unit_test(a_request_waits_for_the_disk_before_it_is_refused),
         cmocka_unit_test(what_was_not_used_for_a_minute_leaves),
         cmocka_unit_test(what_is_resident_beside_counted_blocks_has_meshes_leave),
     };
