@@ -1,9 +1,10 @@
 """golden.py - stores that released programs made, opened by today's (D11).
 
-    python3 tests/durable/golden.py --hedged build/hedged     makes tests/golden/VERSION.db.gz
+    python3 tests/durable/golden.py --hedged build/hedged     makes tests/golden/NAME.db.gz
 
-That is a store with every kind of record, packed, and VERSION.json, what is in it. Each that is
-there is opened, verified, loaded, undone, dumped and edited by every later program.
+That is a store with every kind of record, packed, and NAME.json, what is in it. NAME is the version
+of the program and that of its tables. Each that is there is opened, verified, loaded, undone, dumped
+and edited by every later program.
 """
 import argparse
 import glob
@@ -22,7 +23,7 @@ from daemon import Daemon, Refused
 
 FOLDER = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'golden')
 MOST = 64 << 10  # bytes of a packed store
-SIDE = 150       # faces a side of a mesh that is too large to lie in its record
+SIDE = 200       # faces a side of a mesh that is too large to lie in its record
 
 
 def facts(client, mesh):
@@ -86,6 +87,8 @@ def write(client):
             for row in range(SIDE) for column in range(SIDE)]
     ask('PUT', '/staged', {'vertices': [[0, 0, 0]] * (SIDE + 1) ** 2, 'faces': grid}, 201)
     ask('POST', '/staged/edits', {'op': 'face_poke', 'face': 5})
+    ask('POST', '/staged/edits', {'ops': [{'op': 'vertex_move', 'vertex': vertex, 'to': [1, 2, 3]}
+                                          for vertex in range(1, (SIDE + 1) ** 2)]})
 
 
 def hedged(program, *arguments):
@@ -94,8 +97,7 @@ def hedged(program, *arguments):
 
 
 def make(program):
-    version = hedged(program, '--version').stdout.split()[-1]
-    name = os.path.join(FOLDER, version)
+    version = hedged(program, '--version').stdout.split()[1]
     with tempfile.TemporaryDirectory() as folder:
         store = 'sqlite:' + os.path.join(folder, 'store')
         daemon = Daemon(program, ['--store', store])
@@ -107,6 +109,10 @@ def make(program):
         tags = {mesh: client.get(f'/v1/meshes/{mesh}').headers['ETag'] for mesh in ids}
         states = {mesh: told(client, mesh) for mesh in ids}
         daemon.kill()
+        database = sqlite3.connect(os.path.join(folder, 'golden.db'))
+        tables = database.execute('PRAGMA user_version').fetchone()[0]
+        database.close()
+        name = os.path.join(FOLDER, f'{version}-tables-{tables}')
         with open(os.path.join(folder, 'golden.db'), 'rb') as file:
             packed = gzip.compress(file.read(), 9, mtime=0)
         assert len(packed) <= MOST, len(packed)

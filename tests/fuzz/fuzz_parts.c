@@ -1,0 +1,61 @@
+/* Parts of contents as a store keeps them packed (core/journal/part_packing.h). Any bytes are
+ * unpacked into the room of one part or refused with a reason, and so are those behind the head of
+ * a zstd frame of any length; what is packed comes back as it was. */
+#include "fuzz/fuzz.h"
+
+#include "journal/part_packing.h"
+#include "stored/stored.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Packs the part, which may stay as it is, and unpacks it. */
+static void pack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
+{
+    unsigned char *part = malloc(HE_STORED_PART_ROOM);
+    unsigned coding = HE_CODING_PLAIN;
+    st_packer *packer = st_packer_new();
+    FUZZ_REQUIRE(part != NULL && packer != NULL, "no memory");
+    memcpy(part, bytes, size);
+    const size_t packed = st_part_pack(packer, part, size, &coding);
+    if (coding == HE_CODING_PLAIN) {
+        FUZZ_REQUIRE(packed == size && memcmp(part, bytes, size) == 0, "a plain part has changed");
+    } else {
+        const unsigned char *out;
+        size_t out_size;
+        const char *why;
+        FUZZ_REQUIRE(packed < size, "%zu bytes are packed into %zu", size, packed);
+        FUZZ_REQUIRE(st_part_unpack(unpacker, part, packed, &out, &out_size, &why) == ST_OK &&
+                         out_size == size && memcmp(out, bytes, size) == 0,
+                     "a part comes back as another");
+    }
+    st_packer_free(packer);
+    free(part);
+}
+
+static void unpack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
+{
+    const unsigned char *out = NULL;
+    size_t out_size = 0;
+    const char *why = NULL;
+    const st_status status = st_part_unpack(unpacker, bytes, size, &out, &out_size, &why);
+    FUZZ_REQUIRE(status == ST_OK || (status == ST_DAMAGED && why[0] != '\0'), "refused with %d",
+                 (int)status);
+    if (status == ST_OK) {
+        FUZZ_REQUIRE(out_size <= HE_STORED_PART_ROOM, "a part of %zu bytes", out_size);
+        unsigned char *copy = malloc(out_size + 1); /* the next unpacking writes over it */
+        FUZZ_REQUIRE(copy != NULL, "no memory");
+        memcpy(copy, out, out_size);
+        pack(unpacker, copy, out_size);
+        free(copy);
+    }
+}
+
+void fuzz_one(const uint8_t *bytes, size_t size)
+{
+    st_unpacker *unpacker = st_unpacker_new();
+    FUZZ_REQUIRE(unpacker != NULL, "no memory");
+    unpack(unpacker, bytes, size);
+    pack(unpacker, bytes, size < HE_STORED_PART_ROOM ? size : HE_STORED_PART_ROOM);
+    st_unpacker_free(unpacker);
+}
