@@ -88,7 +88,7 @@ FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # What all targets are linked with beside the libraries below the server; libFuzzer brings its own main
 # program.
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
-                $(wildcard tests/fuzz/*.c)) tests/codings.c tests/pace.c tests/traffic.c \
+                $(wildcard tests/fuzz/*.c)) tests/codings.c tests/json_tokens.c tests/pace.c tests/traffic.c \
                 tests/api/request.c server/http/syntax/http_fault.c server/http/syntax/http_syntax.c)
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 FAULTS_C   := tests/durable/inject/faults.c
