@@ -101,7 +101,7 @@ static const trap traps[] = {
      400, "nodes/0"},
     {"90,000 levels", GLTF, ASSET "\"x\":", "[", "", 90000, 400, "deeper"},
     {"16 MB of levels", GLTF, ASSET "\"x\":", "[", "", ONE, 400, "deeper"},
-    {"16 MB of levels", JSON, "{\"x\":", "[", "", ONE, 413, ""},
+    {"16 MB of levels", JSON, "{\"x\":", "[", "", ONE, 400, "deeper"},
     {"16 MB of one number", JSON, "{\"vertices\":[[", "1", "", ONE, 400, ""},
     {"16 MB of one name", JSON, "{\"", "n", "", ONE, 400, ""},
     {"16 MB of blanks", JSON, "", BLANKS, "", ONE, 400, ""},
