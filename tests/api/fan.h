@@ -1,5 +1,5 @@
-/* fan.h - a vertex with many triangles around it; where they cross, a search for intersections
- * takes long. Include it once per program. */
+/* fan.h - a vertex with many triangles around it. If the triangles cross each other, the search for
+ * self-intersections takes long. Include this header once per program: its functions are static. */
 #ifndef TESTS_API_FAN_H
 #define TESTS_API_FAN_H
 
@@ -36,8 +36,8 @@ static inline void fan_add(fan_text *t, const char *format, ...)
     assert_true(t->length < t->room);
 }
 
-/* Creates a mesh of a vertex with triangles to `spokes` places around it; each next corner is
- * `stride` places further. */
+/* Creates a mesh of one vertex with triangles to `spokes` points on a circle around it; consecutive
+ * corners are `stride` points apart, so with a stride above 1 the triangles cross. */
 static inline void put_fan(api_bench *b, const char *path, int spokes, int stride)
 {
     fan_text t = fan_text_new(128 * (size_t)spokes);

@@ -13,7 +13,8 @@
 
 #include <cmocka.h>
 
-/* The text of a token is its name and a word, so that a leak of either is noticed. */
+/* The secret of each token is its name followed by this word, so that a leak is noticed by
+ * either. */
 #define SECRET "-s3cr3t"
 
 static const struct {
@@ -58,7 +59,8 @@ static void secret_of(const char *name, char out[80])
     snprintf(out, 80, "%s" SECRET, name);
 }
 
-/* Writes a file with all holders but one (NULL: all). */
+/* Writes a file of tokens with all holders in the table except `without`; NULL: with all of
+ * them. */
 static void write_file(char out[FILE_BYTES], const char *without)
 {
     size_t used = 0;
@@ -73,7 +75,7 @@ static void write_file(char out[FILE_BYTES], const char *without)
     }
 }
 
-/* No answer may contain a secret. */
+/* Sends a request and requires that no secret of any token appears in the answer. */
 static bench_reply ask_with(world *w, const char *authorization, const char *method,
                             const char *target, const char *const *more, const char *body)
 {
@@ -153,7 +155,8 @@ static void target_of(const api_route *route, const char *mesh, const char *job,
     }
 }
 
-/* Returns a body that the route accepts; for a write, one that changes something. */
+/* Returns a body that the route accepts; if the route writes, the body is one that changes
+ * something. */
 static const char *body_of(const api_route *route)
 {
     static const struct {
@@ -202,7 +205,8 @@ static void begin(world *w)
     }
 }
 
-/* Are the answers equal except for the names asked for, `a` in one and `b` in the other? */
+/* Returns whether two answers are equal when the name `a` in the first one and the name `b` in the
+ * second one are taken as equal. */
 static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y, const char *b)
 {
     bool alike = x->status == y->status && x->header_count == y->header_count;
@@ -224,7 +228,8 @@ static bool are_alike(const bench_reply *x, const char *a, const bench_reply *y,
 
 /* --- what must hold --- */
 
-/* Without a valid token every route that is not open gives one answer, whatever exists. */
+/* Sends requests without a valid token: every route that is not open must give one and the same
+ * answer, whether the mesh in its path exists or not. */
 static void try_strangers(world *w)
 {
     static const char *const methods[] = {"GET",   "HEAD",   "POST",    "PUT",
@@ -259,7 +264,8 @@ static void try_strangers(world *w)
             }
         }
     }
-    /* An expired token is answered like an unknown one. */
+    /* An answer must not tell that a token has expired: it must equal the answer to an unknown
+     * token. */
     if (first[2].body != NULL && first[3].body != NULL &&
         !are_alike(&first[2], "", &first[3], "")) {
         found(w, "an expired token is told from a wrong one");
@@ -286,8 +292,8 @@ static double revision_of(world *w, const char *mesh)
     return number;
 }
 
-/* A role that is too small gets the sufficient role in its refusal, and changes nothing; a
- * sufficient one is admitted. */
+/* A refusal because the token's role is too small must name the sufficient role, and the request
+ * must change nothing; a token with the sufficient role must be admitted. */
 static void try_roles(world *w)
 {
     double before = revision_of(w, "m");
@@ -320,7 +326,7 @@ static void try_roles(world *w)
     }
 }
 
-/* A dry run is a read. */
+/* A dry run of an edit changes nothing, so a token with the role `read` must be admitted. */
 static void try_rehearsals(world *w)
 {
     double before = revision_of(w, "m");
@@ -343,7 +349,8 @@ static void try_rehearsals(world *w)
     }
 }
 
-/* A mesh outside the prefixes is answered with the same bytes as one that does not exist. */
+/* A mesh whose id has none of the prefixes of the token must be answered with the same bytes as a
+ * mesh that does not exist. */
 static void try_prefixes(world *w)
 {
     double before = revision_of(w, "left-m");
@@ -382,7 +389,8 @@ static void try_prefixes(world *w)
     must(w, "right", "GET", "/v1/meshes/also-right.m", NULL, 200);
 }
 
-/* The ids in the list of the token with this name, in order, page by page. */
+/* Requires that the list of meshes, read page by page with the token of this name, consists of the
+ * ids `wanted` in this order. */
 static void try_list(world *w, const char *name, const char *wanted)
 {
     char target[TARGET] = "/v1/meshes?limit=1", ids[400] = "";
@@ -448,7 +456,8 @@ static void try_bodies_and_ids(world *w)
     }
 }
 
-/* A job exists for the token that began it, and for an admin. */
+/* A job must exist only for the token that began it and for tokens with the role `admin`; to other
+ * tokens it is an unknown job. */
 static void try_jobs(world *w)
 {
     static const char *const async[] = {"Prefer", "respond-async", NULL};
@@ -493,7 +502,8 @@ static void set_flag(void *context)
     *(bool *)context = true;
 }
 
-/* Reads a stream up to where it waits; returns false at its end. */
+/* Reads an event stream up to the point where it has no more to send at present; returns false at
+ * the end of the stream. */
 static bool read_on(const api_source *live, char *out, size_t size)
 {
     int64_t got;
@@ -505,8 +515,8 @@ static bool read_on(const api_source *live, char *out, size_t size)
     return got == API_READ_WAIT;
 }
 
-/* A reload that revokes a token wakes its streams, which send their closing message and end; others
- * continue. */
+/* A reload of the file of tokens that revokes a token must wake the event streams opened with it:
+ * they send their closing message and end. Streams of other tokens must continue. */
 static void try_streams(world *w)
 {
     static const char *const names[] = {"left", "boss"};
@@ -564,7 +574,8 @@ static void try_url(world *w, const char *method, const char *target, int status
     bench_done(r);
 }
 
-/* Requests a ticket; `url` is the path with it. */
+/* Requests a ticket, which lets a browser open a URL without a header Authorization; `url` becomes
+ * the path with the ticket in its query. */
 static void ask_ticket(world *w, const char *name, const char *target, char url[TARGET])
 {
     char body[TARGET + 20];
@@ -578,7 +589,7 @@ static void ask_ticket(world *w, const char *name, const char *target, char url[
     bench_done(r);
 }
 
-/* A ticket allows one GET of its path, with the rights of its token. */
+/* A ticket must allow one GET of its path, with the rights of the token that requested it. */
 static void try_tickets(world *w)
 {
     char url[TARGET], other[TARGET], file[FILE_BYTES];
@@ -614,7 +625,8 @@ static void try_tickets(world *w)
     must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
 }
 
-/* A key belongs to a token: equal keys of two tokens are independent, with a mesh and without. */
+/* Idempotency keys belong to a token: equal keys of two tokens must be independent, in requests
+ * about a mesh and in requests that create one. */
 static void try_keys(world *w)
 {
     static const char *const key[] = {"Idempotency-Key", "one", NULL};

@@ -1,4 +1,4 @@
-/* history.h - a short history for test_history.c and test_past.c. */
+/* history.h - a mesh with a history of four revisions, for test_history.c and test_past.c. */
 #ifndef TESTS_API_HISTORY_H
 #define TESTS_API_HISTORY_H
 
@@ -32,7 +32,8 @@ static inline const char *history_code(const bench_reply *r)
     return cJSON_GetObjectItemCaseSensitive(r->json, "code")->valuestring;
 }
 
-/* Revision 2 pokes a face of a cube, 3 deletes another one, 4 undoes that. */
+/* Creates a cube (revision 1), pokes one of its faces (revision 2), deletes another face (3), and
+ * undoes the deletion (4). */
 static inline api_bench *history_begin(void)
 {
     api_bench *b = bench_new();

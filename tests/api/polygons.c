@@ -50,8 +50,9 @@ static void link_halfedges(pg_mesh *pg)
         }
         pg->face_first[f] = find_halfedge(pg, pg->corners[f][0], pg->corners[f][1]);
     }
-    /* On the boundary, the half-edge that leaves where this one arrives. At a bow-tie there are
-     * several: pg_learn_next decides. */
+    /* The next half-edge of a boundary half-edge is one that leaves the vertex where it arrives. At
+     * a bow-tie, a vertex with several fans of faces, several do: pg_learn_next decides which it
+     * is. */
     for (unsigned h = 0; h < pg->halfedges; h++) {
         for (unsigned k = 0; k < pg->halfedges && pg->face[h] == PG_NONE; k++) {
             if (pg->face[k] == PG_NONE && pg->origin[k] == target(pg, h)) {
@@ -226,7 +227,7 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     if (strcmp(what, "faces") == 0) {
         return pg->face[strcmp(kind, "face") == 0 ? h ^ 1u : h];
     }
-    return h; /* outgoing, halfedges, loop, ring */
+    return h; /* for the relations outgoing, halfedges, loop and ring */
 }
 
 void pg_relation(const pg_mesh *pg, const char *kind, unsigned id, const char *what, bool clockwise,
@@ -321,7 +322,8 @@ void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_
     }
 }
 
-/* Returns the half-edge after `h`, PG_NONE where the walk ends. */
+/* Returns the half-edge that follows `h` in a walk along edges or, if `across` is set, across
+ * faces; PG_NONE where the walk ends. */
 static unsigned onward(const pg_mesh *pg, bool across, unsigned h)
 {
     pg_list about = {.count = 0};

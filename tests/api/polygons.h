@@ -25,38 +25,42 @@ typedef struct pg_mesh {
     unsigned vertex_first[PG_VERTICES], face_first[PG_FACES];
 } pg_mesh;
 
-/* Makes a mesh from faces as strings of one-digit vertices: "012,023"; it has at least `vertices`
- * vertices. Edges are numbered in the order of their appearance and directed as in the face where
- * they appear first. */
+/* Makes a mesh from faces, each a string of one-digit vertices, as in "012,023"; the mesh has at
+ * least `vertices` vertices. Edges are numbered in the order in which the faces name them, and each
+ * edge is directed as in the first face that has it. */
 void pg_make(pg_mesh *pg, const char *faces, unsigned vertices);
 /* Makes a mesh from any list of corners: PG_NONE ends a face. */
 void pg_make_corners(pg_mesh *pg, const unsigned *corners, size_t count, unsigned vertices);
 
-/* Takes the API's choice. Fails the test if it is not allowed. */
+/* Records which half-edge the API has chosen to store with a vertex or a face; fails the test if
+ * this half-edge is not allowed. */
 void pg_learn_vertex(pg_mesh *pg, unsigned v, unsigned halfedge);
 void pg_learn_face(pg_mesh *pg, unsigned f, unsigned halfedge);
 void pg_learn_next(pg_mesh *pg, unsigned h, unsigned next);
 
-/* Finds a relation `what` of `kind` ("vertex", "faces"). */
+/* Finds the elements in a relation to an element: `kind` and `id` name the element, `what` names
+ * the relation, as in "faces" of the "vertex" 3. */
 void pg_relation(const pg_mesh *pg, const char *kind, unsigned id, const char *what, bool clockwise,
                  pg_list *out);
 bool pg_is_isolated(const pg_mesh *pg, unsigned v);
 bool pg_is_boundary(const pg_mesh *pg, unsigned v);
 unsigned pg_fans(const pg_mesh *pg, unsigned v);
 double pg_length(const pg_mesh *pg, unsigned e);
-/* Returns half of sum p[i] x p[i + 1], and its length. */
+/* Returns the area of a face; `out` becomes its area vector, half of the sum of p[i] x p[i + 1]. */
 double pg_area(const pg_mesh *pg, unsigned f, double out[3]);
 
 void pg_breadth_first(const pg_mesh *pg, const char *kind, unsigned from, unsigned depth,
                       unsigned limit, pg_list *ids, pg_list *depths);
-/* Finds the distances between all vertices; HUGE_VAL: not connected. */
+/* Finds the distances between all pairs of vertices, in edges or by length; HUGE_VAL: not
+ * connected. */
 void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_VERTICES]);
-/* Follows edges straight on through vertices of four edges, or across faces of four sides. */
+/* Finds the edges of the loop through `edge`, which goes straight on at vertices of four edges, or
+ * of its ring, which goes across faces of four sides. */
 void pg_edges(const pg_mesh *pg, bool ring, unsigned edge, pg_list *out, bool *closed);
-/* Finds the boundary loops, each starting with its lowest half-edge, in the order of these. Returns
- * their number. */
+/* Finds the boundary loops. Each starts with its lowest half-edge, and the loops are in the order
+ * of these. Returns the number of loops. */
 unsigned pg_boundaries(const pg_mesh *pg, pg_list loops[PG_FACES]);
-/* Finds the lowest face of the component of each face. */
+/* Finds for each face the lowest face in its connected component. */
 void pg_components(const pg_mesh *pg, bool by_vertex, unsigned lowest[PG_FACES]);
 
 #endif

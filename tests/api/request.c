@@ -25,7 +25,7 @@ typedef struct piece {
 } piece;
 
 struct api_bench {
-    st_pool *pool; /* of the store */
+    st_pool *pool; /* the store's pool of threads */
     st_store *store;
     api_job_table *jobs;
     piece waiting[BENCH_JOBS];
@@ -35,12 +35,13 @@ struct api_bench {
     char bearer[300];   /* "": no token is sent */
     uint64_t address;
     bool is_beyond;
-    const char *kept; /* contents of a backup */
-    bool is_lent;     /* the backup exists */
+    const char *kept; /* contents of the file that a backup answers */
+    bool is_lent;     /* a backup is being read */
     api_service *service;
 };
 
-/* A pool without threads. */
+/* Puts a job into the queue of the test: there are no threads, a job runs when bench_run_jobs calls
+ * it. */
 static bool submit(void *pool, const st_task *task)
 {
     api_bench *b = pool;
@@ -267,7 +268,7 @@ static bool take_signal(signal *s, bool wait)
     return set;
 }
 
-/* One thread runs the jobs in order. */
+/* Runs the waiting jobs in order, on the test's thread. */
 static void wait_for_jobs(api_bench *b)
 {
     signal done = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
@@ -275,7 +276,8 @@ static void wait_for_jobs(api_bench *b)
     (void)take_signal(&done, true);
 }
 
-/* Reads what is available now, then runs the jobs, and reads up to the closing message. */
+/* Reads the part of an event stream that is available now, then runs the waiting jobs, and then
+ * reads up to the closing message of the stream. */
 static void read_live(api_bench *b, const api_source *live, bench_reply *r)
 {
     signal woken = {PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false};
@@ -377,7 +379,9 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     return true;
 }
 
-/* Tests with failing allocations are not recorded: their answers are as short as possible. */
+/* Writes a request and its answer to the recorded traffic, which a later test compares with the
+ * OpenAPI document. Tests with failing allocations record nothing, because their answers are cut
+ * short. */
 static void record(const char *method, const char *target, const char *const *headers,
                    const char *body, size_t length, const bench_reply *r)
 {
@@ -403,7 +407,8 @@ static void record(const char *method, const char *target, const char *const *he
         fprintf(out, "%s: %s\r\n", r->headers[i].name, r->headers[i].value);
     }
     fclose(out);
-    /* The server, not the api, leaves out the body of a HEAD. */
+    /* The server, not the api, leaves out the body of an answer to HEAD, so a recorded answer has
+     * to drop it here. */
     bool head = strcmp(method, "HEAD") == 0;
     const traffic_message asked = {heads[0], body == NULL ? "" : body, length};
     const traffic_message said = {heads[1], head ? "" : r->body, head ? 0 : r->length};

@@ -1,4 +1,5 @@
-/* request.h - requests to the api without a socket, on the same kind of store as the daemon. */
+/* request.h - the test bench: requests to the api without a socket, on the same kind of store as
+ * the daemon's. */
 #ifndef TESTS_API_REQUEST_H
 #define TESTS_API_REQUEST_H
 
@@ -11,31 +12,33 @@
 typedef struct api_bench api_bench; /* a service over an empty store */
 
 api_bench *bench_new(void);
-/* Makes one with another journal than the one in memory. */
+/* Makes a bench whose store uses this journal; the store of bench_new() uses a journal in
+ * memory. */
 api_bench *bench_new_over(const st_journal *journal);
-/* Makes one with a limit for undo and one for bodies of meshes; `upload` 0: the limit of
- * bench_new. */
+/* Makes a bench with this limit for the memory of undo, and with this limit for an uploaded mesh;
+ * `upload` 0: the limit of bench_new(). */
 api_bench *bench_new_within(uint64_t undo_budget, uint64_t upload);
 /* Makes a service that requires the tokens in `file` (api/token/token_file.h). */
 api_bench *bench_new_guarded(const char *file);
-/* Makes a service with limits for clients without a token, with a burst of `burst` seconds; `file`
- * NULL: no tokens are required. */
+/* Makes a service with limits for clients without a token, each of which may use the requests of
+ * `burst` seconds at once; `file` NULL: no tokens are required. */
 api_bench *bench_new_limited(const char *file, const api_limits *addresses, uint64_t burst);
-/* Sets the address of further requests, 0 at first; `is_beyond`: the address has one connection
- * more than allowed. */
+/* Sets the client address of further requests; a new bench has address 0. `is_beyond`: the address
+ * has one connection more than it may have. */
 void bench_use_address(api_bench *b, uint64_t address, bool is_beyond);
-/* Sets what POST /v1/admin/reload will read. */
+/* Sets the file of tokens that the next POST /v1/admin/reload will read. */
 void bench_change_tokens(api_bench *b, const char *file);
-/* Makes POST /v1/admin/backup answer a file with this text; NULL: the store is in memory only. */
+/* Makes POST /v1/admin/backup answer with a file of this text. NULL: the store is in memory only,
+ * of which there is no backup. */
 void bench_keep(api_bench *b, const char *text);
-/* Adds this token to further requests without Authorization; NULL: none. */
+/* Makes further requests without a header Authorization send this token; NULL: no token. */
 void bench_use_token(api_bench *b, const char *token);
 void bench_free(api_bench *b);
 api_service *bench_service(api_bench *b);
 st_store *bench_store(api_bench *b);
 /* Runs up to `most` waiting jobs, in order, on this thread; jobs run only here. */
 void bench_run_jobs(api_bench *b, size_t most);
-/* How many jobs may wait; BENCH_JOBS at first. */
+/* Sets how many jobs may wait; it is BENCH_JOBS in a new bench. */
 enum { BENCH_JOBS = 32 };
 void bench_limit_jobs(api_bench *b, size_t most);
 
@@ -50,14 +53,15 @@ typedef struct bench_reply {
     api_exchange *exchange; /* owner of the headers */
 } bench_reply;
 
-/* Sends a request. `target` is path and query. `headers` are pairs of name and value that end in
- * NULL, or NULL. A body without a Content-Type is sent as application/json; a Content-Type of "" is
- * left out. `body` NULL: no body. */
+/* Sends a request. `target` is path and query. `headers` are pairs of name and value, ended by
+ * NULL; `headers` may be NULL. A body without a Content-Type is sent as application/json; with a
+ * Content-Type of "" the header is left out. `body` NULL: the request has no body. */
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
 bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
                              const char *const *headers, const char *body, size_t length);
-/* Sends a request without parsing the answer; returns false when memory is out. */
+/* Sends a request and does not parse the answer; returns false if the service could not allocate
+ * the exchange. */
 bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
                const char *body, size_t length, bench_reply *out);
 const char *bench_header(const bench_reply *r, const char *name); /* returns "" when absent */
@@ -66,7 +70,7 @@ void bench_reply_free(bench_reply *r);
 /* Shorthands for common requests. */
 bench_reply bench_get(api_bench *b, const char *target);
 bench_reply bench_post(api_bench *b, const char *target, const char *body);
-/* Returns the answer; if its status is another one, the test fails and prints it. */
+/* Returns the answer `r`. If its status is not `status`, prints the answer and fails the test. */
 bench_reply bench_expect(int status, bench_reply r);
 void bench_done(bench_reply r);
 

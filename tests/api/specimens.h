@@ -1,5 +1,5 @@
-/* specimens.h - small meshes in the API, and the texts that it must answer with. Include it once
- * per program. */
+/* specimens.h - small meshes in the API, and the texts that the API must answer about them. Include
+ * this header once per program: its functions are static. */
 #ifndef TESTS_API_SPECIMENS_H
 #define TESTS_API_SPECIMENS_H
 
@@ -63,7 +63,8 @@ static inline bool is_number(const char *p, const char *start)
     return (isdigit((unsigned char)*p) || *p == '-') && (p == start || strchr("[:,", p[-1]));
 }
 
-/* Are the texts equal except for the last digits of numbers? */
+/* Returns whether two texts are equal except for the last digits of numbers, which depend on
+ * rounding. */
 static inline bool same(const char *a, const char *e)
 {
     const char *a_start = a, *e_start = e;
@@ -135,8 +136,9 @@ static inline unsigned member(const bench_reply *r, const char *name)
 
 /* --- specimens --- */
 
-/* Closed, open, bow-tie, isolated vertices, polygons, faces that share two edges, two components,
- * two components that touch at a vertex, three fans around a vertex, genus 1. */
+/* In this order: an empty mesh, closed and open meshes, a bow-tie, isolated vertices, polygons,
+ * faces that share two edges, two components, two components that touch at a vertex, three fans
+ * around a vertex, and a mesh of genus 1. */
 static const char *const specimens[] = {
     "",
     "012",
@@ -176,7 +178,8 @@ static inline void put_mesh(api_bench *b, const pg_mesh *pg)
     bench_reply_free(&r);
 }
 
-/* Asks the server once for the choices that it is free to make. */
+/* Asks the API once for the choices that it is free to make, such as the half-edge that it stores
+ * with a vertex, so that later answers can be predicted exactly. */
 static inline void learn(api_bench *b, pg_mesh *pg)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -196,7 +199,8 @@ static inline void learn(api_bench *b, pg_mesh *pg)
     }
 }
 
-/* The mesh has an isolated vertex in addition to those of the faces. */
+/* Creates the mesh in the API and as lists of polygons, with one isolated vertex in addition to
+ * those of the faces. */
 static inline api_bench *begin(const char *faces, pg_mesh *pg)
 {
     api_bench *b = bench_new();

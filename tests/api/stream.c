@@ -20,8 +20,8 @@ static void wake(void *context)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* Returns NULL if the request was refused because memory is out; any other refusal fails the
- * test. */
+/* Opens an event stream. Returns NULL if the request was refused because memory is out; any other
+ * refusal fails the test. */
 listener *stream_try(api_bench *b, const char *path, const char *query, const char *last)
 {
     api_request request = {.method = "GET",
@@ -74,8 +74,8 @@ static void wait_for_wake(listener *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* Returns the name of the next event; "" at the end of the stream, and where it would wait if
- * `patient` is false. */
+/* Returns the name of the next event, "" at the end of the stream. If `patient` is false, also
+ * returns "" where the stream has no event at present. */
 const char *stream_next(listener *l, bool patient)
 {
     char buffer[777];
@@ -118,7 +118,7 @@ st_mesh *stream_mesh(api_bench *b)
     return mesh;
 }
 
-/* Copies the present state of the mesh. */
+/* Copies the present state of the mesh "m". */
 void stream_dump(api_bench *b, mirror *m)
 {
     st_mesh *mesh = stream_mesh(b);
@@ -141,7 +141,8 @@ void stream_require(api_bench *b, const mirror *copy, const char *after)
     mirror_clear(&fresh);
 }
 
-/* Reads all events; returns how often the copy had to be fetched again. */
+/* Reads all events and applies them to the copy; returns how often the copy had to be fetched
+ * again. */
 unsigned stream_follow(api_bench *b, listener *l, mirror *copy)
 {
     unsigned anew = 0;

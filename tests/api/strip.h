@@ -1,4 +1,5 @@
-/* strip.h - two polygons whose attributes test_attributes.c and test_attribute_writes.c write. */
+/* strip.h - a strip of two polygons, for test_attributes.c and test_attribute_writes.c, which write
+ * its attributes. */
 #ifndef TESTS_API_STRIP_H
 #define TESTS_API_STRIP_H
 
@@ -15,7 +16,8 @@ static inline void strip_send(api_bench *b, int status, const char *method, cons
     bench_reply_free(&r);
 }
 
-/* Makes a strip of polygons, with a dead face and a dead vertex if `edited`. */
+/* Creates the strip as the mesh `id`; if `edited` is set, one of its faces and one of its vertices
+ * have been deleted. */
 static inline void strip_make(api_bench *b, const char *id, bool edited)
 {
     char target[64];

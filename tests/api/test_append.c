@@ -1,5 +1,5 @@
-/* Another mesh that an edit names: it is found, its present state is used, and it is refused if it
- * is not available. */
+/* The edit `append` names another mesh: it is found, its present state is used, and the edit is
+ * refused if it is not available. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -159,7 +159,8 @@ static void attributes_of_one_name_and_two_types_are_refused(void **state)
     bench_free(b);
 }
 
-/* Attributes that another mesh brings count like those of the mesh itself. */
+/* The maximum number of attributes counts those of the mesh together with those that the appended
+ * mesh brings. */
 static void no_mesh_gets_more_attributes_than_it_may(void **state)
 {
     (void)state;
@@ -182,7 +183,8 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
     bench_free(b);
 }
 
-/* Large enough to claim the mesh; the earlier state is appended, whichever mesh is locked. */
+/* The appended mesh is so large that the edit claims its own mesh and works outside the lock. Each
+ * `append`, of the mesh to itself or to a small mesh, must use the state before the edit. */
 static void a_large_mesh_takes_in_and_is_taken_in(void **state)
 {
     (void)state;

@@ -161,7 +161,8 @@ static void there_is_a_largest_number_of_attributes(void **state)
     bench_free(b);
 }
 
-/* What an edit adds counts, too, and an edit that would add too much changes nothing. */
+/* Attributes and labels that an edit would add count toward the maximum, and an edit that exceeds
+ * it changes nothing. */
 static void an_edit_adds_no_more_attributes_or_labels(void **state)
 {
     (void)state;

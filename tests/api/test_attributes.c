@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-/* Returns the answer's body, which the caller frees. */
+/* Returns the body of the answer, which the caller must free. */
 static char *read_all(api_bench *b, const char *target, const char *accept, size_t *length)
 {
     const char *const headers[] = {"Accept", accept, NULL};
@@ -68,7 +68,8 @@ static size_t issued_rows(api_bench *b, const char *mesh, const char *domain)
     return length;
 }
 
-/* "c2_float_copy" and so on in every domain, with random values. */
+/* Adds columns of every type, rule and number of components to every domain, with random values;
+ * their names are built like "c2_float_copy". */
 static void add_columns(api_bench *b, const char *mesh, md_random *r)
 {
     for (unsigned d = 0; d < 5; d++) {
@@ -100,7 +101,7 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
     }
 }
 
-/* Dumps everything about a mesh except its id and times. */
+/* Returns everything that can be read about a mesh except its id and its times. */
 static char *dump(api_bench *b, const char *mesh, size_t *length)
 {
     static char text[1 << 20];
@@ -166,7 +167,8 @@ static void documents_carry_every_value(void **state)
         strip_send(b, 201, "PUT", "/v1/meshes/three", two);
         char *three = read_all(b, "/v1/meshes/three/content", "application/json", &third);
         assert_string_equal(document, three);
-        /* Equal bits, where ids are equal. */
+        /* The attributes of both meshes must have equal bits, since equal ids name the same
+         * elements. */
         for (unsigned d = 0; i == 0 && d < 5; d++) {
             for (unsigned a = 0; a < 15; a++) {
                 snprintf(target, sizeof target, "/v1/meshes/plain/attributes/%s/a%u", domains[d],
@@ -200,8 +202,9 @@ static void copies_and_compact_keep_values(void **state)
     char *copy = dump(b, "twin", &other);
     assert_int_equal(length, other);
     assert_memory_equal(before, copy, length);
-    /* Like compact, the document numbers without gaps; but it numbers edges by faces. So vertices,
-     * faces and the mesh must read equal. */
+    /* A document and the edit `compact` number the elements without gaps, but a document numbers
+     * the edges by faces. So after both, only the attributes of vertices, faces and the mesh must
+     * read equal. */
     char *document = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
     strip_send(b, 200, "POST", "/v1/meshes/edited/edits", "{\"op\":\"compact\"}");
     char *compact = read_all(b, "/v1/meshes/edited/content", "application/json", &other);
@@ -280,7 +283,7 @@ static void undo_and_redo_lead_back_bit_for_bit(void **state)
     for (int round = 0; round < 20; round++) {
         api_bench *b = bench_new();
         size_t first, last, length;
-        /* Undo ends where the mesh was created. */
+        /* The steps of undo must end at the state in which the mesh was created. */
         strip_send(
             b, 201, "POST", "/v1/meshes?id=m",
             "{\"vertices\":[[0,0,0],[1,0,0],[2,0,0],[0,1,0],[1,1,0],[2,1,0]],"
@@ -536,7 +539,7 @@ static void documents_are_read_whole_or_not_at_all(void **state)
     bench_free(b);
 }
 
-/* A file may contain such names. */
+/* A file may contain an attribute with a slash in its name; in a path the slash is written %2F. */
 static void a_name_with_a_slash_is_reached_by_an_escaped_one(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Lists of ten thousand operations: parsed one at a time, one revision, one undo step, all or
- * nothing, and predicted by a dry run. */
+/* Lists of ten thousand operations are parsed one at a time, make one revision and one undo step,
+ * are applied completely or not at all, and are predicted by a dry run. */
 #include "tests/api/request.h"
 
 #include "api/json/text.h"
@@ -15,8 +15,8 @@
 
 enum { MANY = 10000 };
 
-/* Writes `count` edge splits, each of an edge that the one before made; `last` replaces the last
- * one. */
+/* Writes a list of `count` edge splits in which each splits an edge that the one before made;
+ * `last`, if not NULL, replaces the last one. */
 static void write_chain(api_text *body, const char *before, size_t count, const char *last)
 {
     api_text_empty(body);
@@ -44,7 +44,7 @@ static api_bench *begin(void)
     return b;
 }
 
-/* A copy of the mesh, with its issued ids. */
+/* Returns a copy of the mesh, including the number of ids that it has issued. */
 static he_mesh *copy_of(api_bench *b)
 {
     st_store *store = bench_store(b);
@@ -70,7 +70,7 @@ static state_of take(api_bench *b)
                       bench_expect(200, bench_get(b, "/v1/meshes/m/edits"))};
 }
 
-/* Requires that nothing changed since. */
+/* Requires that the mesh, its answers and its history equal the state `before`. */
 static void expect_same(api_bench *b, state_of *before)
 {
     state_of now = take(b);
@@ -253,8 +253,8 @@ static void *count(void *context, void *memory, size_t size)
     return block + 2;
 }
 
-/* Returns the memory that a list needs at most beyond what stays allocated, from the first byte to
- * the answer. */
+/* Returns the peak of the memory that a request with this list uses, from its first byte to its
+ * answer, less what stays allocated afterwards. */
 static size_t peak_of(api_bench *b, const api_text *body)
 {
     most = held;
@@ -266,7 +266,8 @@ static size_t peak_of(api_bench *b, const api_text *body)
     return most - before;
 }
 
-/* A parsed document with this many values would take fifteen times its text. */
+/* A list is read one operation at a time, so its memory must stay near the size of its text and its
+ * results. A parser that built a tree of all its values would need fifteen times the text. */
 static void a_list_costs_its_text_and_its_results(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* GET .../check: the defects reported, their thresholds, and running as a job. */
+/* GET .../check reports the defects of a mesh, takes thresholds for them, and can run as a job. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -43,7 +43,7 @@ static double threshold(const bench_reply *r, const char *name)
     return cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, "thresholds"), name)->valuedouble;
 }
 
-/* Returns the first listed defect of a code. */
+/* Returns the first listed defect with this code. */
 static const cJSON *first(const bench_reply *r, const char *code)
 {
     const cJSON *defect;
@@ -67,7 +67,8 @@ static void expect_first(const bench_reply *r, const char *code, const char *kin
     assert_true(strlen(cJSON_GetObjectItem(defect, "detail")->valuestring) > 0);
 }
 
-/* Two intersecting triangles, a twisted quadrilateral, and a vertex at the position of another. */
+/* The mesh has two intersecting triangles, a twisted quadrilateral, and two vertices at one
+ * position. */
 static const char mess[] =
     "{\"vertices\":[[0,0,0],[2,0,0],[0,2,0],[0.5,0.5,-1],[0.5,0.5,1],[3,3,0],[9,0,0],[10,0,1],"
     "[10,1,0],[9,1,1],[2,0,0]],\"faces\":[[0,1,2],[3,4,5],[6,7,8,9]]}";
@@ -241,11 +242,13 @@ static void a_starved_check_says_so(void **state)
         memory.at = 0;
         done = memory.calls < n;
         if (any) {
-            /* An answer that can do without the memory is still complete. */
+            /* If the failed allocation was for something optional, the answer must still be
+             * complete. */
             assert_true(r.status == 200 || (!done && r.status == 507));
             bench_reply_free(&r);
         }
-        /* A partial result is not kept. */
+        /* A result that was cut short by the failed allocation must not be cached: the next answer
+         * is complete. */
         bench_reply again = check(b, "?self_intersections=true");
         assert_int_equal(total(&again, "self_intersection"), 1);
         bench_reply_free(&again);

@@ -1,4 +1,4 @@
-/* Content codings: bodies that arrive compressed by gzip or zstd, and answers compressed by
+/* Content codings: request bodies that arrive compressed by gzip or zstd, and answers compressed by
  * them. */
 #include "tests/api/request.h"
 
@@ -128,7 +128,8 @@ static void answers_unfold_to_what_they_are_plain(void **state)
             assert_string_equal(bench_header(&r, "Vary"), bench_header(&plain, "Vary"));
             assert_string_equal(bench_header(&r, "Content-Type"),
                                 bench_header(&plain, "Content-Type"));
-            /* The compressed answer has its own strong tag. */
+            /* The compressed answer must have a strong entity tag of its own: that of the plain
+             * answer, followed by the name of the coding. */
             const char *of_plain = bench_header(&plain, "ETag");
             snprintf(tag, sizeof tag, "%.*s-%s\"", (int)strlen(of_plain) - 1, of_plain, both[c]);
             assert_string_equal(bench_header(&r, "ETag"), tag);
@@ -156,7 +157,8 @@ static void what_is_short_or_live_stays_plain(void **state)
         assert_string_equal(bench_header(&r, "Vary"), live ? "" : "Accept-Encoding");
         bench_reply_free(&r);
     }
-    /* A small file whose length is not known in advance: it is determined first. */
+    /* The length of an OFF file is not known in advance. The server must find it before it decides
+     * that a file is too small to be compressed. */
     done(expect(201, bench_send(b, "PUT", "/v1/meshes/c", NULL, "{\"shape\":\"tetrahedron\"}")));
     bench_reply r = expect(200, get(b, "/v1/meshes/c/content?format=off", "zstd"));
     assert_string_equal(bench_header(&r, "Content-Encoding"), "");
@@ -165,8 +167,8 @@ static void what_is_short_or_live_stays_plain(void **state)
     bench_free(b);
 }
 
-/* Even a short answer is compressed for a client that refuses identity; a client that refuses
- * everything gets an error. */
+/* Even a short answer is compressed if the client refuses the coding `identity`; a client that
+ * refuses every coding gets an error. */
 static void identity_may_be_refused(void **state)
 {
     (void)state;
@@ -204,8 +206,8 @@ static void tags_of_each_coding_are_good(void **state)
         snprintf(list, sizeof list, "\"other\", W/%s", tag);
         bench_reply_free(&r);
         for (size_t k = 0; k < 3; k++) {
-            /* A client that can still decode its copy may keep it; the 304 names the tag of that
-             * copy. */
+            /* A client may keep its cached copy (304) if it still accepts the coding of that copy;
+             * the 304 names the entity tag of that copy. */
             bool good = i == 0 || i == k;
             r = expect(good ? 304 : 200,
                        bench_send(b, "GET", target,
@@ -219,7 +221,7 @@ static void tags_of_each_coding_are_good(void **state)
             }
             bench_reply_free(&r);
         }
-        /* If-Match compares only the state. */
+        /* If-Match compares the revision of the mesh and ignores the coding in the tag. */
         char name[24];
         snprintf(name, sizeof name, "{\"name\":\"%s\"}", wanted[i]);
         for (int again = 0; again < 2; again++) {
@@ -319,7 +321,8 @@ static void every_format_comes_back(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         bench_reply plain = expect(200, bench_send(b, "GET", files[i].target, NULL, NULL));
         for (size_t c = 0; c < 2; c++) {
-            /* The server accepts what it compressed, and what others compressed. */
+            /* The server must read a body that it compressed itself, and one that another program
+             * compressed. */
             bench_reply file = expect(200, get(b, files[i].target, both[c]));
             char again[100];
             snprintf(again, sizeof again, "/v1/meshes/again%s", strrchr(files[i].target, '/'));
@@ -341,7 +344,8 @@ static void every_format_comes_back(void **state)
     bench_free(b);
 }
 
-/* Text that compresses, but not so well that it is refused for that. */
+/* Returns a text that compresses well, but not beyond the ratio at which the server refuses it as a
+ * decompression bomb. */
 static char *long_text(size_t length)
 {
     char *text = malloc(length + 1);
@@ -361,7 +365,8 @@ static void what_unfolds_counts_against_the_limits(void **state)
     api_bench *b = with_grid();
     char *text = long_text(9 << 20);
     for (size_t c = 0; c < 2; c++) {
-        /* The maximum length applies to the decompressed body, to the byte. */
+        /* The maximum length of a body applies to the decompressed body: a length equal to it is
+         * accepted, one byte more is refused. */
         text[API_MAX_CONTROL] = '\0';
         memcpy(text, "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}", 37);
         done(expect(200, send_json(b, "POST", "/v1/meshes/m/traverse", both[c], text)));
@@ -401,7 +406,8 @@ static void what_is_not_the_coding_is_refused(void **state)
         assert_string_equal(bench_header(&r, "Accept-Encoding"), "gzip, zstd");
         refused(415, "unsupported_encoding", "\"supported\":[\"gzip\",\"zstd\",\"identity\"]", r);
     }
-    /* Another 415, not because of the coding. */
+    /* A 415 because of the media type must not carry the header that a 415 because of the coding
+     * has. */
     bench_reply other = expect(
         415, bench_send(b, "POST", "/v1/meshes", HEADERS("Content-Type", "text/plain"), json));
     assert_string_equal(bench_header(&other, "Accept-Encoding"), "");
@@ -421,7 +427,7 @@ static void what_is_not_the_coding_is_refused(void **state)
                     bench_send_bytes(b, "POST", "/v1/meshes", headers, packed, length));
         }
         free(packed);
-        /* A compressed empty body is an empty body. */
+        /* A compressed empty body counts as an empty body. */
         refused(400, "missing_body", "", send_json(b, "POST", "/v1/meshes", both[c], ""));
         done(expect(409, send_json(b, "POST", "/v1/meshes/m/undo", both[c], "")));
     }
@@ -431,7 +437,8 @@ static void what_is_not_the_coding_is_refused(void **state)
     bench_free(b);
 }
 
-/* An OBJ file in zstd before its body: the frame has begun with a window of 8 MiB. */
+/* Begins the upload of an OBJ file in zstd: the frame header, which declares a window of 8 MiB, is
+ * sent, and nothing of the contents. */
 static api_exchange *begin_wide(api_bench *b, api_step *step)
 {
     static const char frame[] = {0x28,   (char)0xB5, 0x2F, (char)0xFD, 0,   13 << 3,
@@ -453,7 +460,7 @@ static api_exchange *begin_wide(api_bench *b, api_step *step)
     return x;
 }
 
-/* Sends another KiB of such a body: a block of zeros. */
+/* Sends the next KiB of a body begun by begin_wide(): one block of zeros. */
 static api_step more_of(api_exchange *x)
 {
     static const char block[] = {2 | 1 << 3, 32, 0, '\n'}; /* RLE, 1025 times */
@@ -473,7 +480,8 @@ static void expect_gave_way(api_exchange *x)
     assert_true(later);
 }
 
-/* One body continues while many others begin and then send nothing. */
+/* The windows of slow uploads share a limited memory. One upload continues while many others begin
+ * and then send nothing: those must be ended, not the one that makes progress. */
 static void slow_senders_give_way_to_others(void **state)
 {
     (void)state;
@@ -507,7 +515,8 @@ static void slow_senders_give_way_to_others(void **state)
     bench_free(b);
 }
 
-/* The coding of a body is not part of the request. */
+/* The Idempotency-Key belongs to the decompressed body: the same body in another coding, or in
+ * none, is the same request. */
 static void a_key_is_of_the_unfolded_body(void **state)
 {
     (void)state;
@@ -527,7 +536,8 @@ static void a_key_is_of_the_unfolded_body(void **state)
         assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
         bench_reply_free(&r);
         free(packed);
-        /* The kept answer is uncompressed: each client gets it in a coding that it accepts. */
+        /* The stored answer is uncompressed, so that each client that repeats the request gets it
+         * in a coding that it accepts. */
         char accept[40];
         snprintf(accept, sizeof accept, "%s, identity;q=0", both[c]);
         r = expect(200,
@@ -544,7 +554,7 @@ static void a_key_is_of_the_unfolded_body(void **state)
     bench_free(b);
 }
 
-/* A job reads a compressed body like any other, and its result is stored uncompressed. */
+/* A job reads a compressed body like any other body, and its result is stored uncompressed. */
 static void a_job_of_a_coded_upload(void **state)
 {
     (void)state;
@@ -586,7 +596,7 @@ static void *resize(void *context, void *bytes, size_t size)
     return memory.fail_at > 0 && ++memory.calls == memory.fail_at ? NULL : realloc(bytes, size);
 }
 
-/* Whichever allocation fails, the request must be answered as expected or with 507. */
+/* Lets each allocation of the request fail in turn: the answer must be the expected one or 507. */
 static void starve(api_bench *b, const char *method, const char *target, const char *const *headers,
                    const char *body, size_t length, const bench_reply *expected)
 {
@@ -629,7 +639,7 @@ static void every_allocation_may_fail(void **state)
         const char *const accept[] = {"Accept-Encoding", both[c], NULL};
         for (size_t i = 0; i < READ; i++) {
             if (strstr(read[i].target, "stl") != NULL) {
-                continue; /* allocates for each corner, which this test does not measure */
+                continue; /* the reader of this format allocates for each corner */
             }
             bench_reply plain = expect(200, bench_send(b, "GET", read[i].target, NULL, NULL));
             starve(b, "GET", read[i].target, accept, NULL, 0, &plain);

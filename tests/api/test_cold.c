@@ -1,5 +1,5 @@
-/* Requests about meshes that are not in memory: the answers equal those before the service was
- * restarted, and a damaged mesh can be deleted or replaced. */
+/* Requests about cold meshes, those that are on the disk and not in memory: the answers must equal
+ * those before the service was restarted, and a damaged mesh can be deleted or replaced. */
 #include "tests/api/request.h"
 #include "tests/kept_journal.h"
 
@@ -174,7 +174,8 @@ static size_t loads(const char *id)
     return kept_journal_facts(journal, id).opened;
 }
 
-/* Compares with the answer of GET to the same headers. */
+/* Compares the headers of the answer to HEAD with those of the answer to GET, and requires that
+ * HEAD did not load the mesh. */
 static void expect_head(api_bench *b, const char *coding, size_t loaded)
 {
     const char *const headers[] = {"Accept-Encoding", coding, NULL};
@@ -201,7 +202,8 @@ static void head_of_a_cold_mesh_loads_nothing(void **state)
     expect_head(b, "gzip, zstd, br", 1);
     b = restart(b);
     expect_head(b, "*", 2);
-    /* The client accepts only a compressed answer, whose length is needed. */
+    /* If the client accepts only compressed answers, HEAD has to load the mesh, because the length
+     * of the compressed answer is needed. */
     b = restart(b);
     const char *const coded[] = {"Accept-Encoding", "gzip, identity;q=0", NULL};
     bench_done(bench_expect(200, bench_send(b, "HEAD", "/v1/meshes/m", coded, NULL)));
@@ -223,7 +225,8 @@ static void what_the_client_has_of_a_cold_mesh_loads_nothing(void **state)
     assert_string_equal(bench_header(&is, "ETag"), tag);
     bench_done(is);
     assert_int_equal(loads("m"), 0);
-    /* The client may have another revision. */
+    /* A client whose copy is of another revision than the one asked for gets the whole answer,
+     * which loads the mesh. */
     bench_done(bench_expect(200, bench_send(b, "GET", "/v1/meshes/m?revision=2", has, NULL)));
     poke(b, "m", 0);
     b = restart(b);
@@ -245,7 +248,7 @@ static void a_cold_mesh_is_deleted_without_being_loaded(void **state)
     bench_done(bench_expect(412, bench_send(b, "DELETE", "/v1/meshes/m", none, NULL)));
     kept_journal_refuse(journal, ST_FAILED);
     expect_code(b, 503, "store_failed", "DELETE", "/v1/meshes/m", NULL);
-    assert_int_equal(loads("m"), 0); /* for everything up to the deletion */
+    assert_int_equal(loads("m"), 0); /* nothing up to here loaded the mesh */
     kept_journal_refuse(journal, ST_FULL);
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", match, NULL)));
     kept_journal_refuse(journal, ST_OK);
@@ -256,7 +259,8 @@ static void a_cold_mesh_is_deleted_without_being_loaded(void **state)
     assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(list.json, "items")), 0);
     bench_done(list);
     b = restart(b);
-    /* The id can be used by another mesh, with other tags. */
+    /* After the deletion, the id can be given to another mesh, whose entity tags differ from those
+     * of the deleted one. */
     bench_reply fresh =
         bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}"));
     assert_string_not_equal(bench_header(&fresh, "ETag"), tag);
@@ -299,7 +303,8 @@ static void a_damaged_mesh_can_only_go(void **state)
             bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
             bench_done(bench_expect(404, bench_get(b, "/v1/meshes/m")));
         } else {
-            /* It keeps its name if none is given, and the answer shows it. */
+            /* PUT without a name keeps the name of the damaged mesh that it replaces, and the
+             * answer shows this name. */
             expect_name(bench_expect(
                 201, bench_send(b, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
             b = restart(b);

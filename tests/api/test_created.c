@@ -1,5 +1,5 @@
-/* An answer shows a new mesh as it was made, whatever other requests did to it before the
- * answer. */
+/* The answer to a request that creates a mesh shows the mesh as it was created, even if another
+ * request changes it before the answer is written. */
 #include "edit/local/erase.h"
 #include "tests/api/request.h"
 #include "tests/writing.h"
@@ -24,8 +24,8 @@ static int vertices_of(const bench_reply *summary)
     return cJSON_GetObjectItem(counts, "vertices")->valueint;
 }
 
-/* Changes a new mesh before the request that made it is answered: the linker redirects calls of
- * st_create_from to the wrapper (Makefile). */
+/* Changes the new mesh after it is created and before the request that created it is answered: the
+ * linker redirects calls of st_create_from to this wrapper (Makefile). */
 static bool meddling;
 static uint32_t victim; /* a vertex that the other request deletes */
 
@@ -62,7 +62,7 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
         meddling = true;
-        victim = (uint32_t)i; /* a copy lacks what its mesh lacked */
+        victim = (uint32_t)i; /* a copy lacks the vertex that its source lost */
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;
         assert_non_null(strstr(bench_header(&r, "ETag"), "-1-1-summary"));
@@ -72,7 +72,8 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
         snprintf(path, sizeof path, "/v1/meshes/%s", text_of(&r, "id"));
         int vertices = vertices_of(&r);
         bench_reply_free(&r);
-        /* Nor is it kept as the present state of the mesh. */
+        /* The summary in the first answer must not be cached as the present one: the next GET shows
+         * the changed mesh. */
         r = bench_expect(200, bench_get(b, path));
         assert_non_null(strstr(r.body, "\"revision\":2,"));
         assert_true(vertices_of(&r) < vertices);

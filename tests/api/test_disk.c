@@ -1,4 +1,5 @@
-/* What a client is told of a disk that is full or failed, and of changes that were lost for it. */
+/* What the API answers when the disk is full or has failed, and when changes that a client has seen
+ * were lost. */
 #include "tests/api/request.h"
 #include "store/write.h"
 #include "tests/slow_journal.h"
@@ -15,7 +16,7 @@
 
 static slow_journal journal;
 
-/* With the meshes m and n, of which all is durable. */
+/* Creates the meshes m and n, whose changes are all durable. */
 static api_bench *begin(void)
 {
     const st_journal kept = slow_journal_open_keeping(&journal);
@@ -43,8 +44,9 @@ static void lose_newest(st_status why)
 
 /* --- the mesh is lost when a write begins --- */
 
-/* What becomes of the newest change right before the next write begins; ST_OK: nothing. The linker
- * gives calls of this function to the wrapper (Makefile). */
+/* The result of the check, right before the next write begins, of whether the newest change reached
+ * the disk; ST_OK: it did. The linker redirects calls of the check to a wrapper (Makefile) that
+ * returns this. */
 static st_status loss_before;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
@@ -68,7 +70,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
         const char *code, *retry;
     } cases[] = {{ST_FULL, ST_FULL, 507, "store_full", ""},
                  {ST_FAILED, ST_FAILED, 503, "store_failed", "1"},
-                 /* There is space again: the same request finds the mesh as it was kept. */
+                 /* The change was lost while the disk was full, and now there is space again: if
+                  * the client repeats the request, it finds the mesh in its last durable state. */
                  {ST_FULL, ST_OK, 503, "store_lost", "0"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_bench *b = begin();
@@ -79,7 +82,8 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
             cases[i].status, bench_send(b, "PATCH", "/v1/meshes/m", NULL, "{\"name\":\"y\"}"));
         assert_string_equal(text_of(&r, "code"), cases[i].code);
         assert_string_equal(bench_header(&r, "Retry-After"), cases[i].retry);
-        /* The refusal waits for nothing, so it is never replaced by one about a lost change. */
+        /* The refusal does not wait for the disk; otherwise, when the lost change is noticed,
+         * another refusal could replace it. */
         assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
         bench_reply_free(&r);
         bench_free(b);
@@ -118,7 +122,8 @@ st_status __wrap_st_write_commit(st_write *w, const char *ops)
     return __real_st_write_commit(w, ops);
 }
 
-/* The disk works again by then: only the loss of the source prevents the commit. */
+/* When the copy is made the disk works again: only the loss of the source's changes can be the
+ * reason why it is refused. */
 static void what_was_lost_is_not_copied_or_appended(void **state)
 {
     (void)state;
@@ -167,8 +172,8 @@ static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
 
 static api_bench *staging_for;
 
-/* While the list is written to the disk, its mesh can be read in the old state, and another mesh
- * can be written. */
+/* Runs while a list of operations is being written to the disk: its mesh must still be readable in
+ * the old state, and another mesh must be writable. */
 static void look_and_write(void)
 {
     bench_reply r = bench_expect(200, bench_get(staging_for, "/v1/meshes/m"));
@@ -221,7 +226,8 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     assert_int_equal(journal.staged_edits, 0);
     staging_for = b;
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    /* Each of them, on a worker or not, needs a claim because of its rows. */
+    /* This many operations need a claim on the mesh because of the rows they change, whether they
+     * run on a worker or as a job. */
     splits(b, API_CLAIM_EDITS);
     assert_int_equal(journal.staged_edits, 1);
     bench_free(b);

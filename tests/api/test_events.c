@@ -1,5 +1,5 @@
-/* The messages of an event stream, without sockets: exact for every operation, from the queue and
- * from the history, whichever allocation fails. */
+/* The messages of an event stream, without sockets: they describe every operation exactly, whether
+ * they come from the listener's queue or from the history, and whichever allocation fails. */
 #include "tests/api/stream.h"
 #include "tests/random_edit.h"
 #include "tests/writing.h"
@@ -24,7 +24,7 @@
 
 #include <cmocka.h>
 
-/* --- the mesh ------------------------------------------------------------------------------- */
+/* --- the mesh --- */
 
 static const char OBJ[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 3 0 1\nv 3 1 1\n"
                           "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
@@ -40,7 +40,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* A closed mesh, which some operations need. */
+/* This mesh is closed, because some operations need a closed one. */
 static const char TETRAHEDRON[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n"
                                   "g base\nf 1//1 3//1 2//1\n"
                                   "g sides\nf 1//1 2//1 4//1\nf 2//1 3//1 4//1\nf 3//1 1//1 4//1\n";
@@ -58,11 +58,11 @@ static void put_mesh(api_bench *b)
     put(b, OBJ);
 }
 
-/* --- tests ---------------------------------------------------------------------------------- */
+/* --- tests --- */
 
 enum { ROWS = 256 };
 
-/* Returns the row that succeeded least often. */
+/* Returns the operation that has succeeded least often. */
 static size_t rarest(const unsigned done[ROWS])
 {
     size_t least = 0;
@@ -147,7 +147,8 @@ he_status __wrap_he_changes_sum(const he_mesh *mesh, const he_change_part *parts
     return __real_he_changes_sum(mesh, parts, count, out, err);
 }
 
-/* One search serves the answer, the history and the listeners. */
+/* The set of elements that a request changed is computed once, for the answer, the history and all
+ * listeners. */
 static void what_a_request_changes_is_found_once(void **state)
 {
     (void)state;
@@ -173,7 +174,8 @@ static void what_a_request_changes_is_found_once(void **state)
     bench_free(b);
 }
 
-/* Through the store, because no request makes columns in this way. */
+/* Writes columns of attributes directly through the store, because no request makes them in this
+ * way, and requires events about them. */
 static void columns_that_come_and_go_are_told(void **state)
 {
     (void)state;
@@ -217,7 +219,8 @@ static void columns_that_come_and_go_are_told(void **state)
     bench_free(b);
 }
 
-/* A column that replaces one with its name and type has none of its values. */
+/* An attribute is replaced by another of its name and type: events must not let the listener's copy
+ * keep values of the old attribute. */
 static void a_column_written_over_is_told(void **state)
 {
     (void)state;
@@ -283,7 +286,6 @@ static void what_is_no_edit_has_events_of_its_own(void **state)
     bench_free(b);
 }
 
-/* 200 x 200 faces do not fit into an event; smaller ones are complete. */
 static void the_list_of_meshes_counts_listeners(void **state)
 {
     (void)state;
@@ -339,7 +341,8 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
     assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
     assert_int_equal(send(b, "PATCH", "/v1/meshes/m", "{\"name\":\"x\"}"), 200);
     assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
-    /* The header is newer than the URL. */
+    /* The header Last-Event-ID is newer than `since` in the URL and must win: a browser sends the
+     * URL of the first connection again when it reconnects. */
     l = stream_open(b, "/v1/meshes/m/events", "since=1", id);
     assert_string_equal(stream_next(l, false), "edit");
     assert_int_equal(stream_number(l, "base"), 2);
@@ -354,7 +357,8 @@ static void who_was_cut_off_goes_on_where_it_was(void **state)
     bench_free(b);
 }
 
-/* More events than the queue holds: they come from the history in batches, then from the queue. */
+/* The listener is behind by more events than its queue holds: it gets the older ones from the
+ * history in batches, and the rest from the queue. */
 static void who_is_far_behind_is_told_from_the_history(void **state)
 {
     (void)state;
@@ -368,9 +372,10 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     stream_dump(b, &now);
     stream_dump(b, &copy);
     while (now.revision < EDITS) {
-        /* Excluded are compact, which would cut the history off, and edits that the history cannot
-         * describe: a finer mesh, and an attribute added with a material. The mesh stays so small
-         * that an edit of all of it fits into a message; an edit that emptied it is undone. */
+        /* Three kinds of edits are left out: `compact`, which deletes the history, and two that the
+         * history cannot describe, refinements and attributes added with a material. The mesh stays
+         * so small that an edit of all of it fits into a message; an edit that emptied it is
+         * undone. */
         size_t row = md_below(&random, (uint32_t)he_op_count());
         const char *name = he_op_at(row)->name;
         size_t faces = mirror_count(&now, HE_FACE);
@@ -398,7 +403,7 @@ static void who_is_far_behind_is_told_from_the_history(void **state)
     assert_int_equal(mirror_apply(&copy, l->data), MIRROR_APPLIED);
     stream_require(b, &copy, "the history and an undo");
     stream_close(l);
-    /* Begun in the middle, and closed in the middle. */
+    /* The listener begins in the middle of the history, and leaves in the middle of it. */
     l = stream_open(b, "/v1/meshes/m/events", "since=2", NULL);
     assert_string_equal(stream_next(l, true), "metadata");
     assert_string_equal(stream_next(l, true), "edit");
@@ -472,7 +477,8 @@ static void what_cannot_be_told_is_one_resync(void **state)
     bench_free(b);
 }
 
-/* Reads nothing until the queue overflows: one resync, and then from the newest event on. */
+/* The listener reads nothing until its queue overflows: it must get one `resync` and then the
+ * events from the newest one on. */
 static void a_slow_listener_is_told_to_fetch_anew(void **state)
 {
     (void)state;
@@ -517,11 +523,11 @@ static void too_many_listeners_are_503(void **state)
     bench_free(b);
 }
 
-/* --- memory --------------------------------------------------------------------------------- */
+/* --- when an allocation fails --- */
 
 typedef struct famine {
     pthread_t tester;
-    bool jobs; /* allocations of the job pool fail, else those of the test's thread */
+    bool jobs; /* fail allocations of the job pool, not those of the test's thread */
     uint32_t left;
     bool struck;
 } famine;
@@ -544,8 +550,8 @@ static void *resize_until(void *context, void *memory, size_t size)
     return realloc(memory, size);
 }
 
-/* Whichever allocation fails while an event is made, the edit is made, and the listener gets either
- * the event or a resync. */
+/* Each allocation made for an event fails in turn: the edit must succeed, and the listener must get
+ * either the event or a `resync`. */
 static void a_failed_allocation_loses_no_listener(void **state)
 {
     (void)state;
@@ -586,7 +592,8 @@ static void a_failed_allocation_loses_no_listener(void **state)
     assert_true(told > 0);
 }
 
-/* From the history: events come in order, then perhaps a resync. */
+/* Each allocation made while events are read from the history fails in turn: the listener must get
+ * events in order, and possibly a `resync` after them. */
 static void a_failed_allocation_in_the_history_is_a_resync(void **state)
 {
     (void)state;

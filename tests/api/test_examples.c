@@ -1,4 +1,4 @@
-/* The examples of the OpenAPI document must be the server's answers. */
+/* The examples in the OpenAPI document must equal the answers of the service. */
 #include "tests/api/request.h"
 
 #include "api/describe/examples.h"
@@ -30,8 +30,8 @@ static bool is_one_of(const char *name, const char *const *names)
     return *names != NULL;
 }
 
-/* Replaces values that differ between runs and machines by those of the example, if they have the
- * same form. */
+/* Replaces values in an answer that differ between runs and machines (ids, times) by those of the
+ * example, if both have the same form. */
 static void settle(cJSON *answer, const cJSON *example)
 {
     static const char *const times[] = {"created",  "modified", "time", "started",
@@ -77,7 +77,8 @@ static void settle(cJSON *answer, const cJSON *example)
     }
 }
 
-/* The incarnation differs each time. */
+/* Replaces the incarnation of the mesh in the events, since it is random, by that of the
+ * example. */
 static void settle_ids(char *stream)
 {
     static const char fixed[] = "5d1b27c0e4a9f386";
@@ -121,7 +122,8 @@ static void start_job(api_bench *b, const char *method, const char *target, cons
     bench_reply_free(&r);
 }
 
-/* Starts the jobs of examples.h; their paths go to `done` and `waiting`. */
+/* Starts the jobs that the examples are about; `done` and `waiting` become the paths of one that
+ * has ended and one that waits. */
 static void start_jobs(api_bench *b, char done[64], char waiting[64])
 {
     start_job(b, "POST", "/v1/meshes?id=disk", "{\"shape\":\"disk\",\"segments\":3}", done);
@@ -132,7 +134,7 @@ static void start_jobs(api_bench *b, char done[64], char waiting[64])
     start_job(b, "PUT", "/v1/meshes/later", "{\"shape\":\"cube\"}", waiting);
 }
 
-/* Replaces the job that the example names by its path. */
+/* Replaces the job in the target of an example by one of the two that this test started. */
 static void name_job(const char *target, const char *done, const char *waiting, char *out,
                      size_t size)
 {
@@ -156,7 +158,8 @@ static void each_example_is_a_real_answer(void **state)
     for (size_t i = 0; i < api_example_count(); i++) {
         const api_example *row = api_example_at(i);
         const api_route *route = route_of(row->route);
-        /* A refusal is a problem whatever the client accepts. */
+        /* A refusal is sent as application/problem+json whatever the client accepts, so the request
+         * may accept anything. */
         const char *accept = row->status < 400 ? row->produces : "*/*";
         const char *headers[] = {"Accept", accept, "Content-Type", row->consumes, NULL};
         headers[2] = row->consumes == NULL ? NULL : headers[2];
@@ -182,7 +185,7 @@ static const cJSON *member(const cJSON *object, const char *name)
     return found;
 }
 
-/* Requires the body as the example of its media type in `content`. */
+/* Requires that `body` is the example given for this media type in `content`. */
 static void find_in(const cJSON *content, const char *media, const char *body)
 {
     const cJSON *shown = member(member(content, media), "example");
@@ -226,7 +229,8 @@ static void the_description_shows_them(void **state)
     bench_free(b);
 }
 
-/* These are as long as the tables that they show. */
+/* The document shows no examples for these answers, because they are as long as the tables that
+ * they print. */
 static const char *const too_long[] = {"operations_get", "openapi_get", NULL};
 
 static void no_route_is_without_one(void **state)

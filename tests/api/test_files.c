@@ -1,5 +1,5 @@
-/* Mesh files: exported in every encoding, and read back under every name that identifies the
- * format. */
+/* Mesh files are exported in every encoding, and read back under every name and media type that
+ * identifies their format. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -91,7 +91,8 @@ static void each_encoding_has_its_tag(void **state)
         }
         bench_reply_free(&file);
     }
-    /* the default encoding, by format and by media type */
+    /* A request that names no encoding gets the default of the format, which Accept names as well
+     * as ?format= does. */
     static const char *const accept[] = {"Accept", "model/ply", NULL};
     bench_reply r = bench_expect(200, bench_send(b, "GET", "/v1/meshes/m/content", accept, NULL));
     assert_string_equal(bench_header(&r, "Content-Type"), "model/ply");
@@ -106,7 +107,8 @@ static void each_encoding_has_its_tag(void **state)
     bench_free(b);
 }
 
-/* The header has at most 1000 bytes; 40 attributes need more, and more than notes can hold. */
+/* The warnings about an export go into a header of at most 1000 bytes. The 40 attributes that this
+ * export drops need more: those that do not fit must be counted. */
 static void warnings_that_find_no_room_are_counted(void **state)
 {
     (void)state;
@@ -151,7 +153,7 @@ static void a_position_that_no_float_holds_is_named(void **state)
     bench_free(b);
 }
 
-/* It has its own tag, with the same mesh inside. */
+/* A compressed export has an entity tag of its own, and contains the same mesh. */
 static void a_compressed_export_is_another_representation(void **state)
 {
     (void)state;
@@ -238,7 +240,8 @@ static void a_wrong_file_names_its_place(void **state)
     bench_free(b);
 }
 
-/* A JSON file is distinguished from a mesh document by its type, its name, or its first bytes. */
+/* A JSON body can be glTF or a mesh document: its media type, its file name or its first bytes
+ * decide. Files outside the body are never read. */
 static void gltf_is_read_and_what_is_outside_never(void **state)
 {
     (void)state;
@@ -267,7 +270,8 @@ static void gltf_is_read_and_what_is_outside_never(void **state)
     bench_free(b);
 }
 
-/* A file that leaves the worker, up to that point. */
+/* Uploads a glTF file, whose reading is left to the pool because a glTF is read only when it is
+ * complete; returns the request at that point. */
 static api_exchange *upload_gltf(api_bench *b, const char *text, size_t length)
 {
     const api_request request = {.method = "POST",
@@ -295,7 +299,8 @@ static bool give_up_reading(void *context, const char *phase, double done)
     return *told < 3 || done < 0;
 }
 
-/* It is read and built away from the worker, and can be cancelled. */
+/* A glTF file is parsed in the pool after its last byte has arrived: the client may cancel it
+ * during that. */
 static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
 {
     (void)state;
@@ -320,7 +325,7 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     free(text);
 }
 
-/* A few bytes may be a large mesh. */
+/* Even a short glTF file is read by the pool, because a few bytes can describe a large mesh. */
 static void a_small_file_that_is_read_at_its_end_leaves_the_worker(void **state)
 {
     (void)state;
@@ -341,7 +346,8 @@ static const char *warning(const cJSON *report, int i)
     return item == NULL ? "" : cJSON_GetObjectItem(item, "code")->valuestring;
 }
 
-/* The edges of a file are counted when they are made, and a repair may make others. */
+/* The report counts the edges of a file when they are built; a repair may replace some of them, so
+ * the mesh may have others. */
 static void a_report_says_what_was_read_and_what_was_not(void **state)
 {
     (void)state;
@@ -380,7 +386,8 @@ static void a_report_says_what_was_read_and_what_was_not(void **state)
     bench_free(b);
 }
 
-/* ?format= decides first, then the type; a refusal says if the bytes look like another format. */
+/* The format of a body is decided by ?format= or else by its Content-Type; if the bytes look like
+ * another format, the refusal says which. */
 static void a_body_of_another_format_is_told(void **state)
 {
     (void)state;
@@ -413,7 +420,8 @@ static void a_body_of_another_format_is_told(void **state)
     bench_free(b);
 }
 
-/* Whatever the declared format: bytes of a picture are not taken for a number of facets. */
+/* The body is an image: whatever format is declared, the refusal says that it is no mesh, rather
+ * than taking its bytes for a number of facets. */
 static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
 {
     (void)state;
@@ -446,7 +454,8 @@ static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
     bench_free(b);
 }
 
-/* As curl -T sends it, and --data-binary. */
+/* curl -T sends no Content-Type, and --data-binary a generic one: for these, ?format= names the
+ * format. */
 static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
 {
     (void)state;

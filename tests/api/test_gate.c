@@ -1,7 +1,8 @@
-/* The gate works; and if any one of its checks is left out, the same tests notice.
+/* The gate, which decides whether the token of a request may do what it asks (api/request/gate.h),
+ * gives the right answers; and if any one of its checks is left out, the tests notice.
  *
- * The linker redirects the calls of each check (Makefile), so that a check can be left out in this
- * program. */
+ * The linker redirects the calls of each check to a wrapper (Makefile), so that this program can
+ * leave out one check at a time. */
 #include "tests/api/gate.h"
 
 #include "api/request/gate.h"
@@ -13,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* X(name, type of the result, parameters, arguments, result when it is left out) */
+/* X(name of the check, its return type, parameters, arguments, result if the check is left out) */
 #define CHECKS(X)                                                                                  \
     X(api_gate_enter, bool, (api_exchange * x), (x), true)                                         \
     X(api_gate_sees, bool, (const api_exchange *x, const char *mesh), (x, mesh), true)             \

@@ -1,4 +1,5 @@
-/* The arrays to draw, compared with the polygons of the mesh. */
+/* The arrays of GET .../geometry, from which a viewer draws, compared with the polygons of the
+ * mesh. */
 #include "tests/api/specimens.h"
 
 #include "unit/fixture.h"
@@ -34,7 +35,7 @@ static float float_at(const char *p)
     return value;
 }
 
-/* A parsed answer. */
+/* An answer of GET .../geometry, taken apart. */
 typedef struct arrays {
     bench_reply reply;
     uint64_t revision, layout;
@@ -81,7 +82,7 @@ static unsigned face_of(const arrays *a, unsigned triangle)
     return corner_of(a, triangle, 3) & ((1u << 29) - 1);
 }
 
-/* Returns the index of the half-edge of the face from -> to. */
+/* Returns which side of the face `f` goes from the vertex `from` to the vertex `to`. */
 static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned to)
 {
     for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -92,7 +93,8 @@ static unsigned side_of(const pg_mesh *pg, unsigned f, unsigned from, unsigned t
     return PG_NONE;
 }
 
-/* Adds half of the cross products of a face's triangles, in the mesh's own coordinates. */
+/* Adds the area vector of a triangle of a face, half of the cross product of two sides, in the
+ * coordinates of the mesh. */
 static void add_area(const pg_mesh *pg, const arrays *a, unsigned triangle, double sum[3])
 {
     const double *p = pg->position[corner_of(a, triangle, 0)];
@@ -177,7 +179,8 @@ static void edit(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* A deletion leaves a gap among the vertices and none among the triangles. */
+/* Deleting elements must leave a gap in the rows of the vertices, whose ids stay, and none in the
+ * triangles. */
 static void test_rows_keep_their_ids_when_others_die(void **state)
 {
     (void)state;
@@ -199,7 +202,7 @@ static void test_rows_keep_their_ids_when_others_die(void **state)
     bench_free(b);
 }
 
-/* An edit and its undo give the old rows: only the revision differs. */
+/* An edit followed by its undo must give the same rows as before: only the revision may differ. */
 static void test_undo_brings_the_same_rows(void **state)
 {
     (void)state;
@@ -265,13 +268,14 @@ static void test_refusals(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the answer is complete or a refusal. */
+/* Each allocation in turn fails: the service must give the complete answer or a refusal. */
 static void test_each_allocation_failing(void **state)
 {
     (void)state;
     pg_mesh pg;
     api_bench *b = bench_new();
-    /* A star-shaped polygon, which cannot be triangulated as a fan. */
+    /* This polygon is star-shaped and concave: a fan of triangles from one of its corners would be
+     * wrong. */
     pg_make(&pg, "01234567", 0);
     for (unsigned v = 0; v < 8; v++) {
         double radius = v % 2 == 0 ? 4 : 1, angle = v * acos(-1) / 4;

@@ -1,6 +1,9 @@
-/* Arrays updated by the changes of GET .../geometry?since=, compared with all rows fetched again.
+/* A client's arrays, updated by the changes in the answers of GET .../geometry?since=, must equal
+ * all rows fetched anew.
  *
- * EDITS (3000) and SEED (from the clock) come from the environment. */
+ * The environment gives EDITS, the number of random edits (default 3000), and SEED (default: from
+ * the clock). A layout is an arrangement of rows and slots; an answer of another layout has all
+ * rows. */
 #include "tests/api/arrays.h"
 #include "tests/writing.h"
 
@@ -46,7 +49,7 @@ static uint32_t any(world *w, const he_mesh *m, he_kind kind)
     return id;
 }
 
-/* The mesh that append adds, a vertex: made once. */
+/* Returns the mesh that the edit `append` adds, a single vertex; it is made once. */
 static const he_mesh *a_vertex(void)
 {
     static he_mesh *made;
@@ -121,8 +124,8 @@ static void fill_argument(world *w, const he_mesh *m, const he_param *p, he_arg 
     }
 }
 
-/* Runs one random operation with random arguments; most of those that are refused need special
- * places. */
+/* Runs one random operation with random arguments. Many attempts are refused, because many
+ * operations apply only to special places of a mesh. */
 static bool run_one(world *w, he_mesh *m, bool *barrier)
 {
     const he_op *op = he_op_at(md_below(&w->r, (uint32_t)he_op_count()));
@@ -224,7 +227,8 @@ static void end(world *w)
     bench_free(w->b);
 }
 
-/* Two clients: one asks often, one rarely. */
+/* Two clients follow random edits. One requests the changes after nearly every edit, the other
+ * after many: both must arrive at the rows that a new client fetches. */
 static void test_patched_arrays_equal_fresh_ones(void **state)
 {
     (void)state;
@@ -311,7 +315,8 @@ static void test_an_edit_costs_what_it_touched(void **state)
     arrays_update(w.b, "m", &c);
     post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":5}");
     bench_reply r = arrays_ask(w.b, "m", &c);
-    /* A vertex, and two quadrilaterals that became pentagons: four slots freed, six used. */
+    /* The poke added a vertex and made pentagons of two quadrilaterals; their triangles leave four
+     * slots and take six. */
     assert_int_equal(arrays_u32(r.body + 88), 1);
     assert_true(arrays_u32(r.body + 92) <= 10);
     assert_true(r.length <= HEADER + 16 + 16 + 48 + 160);
@@ -320,7 +325,8 @@ static void test_an_edit_costs_what_it_touched(void **state)
     end(&w);
 }
 
-/* The tag contains the revision, the layout, and the base of the changes. */
+/* The entity tag must contain the revision, the layout, and the revision since which the changes
+ * are listed. */
 static void test_tags(void **state)
 {
     (void)state;
@@ -375,7 +381,8 @@ static void test_hostile_parameters(void **state)
         assert_int_equal(r.status, 400);
         bench_reply_free(&r);
     }
-    /* A later revision is refused; of another layout nothing is known. */
+    /* A revision later than the newest is refused. If the client names another layout, its revision
+     * says nothing, and it gets all rows. */
     arrays ahead = {.revision = c.revision + 1, .layout = c.layout};
     bench_reply r = arrays_ask(w.b, "m", &ahead);
     assert_int_equal(r.status, 400);
@@ -385,7 +392,8 @@ static void test_hostile_parameters(void **state)
     assert_int_equal(r.status, 200);
     assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
-    /* Changes before the slots were made are not known. */
+    /* The service knows no changes from before the first request for arrays, which made the slots:
+     * it must answer with all rows. */
     poke(w.b, 0);
     poke(w.b, 1);
     put(w.b, starts[1]);
@@ -418,7 +426,8 @@ static void test_a_layout_ends_when_it_must(void **state)
     arrays c = {0};
     arrays_update(w.b, "m", &c);
     uint64_t first = c.layout;
-    /* Faces added and removed, undo and redo, a vertex that stays inside. */
+    /* These edits keep the layout: faces added and removed, undo and redo, and a vertex moved
+     * within the sphere around the mesh. */
     assert_true(layout_after(&w, &c, "{\"op\":\"face_delete\",\"faces\":[1,2,3,4,5]}") == first);
     post(w.b, "/v1/meshes/m/undo", NULL);
     arrays_update(w.b, "m", &c);
@@ -426,22 +435,24 @@ static void test_a_layout_ends_when_it_must(void **state)
     assert_true(layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,0.01]}") ==
                 first);
     assert_true(c.whole == 1);
-    /* A vertex that leaves the ball. */
+    /* A vertex that leaves the sphere around the mesh, to which coordinates are relative, begins a
+     * new layout. */
     uint64_t second =
         layout_after(&w, &c, "{\"op\":\"vertex_move\",\"vertex\":3,\"by\":[0,0,100]}");
     assert_true(second != first);
-    /* More than half of the vertices move, for which another frame is better. */
+    /* More than half of the vertices move, so a new layout, with coordinates relative to the new
+     * extent, is better. */
     uint64_t third = layout_after(
         &w, &c, "{\"op\":\"transform\",\"matrix\":[0.01,0,0,0,0,0.01,0,0,0,0,0.01,0,0,0,0,1]}");
     assert_true(third != second);
-    /* Renumbering, and a replacement. */
+    /* `compact`, which renumbers, and a replacement of the mesh begin a new layout. */
     uint64_t fourth = layout_after(&w, &c, "{\"op\":\"compact\"}");
     assert_true(fourth != third);
     put(w.b, starts[1]);
     arrays_update(w.b, "m", &c);
     uint64_t fifth = c.layout;
     assert_true(fifth != fourth);
-    /* More than half of the slots without a face. */
+    /* When more than half of the slots for triangles have no face, a new layout begins. */
     for (int face = 0; face < 48; face += 12) {
         char body[200];
         int used = snprintf(body, sizeof body, "{\"op\":\"face_delete\",\"faces\":[%d", face);
@@ -457,7 +468,8 @@ static void test_a_layout_ends_when_it_must(void **state)
     end(&w);
 }
 
-/* A mesh too large for a worker: the answer is equal. */
+/* The mesh is so large that the answer is made in the pool and not by a worker: it must be the
+ * same. */
 static void test_a_large_mesh(void **state)
 {
     (void)state;
@@ -468,7 +480,7 @@ static void test_a_large_mesh(void **state)
     poke(w.b, 77);
     arrays_update(w.b, "m", &c);
     assert_true(c.whole == 1 && c.changes == 1 && c.bytes < 300);
-    /* Many rows, but not most. */
+    /* The transform changes many rows, but not most of them: it must be answered as changes. */
     post(w.b, "/v1/meshes/m/edits",
          "{\"op\":\"transform\",\"matrix\":[1,0,0,0.001,0,1,0,0,0,0,1,0,0,0,0,1]}");
     arrays_update(w.b, "m", &c);
@@ -479,7 +491,8 @@ static void test_a_large_mesh(void **state)
     end(&w);
 }
 
-/* A face whose triangles take long is drawn by another thread, from a snapshot. */
+/* A face with many corners takes long to triangulate, so the pool does it from a snapshot of the
+ * mesh. */
 static void test_a_face_of_many_corners(void **state)
 {
     (void)state;
@@ -514,7 +527,8 @@ static void test_a_face_of_many_corners(void **state)
 
 /* --- memory --- */
 
-/* Each allocation in turn fails: the answer is complete or a refusal, and the slots still work. */
+/* Each allocation in turn fails: the service must give the complete answer or a refusal, and later
+ * answers must be right. */
 static void test_each_allocation_failing(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The history of a mesh: undo, redo and steps to a revision, and the answers when the budget cuts
- * the history. */
+/* The history of a mesh: undo, redo and steps to a revision, and what the API answers when the
+ * memory budget of the history has removed old entries. */
 #include "tests/api/history.h"
 
 #include "mesh/walk.h"
@@ -26,7 +26,8 @@ static uint64_t head_of(api_bench *b)
     return revision;
 }
 
-/* Dumps every element with all links and values, and the document. `revision` 0 is the present. */
+/* Returns every element with all its links and values, and the document of the mesh, at a revision;
+ * 0 is the present one. */
 static char *dump(api_bench *b, uint64_t revision)
 {
     static const char *const parts[] = {"vertices", "halfedges", "edges", "faces", "content"};
@@ -116,8 +117,8 @@ static const cJSON *set_of(const bench_reply *r, const char *set, he_kind kind)
     return cJSON_GetObjectItemCaseSensitive(sets, he_kind_plural(kind));
 }
 
-/* Created and deleted must be exactly the elements that are live on one side only; a vertex that
- * moved must be modified. */
+/* The sets `created` and `deleted` of the answer must be exactly the elements that are live after
+ * or before only; a vertex that moved must be in `modified`. */
 static void check_sets(const bench_reply *r, const he_mesh *before, const he_mesh *after)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -144,7 +145,8 @@ static void check_sets(const bench_reply *r, const he_mesh *before, const he_mes
 
 /* --- random histories --- */
 
-/* The expected state of the server: edits done and undone, by the revision that made them. */
+/* What the test expects of the server: the edits that are done and undone, by the revision that
+ * made them. */
 typedef struct model {
     uint64_t head;
     uint64_t done[MOST], undone[MOST];
@@ -176,7 +178,7 @@ static void redo_one(model *m)
     m->state[++m->head] = top(m);
 }
 
-/* Returns the number of steps to a state; -1: unreachable. */
+/* Returns the number of undo or redo steps to a state; -1: the state cannot be reached by them. */
 static int steps_to(const model *m, bool undo, uint64_t state)
 {
     if (state == top(m)) {
@@ -196,7 +198,8 @@ static int steps_to(const model *m, bool undo, uint64_t state)
     return -1;
 }
 
-/* Revisions in between that a request made exist only when they are requested. */
+/* A request of several steps makes one revision. The revisions in between exist only if the request
+ * asks for them one by one. */
 static void take_steps(api_bench *b, model *m, bool undo, int steps, bench_reply r,
                        const he_mesh *before)
 {
@@ -309,7 +312,8 @@ static void every_revision_stays_what_it_was(void **state)
     while (m->done_count == 0) {
         edit_once(b, m, &random);
     }
-    /* All the way back, all the way forward, comparing at each depth. */
+    /* Undoes all steps and then redoes all of them, comparing the mesh after each step with what it
+     * was then. */
     he_mesh *end = content_of(b);
     size_t deepest = m->done_count + m->undone_count;
     while (m->undone_count > 0 && m->head < MOST - 40) {
@@ -326,7 +330,8 @@ static void every_revision_stays_what_it_was(void **state)
     char *again = dump(b, 0);
     assert_string_equal(again, last);
     printf("note: %" PRIu64 " revisions, %zu steps deep\n", m->head, deepest);
-    /* In any order: what was read then is read now. */
+    /* Reads the earlier revisions in a mixed order: each must read as it did when it was the
+     * present one. */
     for (uint64_t i = 0; i < m->head; i++) {
         uint64_t revision = 1 + (i * 37 + 11) % m->head;
         char *then = dump(b, revision);
@@ -411,7 +416,7 @@ static void the_history_stays_within_its_budget_and_says_so(void **state)
     bench_free(b);
 }
 
-/* Adds `edits` vertices; returns how many steps can be undone. */
+/* Adds one vertex in each of `edits` edits; returns how many steps can be undone. */
 static uint32_t fill_history(api_bench *b, int edits)
 {
     bench_done(
@@ -427,8 +432,8 @@ static uint32_t fill_history(api_bench *b, int edits)
     return left;
 }
 
-/* Makes steps; the stacks in the answer must be those in the history right afterwards, `undo` and
- * `redo`. */
+/* Makes undo or redo steps, which must leave `undo` and `redo` steps possible; the answer must
+ * report the same numbers as the history right afterwards. */
 static void expect_stacks(api_bench *b, const char *which, uint32_t steps, uint32_t undo,
                           uint32_t redo)
 {
@@ -463,8 +468,8 @@ static void all_that_was_undone_in_a_full_history_can_be_done_again(void **state
     bench_free(b);
 }
 
-/* The entries of undos displace the oldest entries, and with these the oldest steps to undo: never
- * one to redo. */
+/* Each undo adds an entry to the history. When the budget is full, new entries displace the oldest
+ * ones and with them the oldest steps to undo, but must never displace a step to redo. */
 static void an_undo_never_costs_a_redo(void **state)
 {
     (void)state;
@@ -487,7 +492,8 @@ static void an_undo_never_costs_a_redo(void **state)
     bench_free(b);
 }
 
-/* After undo, the step of a subdivision holds the fine mesh, which alone exceeds the budget. */
+/* After the undo of a subdivision, its step keeps the fine mesh for redo, which alone exceeds the
+ * budget: it must not be dropped for that. */
 static void what_an_edit_made_does_not_count_against_its_redo(void **state)
 {
     (void)state;
@@ -508,7 +514,8 @@ static void what_an_edit_made_does_not_count_against_its_redo(void **state)
         assert_int_equal(history_number(r.json, "undo"), 1);
         bench_done(r);
     }
-    /* When it cannot be redone it counts with what it holds, and is dropped. */
+    /* A new edit ends the possibility to redo; now the fine mesh counts toward the budget and must
+     * be dropped. */
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/c/undo", NULL)));
     bench_done(bench_expect(
         200, bench_post(b, "/v1/meshes/c/edits", "{\"op\":\"face_poke\",\"face\":0}")));
@@ -565,7 +572,7 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     } rows[] = {
         {"undo", "{\"to_revision\":9}", 422, "no_such_revision"},
         {"redo", "{\"to_revision\":9}", 422, "no_such_revision"},
-        {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"}, /* redo leads there */
+        {"undo", "{\"to_revision\":3}", 409, "unreachable_revision"}, /* only redo leads there */
         {"redo", "{\"to_revision\":1}", 409, "unreachable_revision"},
         {"undo", "{\"steps\":2}", 409, "nothing_to_undo"},
         {"redo", "{\"steps\":2}", 409, "nothing_to_redo"},
@@ -590,11 +597,12 @@ static void steps_that_cannot_be_taken_change_nothing(void **state)
     assert_string_equal(before, after);
     free(before);
     free(after);
-    /* Undo to the present state makes no step and no revision. */
+    /* Undo to a revision with the present state makes no step and no new revision. */
     bench_reply r = bench_expect(200, history_post(b, "undo", "{\"to_revision\":2}"));
     assert_int_equal(history_number(r.json, "revision"), 4);
     bench_done(r);
-    /* A state that was undone and replaced by other edits can be read, but not reached by steps. */
+    /* A state that was undone and then replaced by other edits can be read, but no undo or redo
+     * leads to it. */
     bench_done(bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}")));
     r = bench_expect(409, history_post(b, "undo", "{\"to_revision\":3}"));
     assert_string_equal(history_code(&r), "unreachable_revision");
@@ -627,7 +635,7 @@ static void a_finer_mesh_is_one_step_of_the_history(void **state)
     bench_done(bench_expect(200, history_post(b, "redo", "{\"steps\":2}")));
     char *again = dump(b, 0);
     assert_string_equal(again, after);
-    /* Ids that it issued are not issued again. */
+    /* Ids issued by the undone edits must not be issued again. */
     bench_done(bench_expect(200, history_post(b, "undo", "{\"steps\":3}")));
     r = bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
     const cJSON *results = cJSON_GetObjectItem(r.json, "results");

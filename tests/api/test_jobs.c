@@ -1,5 +1,5 @@
-/* Work that outlives its request: each state of a job, and the effects of a long edit on other
- * requests. Jobs run when a test says so; there are no threads. */
+/* Jobs, which continue after their request is answered: each state of a job, and the effects of a
+ * long edit on other requests. Jobs run when a test calls them; there are no threads. */
 #include "tests/api/request.h"
 
 #include "api/header/prefer.h"
@@ -55,7 +55,7 @@ static void send(int status, const char *method, const char *target, const char 
     bench_reply_free(&r);
 }
 
-/* Submits a job; its path goes to `path`. */
+/* Submits a job; `path` becomes its path. */
 static void submit(const char *method, const char *target, const char *body, char path[64])
 {
     bench_reply r = expect(202, method, target, async, body);
@@ -74,7 +74,7 @@ static bench_reply job_in(const char *path, const char *state)
     return r;
 }
 
-/* Returns a member of a member of the job. */
+/* Returns the member `inner` of the member `outer` of the job. */
 static const cJSON *inside(const bench_reply *r, const char *outer, const char *inner)
 {
     const cJSON *found = cJSON_GetObjectItem(cJSON_GetObjectItem(r->json, outer), inner);
@@ -148,7 +148,7 @@ static void what_is_wrong_with_the_request_is_said_at_once(void **state)
     bench_reply_free(&r);
     r = expect(412, "POST", "/v1/meshes/m/copy", stale, NULL);
     bench_reply_free(&r);
-    send(200, "POST", "/v1/meshes/m/edits", POKE); /* nobody holds it */
+    send(200, "POST", "/v1/meshes/m/edits", POKE); /* no job claims the mesh */
 }
 
 static void preconditions_are_asked_again_at_the_end(void **state)
@@ -198,7 +198,8 @@ static void beyond_the_queue_jobs_are_refused(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "too_many_jobs");
     assert_string_not_equal(bench_header(&r, "Retry-After"), "");
     bench_reply_free(&r);
-    /* A claim for which the queue has no space is released. */
+    /* An edit claims its mesh while it waits as a job. If the queue has no space for the job, the
+     * claim must be released. */
     send(201, "PUT", "/v1/meshes/m", LARGE);
     r = expect(503, "POST", "/v1/meshes/m/edits", async, TRANSFORM);
     bench_reply_free(&r);
@@ -230,7 +231,8 @@ static void jobs_are_listed_in_pages(void **state)
     send(400, "GET", "/v1/jobs?cursor=m1", NULL);
 }
 
-/* Requires a refusal because of this job, which it names. */
+/* Requires that the request is refused because this job claims the mesh, and that the refusal names
+ * the job. */
 static void expect_named(const char *job, const char *method, const char *target, const char *body)
 {
     bench_reply r = expect(409, method, target, NULL, body);
@@ -324,7 +326,8 @@ static void a_refused_long_edit_gives_the_mesh_back(void **state)
     bench_reply_free(&r);
 }
 
-/* The answers are still being read, and their exchanges exist. */
+/* The answers to the long edits are ready but the clients still read them: the mesh must not stay
+ * claimed until they have. */
 static void who_has_the_answer_to_a_long_edit_may_write(void **state)
 {
     (void)state;
@@ -379,7 +382,7 @@ static void compact_as_a_job_ends_the_undo_stack(void **state)
     bench_reply_free(&r);
 }
 
-/* Because of what it makes, not what it starts with. */
+/* The mesh is small, but the result of the subdivision is large, so the edit must run as a job. */
 static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
 {
     (void)state;
@@ -396,7 +399,8 @@ static void a_mesh_that_grows_large_is_refined_by_a_job(void **state)
     send(410, "GET", "/v1/meshes/m/faces/6", NULL);
 }
 
-/* Without a job; the mesh is free afterwards. */
+/* The refinements would need more ids than there are: they must be refused before a job begins, and
+ * the mesh must not stay claimed. */
 static void more_steps_than_ids_allow_are_refused_at_once(void **state)
 {
     (void)state;
@@ -430,7 +434,8 @@ static void a_dry_run_changes_nothing_as_a_job_either(void **state)
     bench_reply_free(&r);
 }
 
-/* Unless it says otherwise, a client waits at most for a second of work. */
+/* An edit whose estimated time is above a second becomes a job, unless the client says how long it
+ * waits. */
 static void what_is_estimated_above_a_second_becomes_a_job(void **state)
 {
     (void)state;
@@ -488,7 +493,7 @@ static size_t read_some(const api_source *live, char *text, size_t size, int64_t
     return length;
 }
 
-/* Begins to listen to a job; the caller frees the exchange. */
+/* Begins to listen to the events of a job; the caller must free the exchange. */
 static api_exchange *listen_to(const char *job, const api_source **live)
 {
     char path[80];
@@ -503,7 +508,8 @@ static api_exchange *listen_to(const char *job, const api_source **live)
     return x;
 }
 
-/* Another mesh that got the id of a job's mesh has nothing to do with that job. */
+/* The mesh of a job is deleted, and another mesh gets its id: listeners of the new mesh must get no
+ * events about the job. */
 static void a_job_is_told_to_followers_of_its_own_mesh_only(void **state)
 {
     (void)state;
@@ -547,7 +553,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "\"queued\""));
     assert_int_equal(wakes, 0);
     bench_run_jobs(bench, 1);
-    assert_int_equal(wakes, 1); /* and not again before it was read */
+    assert_int_equal(wakes, 1); /* a listener is woken once, until it reads */
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
     assert_non_null(strstr(text, "\"state\":\"done\""));
@@ -555,7 +561,7 @@ static void a_listener_hears_of_each_state_and_then_the_end(void **state)
     assert_non_null(strstr(text, "event: bye\ndata: {\"reason\":\"ended\"}"));
     api_free(x);
 
-    /* A late listener gets the end at once. */
+    /* A listener that comes after the end of the job gets the final event at once. */
     x = listen_to(path, &live);
     read_some(live, text, sizeof text, &last);
     assert_int_equal(last, 0);
@@ -581,7 +587,7 @@ static void a_listener_is_told_that_the_server_stops(void **state)
     bench_run_jobs(bench, 1); /* a listener that left is not woken */
 }
 
-/* --- without memory --- */
+/* --- when an allocation fails --- */
 
 static struct {
     long calls, fail_at;
@@ -612,8 +618,8 @@ static const char *state_of(const char *path, char out[16])
     return out;
 }
 
-/* The N-th allocation fails, at submission or in the job: the client is refused, or the job fails
- * and the mesh is unchanged, or everything succeeds. */
+/* Each allocation in turn fails, while the job is submitted or while it runs: the request is
+ * refused, or the job fails and leaves the mesh as it was, or everything succeeds. */
 static void starve(const char *method, const char *target, const char *body)
 {
     bool reached = true;
@@ -642,7 +648,7 @@ static void starve(const char *method, const char *target, const char *body)
             assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
             bench_reply_free(&r);
         }
-        /* Whatever happened, the mesh can be written. */
+        /* After each of these outcomes the mesh must be writable. */
         send(200, "POST", "/v1/meshes/m/edits", POKE);
         bench_free(bench);
         bench = NULL;

@@ -1,4 +1,5 @@
-/* Idempotency-Key: executed once, answered equally each time. */
+/* A request with an Idempotency-Key is executed once and answered equally each time it is
+ * repeated. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -30,7 +31,7 @@ static int revision(api_bench *b)
     return value;
 }
 
-/* A mesh with something to undo and something to redo. */
+/* Creates a mesh with one step to undo and one to redo. */
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
@@ -90,7 +91,8 @@ static void a_write_is_done_once_and_answered_twice(void **state)
         for (size_t h = 0; h < sizeof headers / sizeof *headers; h++) {
             assert_string_equal(bench_header(&first, headers[h]), bench_header(&again, headers[h]));
         }
-        /* The repeated answer is also held back until it is durable. */
+        /* The repeated answer, like the first one, must be held back until the change is
+         * durable. */
         const st_shown *shown = &api_answer_of(first.exchange)->shown;
         assert_true(shown->position > 0 && shown->incarnation != 0);
         assert_memory_equal(shown, &api_answer_of(again.exchange)->shown, sizeof *shown);
@@ -118,7 +120,8 @@ static void a_key_is_of_one_request(void **state)
             bench_send(b, "PATCH", "/v1/meshes/m",
                        (const char *const[]){"Idempotency-Key", "k", NULL}, "{}"));
     assert_int_equal(revision(b), now);
-    /* Keys with other names, of another mesh, and of the store are independent. */
+    /* A key is one of its mesh, and keys for creating meshes are of the store: with another name or
+     * for another mesh, a key is independent of this one. */
     bench_done(bench_expect(
         200, keyed(b, "POST", "/v1/meshes/m/edits", "K", "{\"op\":\"face_poke\",\"face\":2}")));
     bench_done(bench_expect(201, keyed(b, "POST", "/v1/meshes?id=n", "k", "{\"shape\":\"cube\"}")));
@@ -183,7 +186,8 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 2);
 
-    /* The creation was answered, and is not done again. */
+    /* The request that created the deleted mesh is repeated: it gets the answer of the first time,
+     * and no mesh is created. */
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     r = bench_expect(201, keyed(b, "POST", "/v1/meshes?id=m", "new", "{\"shape\":\"cube\"}"));
     assert_string_equal(bench_header(&r, "Location"), "/v1/meshes/m");
@@ -193,7 +197,8 @@ static void undo_forgets_no_key_and_removal_all(void **state)
     bench_free(b);
 }
 
-/* Its body is not kept, but the fact that it was done is. */
+/* If the answer is huge, only the fact that the request was executed is kept, and the repeated
+ * request is answered without a body. */
 static void a_huge_answer_is_given_again_without_its_body(void **state)
 {
     (void)state;
@@ -259,7 +264,7 @@ static void a_job_that_came_to_nothing_gives_its_key_back(void **state)
     refused(503, "too_many_jobs", keyed_job(b, poke));
     bench_done(bench_expect(200, keyed(b, "POST", "/v1/meshes/m/edits", "k", poke)));
     assert_int_equal(revision(b), 6);
-    /* The mesh, with its keys, may be deleted while one is in use. */
+    /* A mesh may be deleted, which deletes its keys, while a job uses one of these keys. */
     bench_limit_jobs(b, 1);
     bench_done(bench_expect(202, bench_send(b, "POST", "/v1/meshes/m/edits",
                                             (const char *const[]){"Idempotency-Key", "other",

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-/* The SHA-256 of "test" and of "prueba". */
+/* The SHA-256 hashes of the tokens "test" and "prueba". */
 #define TEST   "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 #define PRUEBA "sha256:655e786674d9d3e77bc05ed1de37b4b6bc89f788829f9f3c679e7687b410c89b"
 #define ALICE  "alice admin " TEST
@@ -70,7 +70,8 @@ static void an_address_has_its_requests_and_then_waits(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"requests\";r=0;t=2");
     assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
     expect_code(r, 429, "rate_limit", "the address may have 2 requests a second");
-    /* Every request, except those of monitoring. */
+    /* The limit applies to every request, even to an unknown path or method, except to those for
+     * monitoring. */
     expect(b, 429, "/nowhere");
     expect(b, 429, "/v1/openapi.json");
     expect_code(bench_send(b, "BREW", "/v1/meshes", NULL, NULL), 429, "rate_limit", "2 requests");
@@ -128,14 +129,14 @@ static void bytes_are_counted_both_ways_and_a_debt_is_waited_for(void **state)
     assert_string_equal(bench_header(&r, "RateLimit"), "\"bytes\";r=200;t=0");
     const uint64_t taken = sizeof cube - 1 + r.length;
     bench_done(r);
-    assert_true(taken > 200); /* so the answer made a debt */
+    assert_true(taken > 200); /* the answer took more than the bucket held */
     const uint64_t wait = (taken - 200) / 100 + 1;
     r = bench_expect(429, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(strtoull(bench_header(&r, "Retry-After"), NULL, 10), wait);
     assert_true(strncmp(bench_header(&r, "RateLimit"), "\"bytes\";r=0;t=", 14) == 0);
     expect_code(r, 429, "rate_limit", "the address may have 100 bytes a second");
     for (int i = 0; i < 50; i++) {
-        expect(b, 429, "/v1/meshes/m"); /* a refusal costs it nothing */
+        expect(b, 429, "/v1/meshes/m"); /* a refused request takes nothing from the bucket */
     }
     pass_seconds(wait);
     bench_done(
@@ -169,7 +170,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
     pass_seconds(10);
     bench_done(bench_expect(404, bench_send(b, "HEAD", "/v1/meshes/none", NULL, NULL)));
     pass_seconds(10);
-    api_charge(x, 200); /* the answer */
+    api_charge(x, 200); /* the bytes of the answer */
     expect(b, 429, "/v1/meshes");
     api_free(x);
     pass_seconds(10);
@@ -182,7 +183,7 @@ static void a_body_is_charged_as_it_comes_and_a_stream_as_it_is_sent(void **stat
         status = r.status;
         bench_done(r);
     }
-    assert_int_equal(status, 429); /* each gets its opening and closing messages */
+    assert_int_equal(status, 429); /* the opening and closing messages are counted, too */
     assert_true(streams > 1);
     bench_free(b);
 }
@@ -203,7 +204,8 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
         expect(b, 200, "/v1/meshes");
     }
     expect(b, 429, "/v1/meshes");
-    /* A client without a token, or with unknown ones, is an address. */
+    /* A request without a token, or with an unknown one, is counted for the address of the
+     * client. */
     bench_use_address(b, 6, false);
     bench_use_token(b, NULL);
     for (int i = 0; i < 6; i++) {
@@ -274,7 +276,7 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     bench_reply r = bench_expect(429, bench_send(b, "GET", check, async, NULL));
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     expect_code(r, 429, "too_many_jobs_of_token", "2 jobs of the token may wait or run");
-    bench_done(bench_expect(200, bench_get(b, check))); /* a job is not all there is */
+    bench_done(bench_expect(200, bench_get(b, check))); /* only jobs are limited */
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));
     bench_run_jobs(b, 1);
@@ -301,8 +303,8 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
     expect_code(bench_post(b, "/v1/meshes/m/copy", NULL), 507, "quota", "2 meshes");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the meshes that the token made may take 20000 bytes");
-    /* Writes of another token count for the token that made the mesh; the message does not say what
-     * that token's quota is. */
+    /* The quota of the token that created a mesh also limits what other tokens write to it; the
+     * message must not say how large that token's quota is. */
     bench_use_token(b, "prueba");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
                 "the token that made this one");

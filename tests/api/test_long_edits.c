@@ -1,5 +1,5 @@
-/* Long edits beside everything else that happens to a mesh: the events that listeners get, and the
- * history. */
+/* Long edits together with everything else that happens to a mesh: the events that listeners get,
+ * and the history. */
 #include "tests/api/stream.h"
 
 #include "api/job/job_table.h"
@@ -24,7 +24,7 @@ static int send(api_bench *b, const char *method, const char *target, const char
     return status;
 }
 
-/* Expects 202; the caller frees the exchange. */
+/* Submits a job and requires that it is accepted (202); the caller must free the exchange. */
 static api_exchange *submit(api_bench *b, const char *path, const char *body)
 {
     api_request request = {
@@ -66,7 +66,8 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     assert_string_equal(stream_next(l, false), "edit");
     assert_int_equal(stream_number(l, "revision"), 3);
     assert_job(l, "done");
-    /* One that fails, one that makes another mesh, and one that never begins. */
+    /* Three more jobs: one fails, one creates another mesh, and one is cancelled before it
+     * begins. */
     api_free(submit(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":99}"));
     bench_run_jobs(b, 1);
     assert_job(l, "running");
@@ -86,7 +87,8 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
     assert_job(l, "cancelled");
     bench_run_jobs(b, 1);
     assert_string_equal(stream_next(l, false), "");
-    /* Deleted during a job: the stream has ended. */
+    /* The mesh is deleted while the job waits: the stream of events about the mesh ends, and the
+     * end of the job is not reported in it. */
     api_free(submit(b, "/v1/meshes/m/edits", poke));
     assert_int_equal(send(b, "DELETE", "/v1/meshes/m", NULL), 204);
     bench_run_jobs(b, 1);
@@ -100,7 +102,7 @@ static void jobs_of_a_mesh_are_told_as_they_begin_and_end(void **state)
 
 enum { REVISIONS = 80, SOME = 6 };
 
-/* Large enough that edits of the whole mesh claim it and publish a copy. */
+/* Creates a mesh so large that an edit of all of it claims the mesh and publishes a copy. */
 static void put_large(api_bench *b)
 {
     int status =
@@ -165,8 +167,8 @@ static void do_something(api_bench *b, md_random *random, int turn)
     }
 }
 
-/* Copies the new revisions, each as it reads back; the newest must equal the mesh. Some of the
- * earlier ones are read once more. */
+/* Copies the revisions made since `known`, each as it is read now; the newest one must equal the
+ * mesh. Some of the earlier revisions are read once more. */
 static uint64_t note_revisions(api_bench *b, he_mesh *copies[REVISIONS], uint64_t known)
 {
     st_mesh *mesh = stream_mesh(b);

@@ -1,11 +1,11 @@
-/* Measures, rays, nearest points and self-intersections in POST .../query. */
+/* The questions of POST .../query about measures, rays, nearest points and self-intersections. */
 #include "tests/api/specimens.h"
 
 static const double PI = 3.14159265358979323846;
 
 static const char QUERY[] = "/v1/meshes/m/query";
 
-/* Creates a mesh named m. */
+/* Creates the mesh "m". */
 static void put(api_bench *b, const char *body)
 {
     bench_reply r = bench_send(b, "PUT", "/v1/meshes/m", NULL, body);
@@ -13,7 +13,7 @@ static void put(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* Returns the answer to one question, which is in `r`. */
+/* Returns the answer to one question; it belongs to the reply `r`. */
 static const cJSON *ask(api_bench *b, const char *question, bench_reply *r)
 {
     char body[2048];
@@ -94,7 +94,7 @@ static void vectors_have_three_components(void **state)
     expect_answer(
         b, "{\"measure\":\"normal\",\"of\":{\"vertices\":\"all\"},\"weights\":\"uniform\"}",
         "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,1],[0,0,1],[0,0,1]]}");
-    /* The boundary half-edge 1 is no corner. */
+    /* The half-edge 1 is on the boundary and so has no corner of a face: its normal is 0. */
     expect_answer(b, "{\"measure\":\"normal\",\"of\":{\"halfedges\":[0,1]},\"crease\":0}",
                   "{\"measure\":\"normal\",\"components\":3,\"values\":[[0,0,1],[0,0,0]]}");
     expect_answer(b, "{\"measure\":\"area\",\"of\":{\"faces\":[]}}",
@@ -248,7 +248,7 @@ static void a_mesh_that_changes_is_asked_anew(void **state)
 static void faces_that_meet_are_listed_up_to_a_limit(void **state)
 {
     (void)state;
-    /* Three intersecting triangles. */
+    /* The mesh has three triangles that intersect each other. */
     static const char star[] = "{\"vertices\":[[-2,-1,0],[2,-1,0],[0,2,0],[0,-2,-1],[0,2,-1],"
                                "[0,0,2],[-1,0,-2],[-1,0,2],[2,0,0]],"
                                "\"faces\":[[0,1,2],[3,4,5],[6,7,8]]}";
@@ -263,7 +263,8 @@ static void faces_that_meet_are_listed_up_to_a_limit(void **state)
     bench_free(b);
 }
 
-/* A thousand triangles in one place: all questions but the first pay for their steps. */
+/* A thousand triangles lie in one place, so a question has to visit all of them. The steps of all
+ * questions in a request count toward one budget; the first question is always answered. */
 static void crowded_places_have_a_budget(void **state)
 {
     (void)state;
@@ -290,7 +291,7 @@ static void crowded_places_have_a_budget(void **state)
     assert_true(in(found, "total")->valuedouble >= 1 << 20);
     assert_true(cJSON_IsFalse(in(found, "complete")));
     bench_reply_free(&r);
-    /* Each visits two or three thousand boxes. */
+    /* Each of the rays visits two or three thousand bounding boxes. */
     enum { RAYS = 9000, RAYS_TEXT = RAYS * 64 };
     char *rays = malloc(RAYS_TEXT);
     assert_non_null(rays);
@@ -317,8 +318,8 @@ static void crowded_places_have_a_budget(void **state)
 
 /* --- far vertices --- */
 
-/* Returns the answer to a request about a cube with an isolated vertex that far away, or at the
- * origin for 0, where it is also on no face. */
+/* Returns the answer to a request about a cube with an isolated vertex at the distance `far`; for 0
+ * the vertex is at the origin, where it is inside the cube and on no face. */
 static bench_reply ask_cube(api_bench *b, double far, const char *method, const char *target,
                             const char *body)
 {

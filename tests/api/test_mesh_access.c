@@ -1,4 +1,4 @@
-/* A handler that reads is called once, with its mesh in x->content. */
+/* A handler that reads is called once per request, with the state of its mesh in x->content. */
 #include "tests/api/request.h"
 
 #include "api/request/mesh_access.h"
@@ -91,7 +91,7 @@ static const api_route rows[] = {
 
 /* --- requests --- */
 
-/* A mesh of six faces at revision 1 and of nine at 2. */
+/* Makes a bench with a mesh that has six faces at revision 1 and nine at revision 2. */
 static api_bench *bench_of_two_revisions(void)
 {
     api_bench *b = bench_new();
@@ -101,7 +101,8 @@ static api_bench *bench_of_two_revisions(void)
     return b;
 }
 
-/* Returns the status; `*step` is the state of the request after the worker. */
+/* Sends a request to a route of the test's table. Returns the status; `*step` becomes the state of
+ * the request after the worker. */
 static int ask(api_service *service, const char *word, const char *query, const char *tag,
                api_step *step)
 {
@@ -234,7 +235,7 @@ static void rows_that_read_content_say_so(void **state)
 
 /* --- two requests make slots at the same time --- */
 
-static api_bench *interrupted; /* its slots are made while another request makes some */
+static api_bench *interrupted; /* another request makes slots while this one does */
 static uint64_t others_layout;
 
 static uint64_t layout_of(const bench_reply *r)

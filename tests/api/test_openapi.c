@@ -1,4 +1,5 @@
-/* The served OpenAPI document is consistent and agrees with the tables. */
+/* The OpenAPI document that the service serves is consistent, and agrees with the tables of routes
+ * and operations. */
 #include "tests/api/request.h"
 
 #include "algo/shape.h"
@@ -21,7 +22,7 @@ static const cJSON *member(const cJSON *object, const char *name)
     return found;
 }
 
-/* "#/components/GROUP/NAME" */
+/* Returns what a reference "#/components/GROUP/NAME" names. */
 static const cJSON *resolve(const cJSON *root, const char *reference)
 {
     char group[32], name[64];
@@ -29,7 +30,8 @@ static const cJSON *resolve(const cJSON *root, const char *reference)
     return member(member(member(root, "components"), group), name);
 }
 
-/* Follows every reference below `at`, and marks the schemas reached. */
+/* Follows every reference below `at`, counts the references, and marks the schemas that they
+ * reach. */
 static void follow(const cJSON *root, cJSON *at, size_t *references)
 {
     cJSON *child;
@@ -92,7 +94,8 @@ static void shapes_are_those_of_the_table(void **state)
     bench_free(b);
 }
 
-/* A schema must not list members that the body may not have. */
+/* Each member that the schema of a request lists must be known to the service: with a value of the
+ * wrong type it is refused as a wrong type and not as an unknown member. */
 static void bodies_take_what_their_schemas_list(void **state)
 {
     (void)state;
@@ -115,7 +118,7 @@ static void bodies_take_what_their_schemas_list(void **state)
         {
             snprintf(body, sizeof body, "{\"%s\":false}", property->string);
             bench_reply a = bench_send(b, bodies[i].method, bodies[i].target, NULL, body);
-            /* Known, and of another type. */
+            /* The refusal shows that the service knows the member and expects another type. */
             assert_int_equal(a.status, 400);
             assert_string_equal(member(a.json, "code")->valuestring, "wrong_type");
             bench_reply_free(&a);
@@ -125,7 +128,7 @@ static void bodies_take_what_their_schemas_list(void **state)
     bench_free(b);
 }
 
-/* Does the list, whose names are separated by ", ", contain this one? */
+/* Returns whether the list of exposed headers, separated by ", ", contains this one. */
 static bool is_exposed(const char *name)
 {
     size_t length = strlen(name);
@@ -137,7 +140,8 @@ static bool is_exposed(const char *name)
     return found;
 }
 
-/* Every member of every object called "headers" is a header of some answer. */
+/* Requires that each header which the document lists for an answer is exposed to scripts in
+ * browsers (Access-Control-Expose-Headers); returns how many there are. */
 static unsigned expect_exposed(const cJSON *at)
 {
     unsigned count = 0;

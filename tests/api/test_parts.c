@@ -1,4 +1,5 @@
-/* Meshes from several files in one body: a .gltf with its .bin, an OBJ with its library. */
+/* Meshes that consist of several files in one multipart body: a .gltf with its .bin, an OBJ with
+ * its library of materials. */
 #include "base/mem.h"
 #include "tests/api/request.h"
 #include "tests/codings.h"
@@ -19,7 +20,7 @@ static const char type[] = "multipart/form-data; boundary=" BOUNDARY;
 typedef struct file {
     const char *name, *type;
     const char *bytes;
-    size_t length; /* 0: a text */
+    size_t length; /* 0: `data` is a text */
 } file;
 
 enum { MOST_FILES = 4, MOST_BODY = 4096 };
@@ -73,7 +74,7 @@ static bench_reply send_files(api_bench *b, const char *target, const file *file
     return send_body(b, "POST", target, &packed);
 }
 
-/* The triangle 0 0 0, 1 0 0, 0 1 0 as floats. */
+/* The corners (0, 0, 0), (1, 0, 0) and (0, 1, 0) of a triangle as little-endian floats. */
 static const unsigned char corners[36] = {[14] = 0x80, [15] = 0x3F, [30] = 0x80, [31] = 0x3F};
 #define BIN ((const char *)corners), sizeof corners
 
@@ -85,7 +86,8 @@ static const unsigned char corners[36] = {[14] = 0x80, [15] = 0x3F, [30] = 0x80,
 #define OBJ "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
 #define MTL "newmtl red\nKd 1 0 0\n"
 
-/* Requires three vertices and one face; returns the answer. */
+/* Requires that the answer is about a mesh of three vertices and one face, in this format; returns
+ * the answer. */
 static bench_reply expect_triangle(const char *format, bench_reply r)
 {
     r = bench_expect(201, r);
@@ -119,7 +121,8 @@ static void a_gltf_finds_its_buffers_by_name(void **state)
         {{"a.gltf", NULL, GLTF("the%20%C3%BC.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("100%25.bin"), 0}, {"100%25.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("the \\u00fc.bin"), 0}, {"the \xC3\xBC.bin", NULL, BIN}},
-        /* folders are left out when files are chosen in a browser */
+        /* A browser leaves the folders out of the names of chosen files, so a file is also found by
+         * the last part of its path. */
         {{"a.gltf", NULL, GLTF("./a.bin"), 0}, {"a.bin", NULL, BIN}},
         {{"a.gltf", NULL, GLTF("a.bin"), 0}, {"dir\\a.bin", NULL, BIN}},
         {{"d/a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -151,7 +154,8 @@ static void a_buffer_that_did_not_come_is_named(void **state)
     expect_refused(
         422, "unsupported", "the buffer is in another file, 'a.bin': send both",
         send_files(b, "/v1/meshes", (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0}}));
-    /* which of the two is meant? */
+    /* Two files have the name that the glTF refers to, in different folders: the request is refused
+     * because neither is the right one for certain. */
     expect_refused(422, "unsupported", "no file 'x/a.bin' came",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("x/a.bin"), 0},
@@ -178,7 +182,7 @@ static void an_obj_comes_with_its_library(void **state)
         "obj", send_files(b, "/v1/meshes",
                           (file[MOST_FILES]){{"a.mtl", NULL, MTL, 0}, {"a.obj", NULL, OBJ, 0}}));
     bench_reply_free(&r);
-    /* a file that is not referred to is reported */
+    /* A file in the body that the mesh file does not refer to is reported as a warning. */
     r = expect_triangle("obj", send_files(b, "/v1/meshes",
                                           (file[MOST_FILES]){{"a.obj", "text/plain", OBJ, 0},
                                                              {"b.png", "image/png", "1", 0}}));
@@ -234,7 +238,7 @@ static void every_upload_takes_them(void **state)
     api_bench *b = bench_new();
     bench_done(bench_expect(201, send_body(b, "PUT", "/v1/meshes/m", &packed)));
     bench_done(bench_expect(200, send_body(b, "PUT", "/v1/meshes/m?repair=weld", &packed)));
-    /* coded */
+    /* The multipart body may be compressed as a whole. */
     static const char *const codings[] = {"gzip", "zstd"};
     for (size_t i = 0; i < 2; i++) {
         size_t length;
@@ -244,7 +248,7 @@ static void every_upload_takes_them(void **state)
             "gltf", bench_send_bytes(b, "POST", "/v1/meshes", headers, coded, length)));
         free(coded);
     }
-    /* as a job, which outlives the body */
+    /* The request may become a job, which reads the files after the body has been freed. */
     const char *const headers[] = {"Content-Type", type, "Prefer", "respond-async", NULL};
     bench_reply r = bench_expect(202, bench_send_bytes(b, "POST", "/v1/meshes?id=late", headers,
                                                        packed.bytes, packed.length));
@@ -271,7 +275,8 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     packed.length -= 4; /* the last hyphens and the line break */
     expect_refused(400, "bad_multipart", "ends before its last delimiter",
                    send_body(b, "POST", "/v1/meshes", &packed));
-    /* a mistake in the mesh file is reported before the rest has arrived */
+    /* A mistake in the mesh file is reported as soon as it is read, before the other files have
+     * arrived. */
     const file wrong[MOST_FILES] = {{"a.obj", NULL, "v 1 2\n", 0}, {"a.mtl", NULL, MTL, 0}};
     expect_refused(400, "syntax", "line 1", send_files(b, "/v1/meshes", wrong));
     bench_free(b);
@@ -300,7 +305,8 @@ static void another_boundary_is_the_same_request(void **state)
         bench_reply_free(&r);
     }
     free(first);
-    /* other names or bytes make another request */
+    /* If the name or the bytes of any file change, an Idempotency-Key must treat the body as
+     * another request. */
     for (size_t i = 0; i < 2; i++) {
         file *changed = &files[1];
         *changed = i == 0 ? (file){"b.mtl", NULL, MTL, 0} : (file){"a.mtl", NULL, MTL "\n", 0};

@@ -1,4 +1,4 @@
-/* Earlier revisions: reading them, and listing them. */
+/* Earlier revisions of a mesh are read, copied and listed. */
 #include "tests/api/history.h"
 
 #include <inttypes.h>
@@ -50,7 +50,7 @@ static void elements_are_those_of_the_revision(void **state)
     assert_int_equal(history_number(counts, "faces"), 8);
     assert_int_equal(history_number(counts, "boundary_loops"), 1);
     bench_done(r);
-    /* The cached summary is that of the present. */
+    /* Reading revision 3 must not have put its counts into the cache of the present summary. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(history_number(cJSON_GetObjectItem(r.json, "counts"), "faces"), 9);
     bench_done(r);
@@ -73,7 +73,8 @@ static void a_tag_names_the_revision_that_was_read(void **state)
         bench_done(r);
         const char *const known[] = {"If-None-Match", etag, NULL};
         bench_done(bench_expect(304, bench_send(b, "GET", target, known, NULL)));
-        /* Without a revision it is not named. */
+        /* The tag of revision 2 must not match a GET that names no revision, because that one reads
+         * the present state. */
         *strstr(target, "revision=2") = '\0';
         target[strlen(target) - 1] = '\0';
         bench_done(bench_expect(200, bench_send(b, "GET", target, known, NULL)));
@@ -81,7 +82,7 @@ static void a_tag_names_the_revision_that_was_read(void **state)
     bench_free(b);
 }
 
-/* A state that no step reaches any more can be copied to a mesh of its own. */
+/* A state that no undo or redo reaches any more can be copied to a new mesh. */
 static void an_earlier_revision_can_be_copied(void **state)
 {
     (void)state;
@@ -195,7 +196,8 @@ static void every_allocation_of_a_reader_may_fail(void **state)
             more = memory.calls >= n;
             memory.fail_at = 0;
             if (answered) {
-                /* The cache of a summary, or a copy's spare capacity, is optional. */
+                /* The memory for caching a summary, or for spare capacity of a copy, is optional:
+                 * without it the answer must still be 200. */
                 assert_true(r.status == 200 || (more && (r.status == 507 || r.status == 503)));
                 bench_reply_free(&r);
             }

@@ -1,5 +1,6 @@
-/* Meshes from coarse to fine, read by a decoder written from the description of the bytes only:
- * faces as corners and edges as ends, without links. */
+/* Progressive meshes, sent from coarse to fine: this test decodes them with a decoder written from
+ * the published description of the bytes only. Its faces are lists of corners and its edges pairs
+ * of ends, without links. */
 #include "tests/api/request.h"
 
 #include "unit/fixture.h"
@@ -31,8 +32,8 @@ typedef struct level {
     he_vec3 *place;
     bool *vertex, *edge, *face;
     uint32_t (*end)[2], (*corner)[3];
-    const char *next; /* split */
-    uint32_t left;    /* splits */
+    const char *next; /* bytes of the next vertex split */
+    uint32_t left;    /* number of splits still to be read */
 } level;
 
 static level first_level(const bench_reply *r)
@@ -102,7 +103,7 @@ static void add_face(level *l, uint32_t face, uint32_t a, uint32_t b, uint32_t c
     }
 }
 
-/* Moves the edge from v to x to u. */
+/* Replaces the edge between v and x by one between u and x. */
 static void move_edge(level *l, uint32_t v, uint32_t x, uint32_t u)
 {
     for (uint32_t e = 0; e < l->edges; e++) {
@@ -145,7 +146,8 @@ static void split(level *l)
     l->left--;
 }
 
-/* Can the faces be built, and are the edges theirs? */
+/* Requires that the level is a mesh whose faces can be built, and whose edges are those of the
+ * faces. */
 static void assert_level(const level *l)
 {
     uint32_t *name = calloc(l->vertices + 1, sizeof *name), edges = 0;
@@ -215,7 +217,7 @@ static void assert_same(const level *l, const he_mesh *m)
     }
 }
 
-/* Requires that the mesh of the present revision equals this one. */
+/* Requires that the mesh `id` has this revision and equals the decoded level. */
 static void assert_is(api_bench *b, const char *id, const level *l, uint64_t revision)
 {
     st_store *store = bench_store(b);
@@ -228,7 +230,7 @@ static void assert_is(api_bench *b, const char *id, const level *l, uint64_t rev
     st_release(mesh);
 }
 
-/* Checks every level if there are few splits, else some. */
+/* Decodes the answer and checks the mesh after each vertex split; if there are many, after some. */
 static void replay(api_bench *b, const char *id)
 {
     char path[64];
@@ -260,7 +262,8 @@ static void make(api_bench *b, const char *id, const char *body)
     bench_done(bench_expect(200, bench_post(b, path, "{\"op\":\"triangulate\"}")));
 }
 
-/* A bow-tie, an isolated vertex, a triangle by itself. */
+/* The mesh has a bow-tie (two triangles that share only a vertex), an isolated vertex, and a
+ * separate triangle. */
 static const char BOWTIE[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[-1,0,0],[-1,-1,0],[2,1,0],[9,9,9],[5,0,0],"
     "[6,0,0],[5,1,0]],\"faces\":[[0,1,2],[0,3,4],[1,5,2],[7,8,9]]}";
@@ -289,7 +292,8 @@ static void splits_lead_back_to_the_mesh(void **state)
     bench_free(b);
 }
 
-/* Dead rows and curved surfaces, as edits leave them. */
+/* The mesh is curved and has rows of deleted elements between the live ones, as edits leave
+ * them. */
 static void ids_that_are_not_in_order_come_back(void **state)
 {
     (void)state;
@@ -383,7 +387,7 @@ static api_exchange *ask(api_bench *b, const char *query,
     return x;
 }
 
-/* Returns false from the n-th call on; never for 0. */
+/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -403,7 +407,7 @@ static void it_can_be_given_up_at_any_time(void **state)
         int status = api_answer_of(x)->status;
         api_free(x);
         if (left > 0) {
-            assert_int_equal(status, 200); /* there were fewer polls */
+            assert_int_equal(status, 200); /* the work ended before the n-th call */
             break;
         }
         assert_int_equal(status, 503);
@@ -436,7 +440,7 @@ static void every_allocation_may_fail(void **state)
     bench_free(b);
 }
 
-/* Allocated bytes, as malloc counts them. */
+/* The number of bytes that are allocated, as malloc counts them. */
 static size_t held;
 
 static void *count_resize(void *context, void *memory, size_t size)
@@ -453,7 +457,8 @@ static void *count_resize(void *context, void *memory, size_t size)
     return resized;
 }
 
-/* While it is sent, however slowly, it holds what is still to be sent and not the mesh. */
+/* While a slow client reads the answer, the request must hold only the bytes that are still to be
+ * sent, and not the mesh. */
 static void an_answer_holds_little_more_than_its_bytes(void **state)
 {
     (void)state;
@@ -464,7 +469,7 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     held = 0;
     api_bench *b = bench_new();
     make(b, "m", LARGE);
-    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive"))); /* with a snapshot */
+    bench_done(bench_expect(200, bench_get(b, "/v1/meshes/m/progressive"))); /* makes a snapshot */
     int never = 0;
     for (size_t i = 0; i < sizeof queries / sizeof *queries; i++) {
         size_t before = held;
@@ -482,7 +487,8 @@ static void an_answer_holds_little_more_than_its_bytes(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* Recorded word by word, and as one replacement: the history has it as long as it has the edit. */
+/* The history keeps the order in which a decimation collapsed edges as long as it keeps the edit,
+ * whether the edit is stored as single changes or as a replacement of the mesh. */
 static void the_history_keeps_the_record_of_a_decimation(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Refusals and costs of questions, and failing allocations. */
+/* Questions that are refused, what questions cost, and questions during which an allocation
+ * fails. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -20,7 +21,7 @@ static void put(api_bench *b, const char *document)
     bench_reply_free(&r);
 }
 
-/* A cube whose face 5 and its four edges are gone: vertices 4 to 7 ... see `buried`. */
+/* A cube, and vertex 8 by itself. */
 static const char cube[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[5,5,5]],"
     "\"faces\":[[3,2,1,0],[4,5,6,7],[5,4,0,1],[6,5,1,2],[7,6,2,3],[4,7,3,0]]}";
@@ -34,7 +35,7 @@ static void edit(api_bench *b, const char *body)
     bench_reply_free(&r);
 }
 
-/* The cube without face 0 and vertex 8. */
+/* Creates the cube, then deletes its face 0 and vertex 8. */
 static api_bench *begin(void)
 {
     api_bench *b = bench_new();
@@ -99,7 +100,7 @@ static const refusal refusals[] = {
     {TRAVERSE, WALK("\"loop\",\"walk\":\"loop\""), 400, "duplicate_member", "/walk"},
     {TRAVERSE, "{\"walk\":\"loop\"", 400, "malformed_json", NULL},
     {TRAVERSE, "", 400, "missing_body", NULL},
-    /* from */
+    /* the member "from" */
     {TRAVERSE, WALK("\"loop\",\"from\":2"), 400, "wrong_type", "/from"},
     {TRAVERSE, WALK("\"loop\",\"from\":{}"), 400, "missing_member", "/from"},
     {TRAVERSE, WALK("\"loop\",\"from\":{\"corner\":2}"), 400, "unknown_member", "/from/corner"},
@@ -117,7 +118,7 @@ static const refusal refusals[] = {
      "/from/halfedge"},
     {TRAVERSE, WALK("\"breadth_first\",\"from\":{\"face\":0}"), 422, "deleted_element",
      "/from/face"},
-    /* path */
+    /* the member "path" */
     {TRAVERSE, PATH("\"repeat\":1"), 400, "missing_member", ""},
     {TRAVERSE, PATH("\"path\":[]"), 400, "bad_value", "/path"},
     {TRAVERSE, PATH("\"path\":\"next\""), 400, "wrong_type", "/path"},
@@ -129,7 +130,7 @@ static const refusal refusals[] = {
     {TRAVERSE, PATH("\"path\":[\"next\"],\"repeat\":9007199254740992"), 413, "limit_exceeded", ""},
     {TRAVERSE, PATH("\"path\":[\"next\"],\"repeat\":9007199254740994"), 400, "bad_value",
      "/repeat"},
-    /* depth, limit, to, by */
+    /* the members "depth", "limit", "to" and "by" */
     {TRAVERSE, WALK("\"rings\",\"from\":{\"vertex\":1}"), 400, "missing_member", ""},
     {TRAVERSE, WALK("\"rings\",\"from\":{\"vertex\":1},\"depth\":10000001"), 400, "bad_value",
      "/depth"},
@@ -151,7 +152,7 @@ static const refusal refusals[] = {
     {QUERY, "{\"queries\":[],\"limit\":1}", 400, "unknown_member", "/limit"},
 };
 
-/* A mistake in one question is reported in its place, here the second. */
+/* A mistake in one question of several, here the second, is reported in the place of its answer. */
 static const refusal bad_questions[] = {
     {NULL, "1", 400, "wrong_type", ""},
     {NULL, "{}", 400, "missing_member", ""},
@@ -380,7 +381,7 @@ static void a_cursor_is_of_its_revision(void **state)
     api_bench *b = begin();
     char target[300];
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/faces?limit=2", NULL, NULL);
-    /* Face 0 is gone, so the page holds 1 and 2. */
+    /* Face 0 is deleted, so the first page holds the faces 1 and 2. */
     const cJSON *items = cJSON_GetObjectItemCaseSensitive(r.json, "items");
     assert_int_equal(cJSON_GetArraySize(items), 2);
     assert_int_equal(number_of(cJSON_GetArrayItem(items, 0), "id"), 1);
@@ -393,7 +394,8 @@ static void a_cursor_is_of_its_revision(void **state)
     int revision = (int)number_of(r.json, "revision");
     int degree = (int)number_of(cJSON_GetArrayItem(items, 0), "degree");
     bench_reply_free(&r);
-    /* Edits do not affect the next page, which is of the same revision. */
+    /* The next page is of the same revision as the first, so an edit in between must not
+     * change it. */
     edit(b, "{\"op\":\"face_poke\",\"face\":3}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 200);
@@ -408,7 +410,7 @@ static void a_cursor_is_of_its_revision(void **state)
     assert_int_equal(r.status, 400);
     assert_string_equal(text_of(r.json, "code"), "bad_cursor");
     bench_reply_free(&r);
-    /* Until the history is cut off behind it. */
+    /* `compact` deletes the history, so the revision of the pages can no longer be read. */
     edit(b, "{\"op\":\"compact\"}");
     r = bench_send(b, "GET", target, NULL, NULL);
     assert_int_equal(r.status, 410);
@@ -425,7 +427,7 @@ typedef struct driven {
     size_t length;
 } driven;
 
-/* A worker without any time. */
+/* Set while requests are worked on by a worker that must stop at once. */
 static bool is_hurried;
 
 static bool has_no_time(void *context, const char *phase, double done)
@@ -436,8 +438,8 @@ static bool has_no_time(void *context, const char *phase, double done)
     return false;
 }
 
-/* Runs the steps one by one, to see whether the request left the worker; streams are read in pieces
- * of odd sizes. */
+/* Runs the steps of a request one by one, to see whether it left the worker for the job pool;
+ * streams are read in pieces of odd sizes. */
 static driven drive(api_bench *b, const char *method, const char *path, const char *accept,
                     const char *body)
 {
@@ -497,7 +499,8 @@ static void expect_place(api_bench *b, const char *path, const char *accept, con
     }
 }
 
-/* The cost of a question, not the size of its mesh, decides whether it moves to the job pool. */
+/* Whether a question moves from the worker to the job pool is decided by its own cost, not by the
+ * size of its mesh. */
 static void long_questions_leave_the_worker(void **state)
 {
     (void)state;
@@ -531,16 +534,16 @@ static void long_questions_leave_the_worker(void **state)
     expect_place(b, query, NULL,
                  "{\"queries\":[{\"measure\":\"mean_curvature\",\"of\":{\"vertices\":\"all\"}}]}",
                  true);
-    /* The first question has the tree made; the next one uses it on the worker. */
+    /* The first question needs the tree of bounding boxes built, in the job pool; the next one uses
+     * it on the worker. */
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", true);
     expect_place(b, query, NULL, "{\"queries\":[{\"closest\":[0,0,1]}]}", false);
     expect_place(b, query, NULL, "{\"queries\":[{\"self_intersections\":{}}]}", true);
     bench_free(b);
 }
 
-/* Two faces of many corners back to back: each has one neighbour, and finding it visits all
- * corners.
- */
+/* Two faces with many corners lie back to back: each has only one neighbour, but finding it visits
+ * all corners. */
 static char *pillow(unsigned corners)
 {
     size_t size = 64 + 64 * (size_t)corners, used = 0;
@@ -576,8 +579,7 @@ static char *repeated(const char *question, unsigned times)
     return text;
 }
 
-/* A read that is stopped on a worker starts again on another thread, with the same answer. A write
- * continues. */
+/* A read stopped on a worker starts again on another thread, with one answer; a write goes on. */
 static void a_read_that_outstays_the_worker_begins_anew(void **state)
 {
     (void)state;
@@ -610,7 +612,8 @@ static void a_read_that_outstays_the_worker_begins_anew(void **state)
     bench_free(b);
 }
 
-/* The client waits; otherwise the question would become a job. */
+/* Requires that a request with this question many times exhausts its budget after at least `least`
+ * answers. The client waits up to a minute; otherwise the request would become a job. */
 static void expect_exhaustion(api_bench *b, const char *question, unsigned times, int least)
 {
     static const char *const patient[] = {"Prefer", "wait=60", NULL};
@@ -625,7 +628,7 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     cJSON_ArrayForEach(result, results)
     {
         const char *code = text_of(result, "code");
-        /* After the budget is used up nothing more is answered. */
+        /* After the first refusal no further question may be answered. */
         assert_true(code != NULL || !refused);
         refused = code != NULL;
         answered += code == NULL;
@@ -641,7 +644,8 @@ static void expect_exhaustion(api_bench *b, const char *question, unsigned times
     free(body);
 }
 
-/* Every kind of question of forty bytes that visits a whole mesh, more often than allowed. */
+/* Each kind of question that is short and visits a whole mesh is asked more often in a request than
+ * the budget allows. */
 static void the_work_of_a_query_is_bounded(void **state)
 {
     (void)state;
@@ -658,8 +662,8 @@ static void the_work_of_a_query_is_bounded(void **state)
     bench_free(b);
 }
 
-/* The answer does not depend on earlier requests: a question that finds the tree pays as much as
- * one that makes it. */
+/* The answer must not depend on earlier requests: a question that finds the tree of bounding boxes
+ * built is charged as much as one that builds it. */
 static void a_tree_costs_everybody_the_same(void **state)
 {
     (void)state;
@@ -715,7 +719,7 @@ static void *resize(void *context, void *block, size_t size)
     return ++f->calls == f->fail_at ? NULL : realloc(block, size);
 }
 
-/* Fails the N-th allocation, for N = 1, 2, 3 ... until none fails. */
+/* Fails the N-th allocation of a request, for N = 1, 2, 3 ... until none fails. */
 static void try_without_memory(api_bench *b, const char *path, const char *accept, const char *body)
 {
     const char *method = body == NULL ? "GET" : "POST";
@@ -728,7 +732,7 @@ static void try_without_memory(api_bench *b, const char *path, const char *accep
             assert_int_equal(d.length, whole.length);
             break;
         }
-        /* An answer that can do without the memory may still be complete. */
+        /* If the failed allocation was for something optional, the answer must be complete. */
         bool same = d.status == 200 && d.length == whole.length;
         if (!d.none && !d.cut && d.status != 507 && !same) {
             fail_msg("%s %s, allocation %ld: %d", path, body, memory.fail_at, d.status);

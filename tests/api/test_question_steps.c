@@ -1,5 +1,5 @@
-/* Spatial searches are charged for what they visit: a fan of thousands is searched completely, and
- * a short request for much work is refused by its limit. */
+/* Spatial searches are charged for what they visit: a fan of thousands of triangles is searched
+ * completely, and a short request that would cause very much work is refused by its limit. */
 #include "tests/api/fan.h"
 
 #include "api/limits.h"
@@ -80,7 +80,7 @@ static void a_check_beyond_its_steps_is_a_job_where_the_client_takes_one(void **
     bench_free(b);
 }
 
-/* 15 KB of questions, each of which searches the whole mesh. */
+/* The request has 15 KB of questions, each of which searches the whole mesh. */
 static void many_searches_in_one_request_are_refused_by_the_limit(void **state)
 {
     (void)state;
@@ -158,7 +158,8 @@ static void expect_result(api_bench *b, const bench_reply *begun, const bench_re
     bench_done(r);
 }
 
-/* A client that waits for 0 s, because only a million faces would take longer than the default. */
+/* The client waits for 0 s, so that a small mesh suffices: a question becomes a job if it takes
+ * longer than the client waits, and with the default only a mesh of a million faces would do so. */
 static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_waits(void **state)
 {
     (void)state;
@@ -167,7 +168,7 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
     static const struct {
         const char *target, *accept, *body;
     } cases[] = {
-        {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"}, /* makes the tree */
+        {QUERY, json, "{\"queries\":[{\"closest\":[2,0,0]}]}"}, /* builds the tree of boxes */
         {QUERY, json, "{\"queries\":[{\"self_intersections\":{}}]}"},
         {QUERY, json, "{\"queries\":[{\"measure\":\"area\",\"of\":{\"faces\":\"all\"}}]}"},
         {QUERY, octets, "{\"queries\":[{\"measure\":\"dihedral\",\"of\":{\"edges\":\"all\"}}]}"},
@@ -189,14 +190,15 @@ static void questions_about_all_are_jobs_where_they_take_longer_than_the_client_
         bench_done(wanted);
         bench_done(begun);
     }
-    /* The tree exists, and a question about few elements takes no time. */
+    /* The tree of bounding boxes now exists, and a question about few elements takes no time. */
     bench_done(bench_expect(200, ask(b, QUERY, json, "wait=0", cases[0].body)));
     bench_done(bench_expect(200, ask(b, walks, json, "wait=0",
                                      "{\"walk\":\"rings\",\"from\":{\"vertex\":0},\"depth\":2}")));
     bench_free(b);
 }
 
-/* 92,162 elements and a number for each of 20,480 faces: 89 such passes take a second. */
+/* The mesh has 92,162 elements, and each measure is a number for each of 20,480 faces. By the
+ * estimate of costs, 89 of these passes take a second, which is the border to a job. */
 static void seconds_of_passes_over_a_mesh_add_up(void **state)
 {
     (void)state;

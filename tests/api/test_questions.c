@@ -1,4 +1,5 @@
-/* Elements, adjacency and queries, compared with searching the polygons. */
+/* Elements, adjacency and queries: the answers are compared with those found by searching lists of
+ * polygons. */
 #include "tests/api/specimens.h"
 
 /* --- elements --- */
@@ -295,7 +296,8 @@ static void queries_answer_in_order(void **state)
     for_each_specimen(try_query);
 }
 
-/* All elements of a kind by ascending id, or all of them backwards as a list. */
+/* Requests a relation of all elements of a kind, either as "all" or, if `backwards`, as a list of
+ * their ids in descending order. */
 static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const char *what,
                                bool backwards)
 {
@@ -354,7 +356,8 @@ static void dense_answers_are_offsets_and_ids(void **state)
     for_each_specimen(try_dense);
 }
 
-/* As octets, in problems of single questions, and for a walk. */
+/* A question with ?revision= is answered for that revision: as JSON, as octets, with a problem for
+ * an element that did not exist then, and for a walk. */
 static void questions_are_of_the_revision(void **state)
 {
     (void)state;
@@ -365,7 +368,7 @@ static void questions_are_of_the_revision(void **state)
     static const char walk[] = "{\"walk\":\"breadth_first\",\"from\":{\"face\":1}}";
     static const struct {
         int revision;
-        const char *first, *second; /* codes; NULL: there it is */
+        const char *first, *second; /* expected codes; NULL: an answer */
         int faces, walked;          /* 0: refused */
     } rows[] = {{1, NULL, "no_such_element", 6, 6},
                 {2, NULL, NULL, 9, 9},

@@ -1,5 +1,6 @@
-/* Long reads as jobs: the answer is fetched when the job has ended, with the bytes, type and tag
- * that the request would have had, be it JSON, lines, octets or a file. */
+/* Long reads run as jobs: when the job has ended, the client fetches the answer with the bytes,
+ * media type and entity tag that a direct answer would have had, be it JSON, lines, octets or a
+ * file. */
 #include "tests/api/request.h"
 
 #include "base/mem.h"
@@ -35,7 +36,7 @@ static api_bench *bench_of_sphere(void)
     return b;
 }
 
-/* A read; `accept` NULL: anything. */
+/* A request that reads; `accept` NULL: the client accepts anything. */
 typedef struct reading {
     const char *method, *target, *body, *accept;
     bool linked; /* its answer is no JSON, or a whole mesh: it is not in the job itself */
@@ -66,7 +67,7 @@ static const reading readings[] = {
      NULL, false},
 };
 
-/* `known` is If-None-Match; NULL: none. */
+/* Sends a read with If-None-Match: `known`; NULL: without it. */
 static bench_reply send_known(api_bench *b, const reading *r, bool async, const char *known)
 {
     const char *headers[9] = {"Content-Type", "application/json"};
@@ -142,7 +143,7 @@ static void each_long_read_can_be_a_job_with_the_answer_it_would_have_given(void
     bench_free(b);
 }
 
-/* Starts a job; its path goes to `path`. */
+/* Starts a job; `path` becomes its path. */
 static void begin(api_bench *b, const char *target, char path[PATH])
 {
     const reading r = {"GET", target, NULL, NULL, true};
@@ -175,7 +176,7 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     static const char octets[] = "application/octet-stream", lines[] = "application/x-ndjson";
     static const struct {
         reading read;
-        const char *said; /* by the problem */
+        const char *said; /* expected in the problem */
     } cases[] = {
         {{"GET", "/v1/meshes/none/geometry", NULL, NULL, false}, "none"},
         {{"GET", "/v1/meshes/m?none=1", NULL, NULL, false}, "none"},
@@ -246,7 +247,8 @@ static void what_is_refused_is_refused_before_there_is_a_job(void **state)
     bench_free(b);
 }
 
-/* Also for an earlier revision, which would have to be restored first. */
+/* If the client has the tag of the answer, a 304 must come at once and no job be made, even for an
+ * earlier revision, which would have to be restored to be read. */
 static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state)
 {
     (void)state;
@@ -265,12 +267,13 @@ static void what_the_client_has_is_told_at_once_instead_of_by_a_job(void **state
             told++;
         }
     }
-    assert_int_equal(told, sizeof readings / sizeof *readings - 3); /* all but POST */
+    assert_int_equal(told, sizeof readings / sizeof *readings - 3); /* POST has no tag */
     expect_no_jobs(b);
     bench_free(b);
 }
 
-/* Only changed rows: `since` names another representation. */
+/* An answer with only the changes since a revision has an entity tag of its own, which must be
+ * found without making the answer. */
 static void changed_rows_that_the_client_has_are_told_at_once(void **state)
 {
     (void)state;
@@ -292,8 +295,8 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_done(r);
     assert_non_null(strstr(tag, "-3\""));
     bench_done(bench_expect(304, send_known(b, &changes, true, tag)));
-    /* All rows are another representation, and a later revision is refused when it is read.
-     */
+    /* The tag of the changes must not stand for all rows: those are read by a job. A `since` later
+     * than the newest revision is refused when the rows are read, whatever tag the client names. */
     bench_done(bench_expect(202, send_known(b, &readings[6], true, tag)));
     const char *later = strchr(target, '?') + 1;
     memcpy(target + (later - target), "since=9", 7);
@@ -301,7 +304,8 @@ static void changed_rows_that_the_client_has_are_told_at_once(void **state)
     bench_free(b);
 }
 
-/* The tag of a revision that is made while the job waits. */
+/* The client guesses the tag of a revision that is made while its job waits: the result must still
+ * be the whole answer and no 304, because the request was accepted before. */
 static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **state)
 {
     (void)state;
@@ -313,7 +317,7 @@ static void the_result_of_a_job_is_the_answer_though_its_tag_was_named(void **st
         bench_reply now = bench_expect(200, send(b, r, false));
         snprintf(tag, sizeof tag, "%s", bench_header(&now, "ETag"));
         bench_done(now);
-        bool slots = strstr(r->target, "geometry") != NULL; /* their number cannot be predicted */
+        bool slots = strstr(r->target, "geometry") != NULL; /* parts of its tag are random */
         if (tag[0] == '\0' || !present || slots) {
             continue;
         }
@@ -385,7 +389,8 @@ static void a_result_that_the_client_has_is_not_sent_again(void **state)
     bench_free(b);
 }
 
-/* A reader of a result keeps it as long as it reads, whatever happens to the job. */
+/* A client that reads a result keeps it until it has read all, even if the job is deleted
+ * meanwhile. */
 static void a_result_outlives_its_job_while_it_is_read(void **state)
 {
     (void)state;
@@ -410,7 +415,8 @@ static void a_result_outlives_its_job_while_it_is_read(void **state)
     bench_free(b);
 }
 
-/* The job begins when the memory of the request's headers is used for something else. */
+/* The job begins after the memory of the request's headers has been overwritten, so it must have
+ * copied them. */
 static void a_job_has_copies_of_its_headers(void **state)
 {
     (void)state;

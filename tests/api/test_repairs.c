@@ -1,5 +1,5 @@
-/* Repairs: a refusal names the repairs with which the body passes, and with them it does; the
- * import report lists what each did. */
+/* Repairs of imported meshes: a refusal names the repairs with which the body would be accepted,
+ * and with them it is; the report of the import lists what each repair did. */
 #include "tests/api/request.h"
 
 #include "unit/fixture.h"
@@ -31,7 +31,7 @@ static bench_reply post_json(api_bench *b, const char *query, const char *body)
     return post(b, query, "application/json", body, strlen(body));
 }
 
-/* Makes "?repair=a,b" from the problem's member; returns false if it names none. */
+/* Builds "?repair=a,b" from the repairs that the problem names; returns false if it names none. */
 static bool named_repairs(const bench_reply *r, char query[120])
 {
     const cJSON *list = cJSON_GetObjectItem(r->json, "repair"), *one;
@@ -55,7 +55,8 @@ static void expect_valid(api_bench *b, const bench_reply *created)
     bench_reply_free(&r);
 }
 
-/* Refused first, then accepted with repairs; the code is that of the first refusal. */
+/* Requires that the body is refused with this code, then refused or accepted as repairs are added,
+ * and accepted with `repairs`. */
 static void expect_mended(api_bench *b, const char *type, const char *body, size_t length,
                           const char *code, const char *repairs)
 {
@@ -109,7 +110,7 @@ static size_t faces_of(const char *faces)
     return count;
 }
 
-/* Vertex i at (i, i*i, i*i*i), so that all positions differ. */
+/* Writes vertices, the i-th at (i, i*i, i*i*i) so that all positions differ. */
 static size_t write_vertices(char *text, size_t room, const char *format, int count)
 {
     size_t used = 0;
@@ -284,7 +285,7 @@ static void expect_member(const cJSON *object, const char *member, const char *j
     cJSON_free(text);
 }
 
-/* Vertices 3 and 4 lie at one place; faces on lines 7 to 13. */
+/* The vertices 3 and 4 are at one position; the faces are on lines 7 to 13. */
 static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 1\nv 1 1 1\n"
                           "f 1 2 3\nf 2 3 1\nf 4 4 2\nf 4 2 1\nf 1 4 3\nf 2 5 6\nf 2 6 5\n";
 
@@ -328,7 +329,8 @@ static void each_repair_accounts_for_itself(void **state)
     bench_free(b);
 }
 
-/* A quad that is a triangle, a line, and a ring of quads as one face. */
+/* The file has a quadrilateral that is a triangle because it repeats a corner, a face that is a
+ * line, and a ring of quadrilaterals written as one face. */
 static void degenerate_faces_that_keep_an_area_are_named(void **state)
 {
     (void)state;
@@ -393,7 +395,8 @@ static void a_band_that_cannot_be_oriented_is_told(void **state)
     bench_free(b);
 }
 
-/* A refusal after some repairs still has the numbers and lines of the file. */
+/* If the mesh is refused after some repairs, the refusal must still name the element numbers and
+ * lines of the file. */
 static void a_refusal_after_repairs_names_the_file(void **state)
 {
     (void)state;
@@ -412,8 +415,8 @@ static void a_refusal_after_repairs_names_the_file(void **state)
     bench_free(b);
 }
 
-/* Two faces that repeat a corner, among many that do not and one so large that checking it
- * allocates memory. */
+/* Returns a file with two faces that repeat a corner, among many that do not, and with one face so
+ * large that checking it allocates memory. */
 static char *broken_file(size_t *length)
 {
     enum { FACES = 20000, LARGE = 40 };
@@ -435,7 +438,8 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Uploads it with the given watch; returns the status, and for a 422 the number of defects. */
+/* Uploads the file, with `tell` called for progress; returns the status, and for a 422 the number
+ * of defects. */
 static int upload_broken(api_bench *b, const char *text, size_t length,
                          bool (*tell)(void *context, const char *phase, double done), void *context,
                          int *total)
@@ -466,7 +470,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     assert_int_equal(step, API_READY);
     int status = api_answer_of(x)->status;
     if (status == 422) {
-        const char *said = strstr(api_answer_of(x)->bytes, "\"total\":"); /* without memory */
+        const char *said = strstr(api_answer_of(x)->bytes, "\"total\":"); /* parsed without cJSON */
         assert_non_null(said);
         *total = (int)strtol(said + strlen("\"total\":"), NULL, 10);
     }
@@ -474,7 +478,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     return status;
 }
 
-/* Returns false from the n-th call on; never for 0. */
+/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
 static bool count_down(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -493,7 +497,7 @@ static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
         int left = n;
         status = upload_broken(b, text, length, count_down, &left, &total);
         if (left > 0) {
-            break; /* there were fewer polls */
+            break; /* the work ended before the n-th call */
         }
         assert_int_equal(status, 503);
         given_up++;
@@ -591,7 +595,8 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
         expect(201, post_json(b, "?id=a&repair=weld,drop_degenerate,drop_duplicates", document));
     expect_member(repair_at(&r, 0, "weld"), "moved", "1");
     bench_reply_free(&r);
-    /* 11 was another vertex than 10, and its corner still has its value */
+    /* The vertices 10 and 11 were merged, but the corner that used vertex 11 must keep its value
+     * 11. */
     r = expect(200, bench_send(b, "GET", "/v1/meshes/a/attributes/halfedges/v", NULL, NULL));
     expect_member(r.json, "values", "[11,0,12,0,13,0]");
     bench_reply_free(&r);
@@ -609,8 +614,8 @@ static void attributes_of_a_document_go_with_their_elements(void **state)
     bench_free(b);
 }
 
-/* Other programs write one vertex per corner with different values: the faces are then separate,
- * and the report says how to join them. */
+/* Many programs write one vertex per corner with differing values, which separates the faces: the
+ * report must say so and name the repair that joins them. */
 static void faces_apart_along_coinciding_edges_are_told(void **state)
 {
     (void)state;
@@ -647,7 +652,7 @@ static void values_of_edges_are_not_guessed(void **state)
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "unsupported");
     expect_member(r.json, "pointer", "\"/attributes/0/values\"");
     bench_reply_free(&r);
-    /* nothing has to be repaired, so they stay */
+    /* If the requested repairs find nothing to repair, the attributes of the edges are kept. */
     r = expect(201, post_json(b, "?repair=split,orient",
                               "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1,2]],"
                               "\"attributes\":[{\"domain\":\"edges\",\"name\":\"e\",\"type\":"

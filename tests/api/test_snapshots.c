@@ -1,5 +1,5 @@
-/* Which thread makes a snapshot: never a worker for a large mesh, and none for a client that has
- * the present state. */
+/* Which thread makes a snapshot of a mesh: never a worker if the mesh is large, and no thread at
+ * all if the client has the present state. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -65,7 +65,7 @@ static const struct {
     {"POST", "/v1/meshes/m/copy", NULL, 201},
 };
 
-/* Runs the request on a worker; `none` is its If-None-Match. */
+/* Begins the request number `i` on a worker; `none` is its If-None-Match. */
 static api_exchange *send(fixture *f, size_t i, const char *none, api_step *step)
 {
     api_request request = {
@@ -114,7 +114,8 @@ static void nobody_makes_one_for_whom_nothing_changed(void **state)
             if (cases[i].status != 200) {
                 continue;
             }
-            /* After an earlier request, everything from which a tag is made exists. */
+            /* The first request computes everything from which the entity tag is made, such as the
+             * layout of the arrays, so that the second one can be answered by the tag alone. */
             api_exchange *x = send(&f, i, NULL, &step);
             if (step == API_WORK) {
                 api_work(x);

@@ -1,5 +1,6 @@
-/* Many spatial queries at once: the tree is made once per revision, requests in the meantime wait
- * for it, and answers are of the revision that they name while others write. */
+/* Many spatial queries at once: the tree of bounding boxes is built once per revision, requests
+ * that come meanwhile wait for it, and each answer is of the revision that it names although
+ * another thread writes. */
 #include "tests/api/request.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@
 
 enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
-/* So large that workers do not make the trees. */
+/* The grid is so large that the job pool, and not a worker, builds the trees. */
 #define GRID    "{\"shape\":\"grid\",\"columns\":80,\"rows\":80,\"width\":8,\"height\":8}"
 #define UP      "{\"op\":\"transform\",\"matrix\":[1,0,0,0, 0,1,0,0, 0,0,1,1, 0,0,0,1]}"
 #define NEAREST "{\"queries\":[{\"closest\":[0,0,-3]}]}"
@@ -25,12 +26,13 @@ enum { READERS = 3, QUESTIONS = 25, EDITS = 12 };
 
 typedef struct reader {
     api_bench *b;
-    const char *question; /* the member that answers is the first of its result */
+    const char *question; /* its answer is the first member of its result */
     bool by_distance;
-    const char *strange; /* what was wrong first */
+    const char *strange; /* the first wrong answer */
 } reader;
 
-/* The grid lies at the height revision - 1. */
+/* Returns what is wrong with an answer, or NULL. Each edit raises the grid by 1, so at revision r
+ * it lies at the height r - 1. */
 static const char *judge(const reader *r, const cJSON *answer, double *revision)
 {
     const cJSON *asked = cJSON_GetObjectItem(answer, "revision");
@@ -110,20 +112,21 @@ void __wrap_st_derived_end(st_mesh *mesh, st_derived_kind kind);
 void __real_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind);
 
-/* While it is closed, the store delays the first asker, before it makes the tree, until another one
- * waits for the tree or is answered. */
+/* Delays the first of two requests, while `closed`, right before it builds the tree, until the
+ * second request waits for the tree or has been answered. So each order of events can be produced
+ * without sleeping. */
 static struct {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool closed;
     bool begun, met;
-    atomic_bool making; /* the first asker is about to make the tree */
-    /* Protected by the lock of the place. */
+    atomic_bool making; /* the first request is about to build the tree */
+    /* The following members are protected by the lock of `place`, where the tree will be. */
     st_derived *place;
     bool held;
     int waited;
-    bool *leaves;   /* makes the first asker stop when the second one is there; NULL: it stays */
-    bool *gives_up; /* set as soon as the second one waits, which then stops; NULL: it does not */
+    bool *leaves;   /* set to cancel the first request when the second one comes; or NULL */
+    bool *gives_up; /* set to cancel the second request as soon as it waits; or NULL */
 } gate = {.lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
 
 static void open_gate(bool *which)
@@ -180,7 +183,7 @@ void __wrap_st_derived_wait(st_mesh *mesh, st_derived_kind kind)
     __real_st_derived_wait(mesh, kind);
 }
 
-/* An impatient asker gives up waiting for the tree, but not earlier work. */
+/* Lets a request be cancelled while it waits for the tree or builds it, but not before. */
 static bool give_up(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -279,7 +282,8 @@ static void the_second_asker_makes_the_tree_that_the_first_gave_up(void **state)
     assert_true(gate.waited > 0);
 }
 
-/* The first one continues only when the second one is answered. */
+/* The second request is cancelled while the first one still builds the tree; it must be answered at
+ * once, because the first one continues only afterwards. */
 static void who_waits_for_a_tree_may_give_up(void **state)
 {
     (void)state;

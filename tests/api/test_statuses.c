@@ -1,4 +1,4 @@
-/* Every row of the route table answers with every status it declares, and with no other. */
+/* Every row of the route table answers with each status that it declares, and with no other. */
 #include "tests/api/fan.h"
 
 #include "api/describe/routes.h"
@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-/* A request; later ones see the effects of earlier ones. */
+/* A request of a sequence: each one sees the effects of those before it. */
 typedef struct step {
     const char *method, *target;
     int status;
@@ -31,7 +31,7 @@ typedef struct step {
 #define ANY     "If-None-Match", "*"
 #define LARGE   "{\"shape\":\"grid\",\"columns\":200,\"rows\":200}"
 #define ASYNC   "Prefer", "respond-async"
-#define BIG     "too big" /* replaced by a body above every limit of control documents */
+#define BIG     "too big" /* stands for a body above every limit of JSON requests */
 
 static const step steps[] = {
     {"PUT", "/v1/meshes/m", 201, CUBE, {ABSENT}},
@@ -204,7 +204,7 @@ static const step steps[] = {
     {"GET", "/v1/meshes/m/events?since=x", 400, NULL, {NULL}},
     {"GET", "/v1/meshes/none/events", 404, NULL, {NULL}},
     {"GET", "/v1/meshes/m/events", 406, NULL, {"Accept", "application/json"}},
-    /* Revision 1 was there before the mesh was replaced. */
+    /* The revision 1 existed before the mesh was replaced, and the revision 99 never did. */
     {"GET", "/v1/meshes/m?revision=1", 410, NULL, {NULL}},
     {"GET", "/v1/meshes/m?revision=99", 404, NULL, {NULL}},
     {"GET", "/v1/meshes/m?revision=0", 400, NULL, {NULL}},
@@ -325,7 +325,8 @@ static void take(api_bench *b, const char *method, const char *target, int statu
     bench_reply_free(&r);
 }
 
-/* A cursor that was valid for a mesh that had the id before. */
+/* Takes a cursor, then deletes the mesh and creates another one with its id: the cursor must be
+ * answered with 410. */
 static void take_stale_cursor(api_bench *b, const char *collection)
 {
     char target[300];
@@ -344,8 +345,8 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     take(b, "GET", target, 410, NULL, NULL, 0);
 }
 
-/* The rows of elements differ only in kind and relation. A replaced mesh has no earlier revision
- * that can be read. */
+/* The routes of elements differ only in kind and relation, so their statuses are produced in a
+ * loop. To read an earlier revision of the mesh `r` is a 410, because the mesh was replaced. */
 static void take_elements(api_bench *b)
 {
     static const char mesh[] = "/v1/meshes/{mesh}/", id[] = "/{id}";
@@ -371,8 +372,8 @@ static void take_elements(api_bench *b)
     }
 }
 
-/* Sends a request with its path as a key twice at the same time, so long that it waits for a
- * thread, and then another one with the key. */
+/* Sends two requests with the same key, the path, at the same time; the first is so long that it
+ * still runs when the second comes. Then sends a third one with this key and another body. */
 static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
 {
     enum { LONG = 300 << 10 };
@@ -497,7 +498,7 @@ static void test_each_declared_status(void **state)
         const api_route *route = &api_routes().rows[i];
         if (strncmp(route->path, "/assets", 7) == 0 || strcmp(route->path, "/") == 0 ||
             strcmp(route->path, "/docs") == 0) {
-            continue; /* there is no page without a server: tests/e2e and tests/web request it */
+            continue; /* the page needs a server: tests/e2e and tests/web request it */
         }
         for (const int *status = route->statuses; *status != 0; status++) {
             if (!seen[i][*status]) {

@@ -1,5 +1,5 @@
-/* Defects of real files: each is made here, with the expected refusal and the repair with which it
- * passes. */
+/* Defects that are common in mesh files: each one is built here, with the refusal that it must get
+ * and the repair with which it is accepted. */
 #include "tests/api/request.h"
 
 #include <setjmp.h>
@@ -38,7 +38,7 @@ static void put_many(file *f, const char *text, int times)
 
 /* --- the files --- */
 
-/* Binary STL of a tetrahedron. */
+/* Writes a tetrahedron as binary STL. */
 static void put_facets(file *f, const char *header, uint32_t count)
 {
     static const float corners[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
@@ -148,14 +148,14 @@ static void isolated_thousands(file *f)
     put_many(f, "v 5 5 5\n", 5000);
 }
 
-/* Two tetrahedra that have a corner in common: no edge is open. */
+/* Two tetrahedra share one vertex and nothing else: all edges are closed. */
 static void closed_with_a_bowtie(file *f)
 {
     put(f, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n"
            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 6 5\nf 1 5 7\nf 5 6 7\nf 6 1 7\n");
 }
 
-/* Two triangles that meet in a corner. */
+/* Two triangles share one vertex and nothing else. */
 static void open_bowtie(file *f)
 {
     put(f, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n");

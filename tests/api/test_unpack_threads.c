@@ -1,5 +1,5 @@
-/* Decoders of many bodies on several threads: each body is decompressed or evicted, and their
- * memory stays below the ceiling. */
+/* Several threads decompress many request bodies at once: each body is decompressed or evicted, and
+ * the memory for decoders stays below its limit. */
 #include "api/header/unpack.h"
 
 #include <pthread.h>
@@ -22,8 +22,8 @@ static bool take(void *context, const char *bytes, size_t length)
     return true;
 }
 
-/* A frame with a window of 8 MiB, an empty block, blocks of 1,024 zeros, the last of them.
- */
+/* A zstd frame: its header with a window of 8 MiB and an empty block, a block of 1,024 zeros, and
+ * such a block marked as the last. */
 static const char head[] = {0x28, (char)0xB5, 0x2F, (char)0xFD, 0, 13 << 3, 0, 0, 0};
 static const char block[] = {2, 1 << 5, 0, '\0'}, last[] = {3, 1 << 5, 0, '\0'};
 
@@ -37,7 +37,8 @@ static bool feed(api_unpack *u, const char *bytes, size_t length)
     return good;
 }
 
-/* More windows than fit into memory, in turn; every body that was not evicted is complete. */
+/* Feeds bodies in turn, more than have room for their windows in memory; each body that was not
+ * evicted must be decompressed completely. */
 static void *unfold_many(void *context)
 {
     (void)context;

@@ -1,4 +1,5 @@
-/* Walks and the mesh as a whole, compared with searching the polygons. */
+/* Walks, and questions about the mesh as a whole: the answers are compared with those found by
+ * searching lists of polygons. */
 #include "tests/api/specimens.h"
 
 #include "format/text/number.h"
@@ -17,7 +18,8 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* Writes the walk in JSON, then its result. `until` NULL: only the count ends it. */
+/* Requests a walk along next, prev and twin, and compares the answer with the walk along the
+ * polygons. `until` NULL: only the number of repetitions ends the walk. */
 static void try_path(api_bench *b, const pg_mesh *pg, unsigned from, const char *letters,
                      unsigned repeat, const char *until)
 {
@@ -114,7 +116,8 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
     traverse(b, &wanted, "{\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u}", v, depth);
 }
 
-/* PG_NONE and 0 leave depth and limit out. */
+/* Compares a breadth-first walk; depth PG_NONE means no depth in the request, limit 0 means no
+ * limit. */
 static void try_flood(api_bench *b, const pg_mesh *pg, int kind, unsigned from, unsigned depth,
                       unsigned limit)
 {
@@ -164,7 +167,8 @@ static unsigned at(const cJSON *list, int i)
     return (unsigned)cJSON_GetArrayItem(list, i)->valuedouble;
 }
 
-/* Any of several shortest paths is correct, so the answer is checked rather than compared. */
+/* There can be several shortest paths, and each of them is correct, so the test checks that the
+ * answer is a path of the shortest length. */
 static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigned to, bool length,
                          double wanted)
 {
@@ -296,8 +300,8 @@ static void try_components(api_bench *b, const pg_mesh *pg)
     }
 }
 
-/* Returns six times the volume of the component with this lowest face, 0 if it is open. The
- * coordinates are whole numbers, so this is one, too. */
+/* Returns six times the volume of the component whose lowest face is `face`, or 0 if the component
+ * is open. The coordinates are whole numbers, so the result is one, too. */
 static double six_volumes(const pg_mesh *pg, const unsigned *lowest, unsigned face)
 {
     double sum = 0;

@@ -1,5 +1,5 @@
-/* Writes: all or nothing whichever allocation fails, refused before they cost too much, and
- * answered according to their outcome. */
+/* Writes are done completely or not at all whichever allocation fails, are refused before they cost
+ * too much, and are answered according to their outcome. */
 #include "tests/api/request.h"
 #include "store/write.h"
 #include "tests/slow_journal.h"
@@ -47,7 +47,7 @@ typedef struct write {
     int status;
     const char *body;
     const char *headers[3];
-    enum { ONCE, BEFORE, DRY } how; /* BEFORE: it was done already, with an equal key */
+    enum { ONCE, BEFORE, DRY } how; /* BEFORE: an equal request with this key was done before */
 } write;
 
 #define BATCH                                                           \
@@ -133,10 +133,11 @@ static const write writes[] = {
     {"POST", "/v1/meshes/m/redo", 200, "{\"to_revision\":6}", {NULL}, ONCE},
 };
 
-/* It has bodies encoded and contents staged, so that these allocations fail, too. */
+/* This journal, unlike the one in memory, has bodies encoded and contents staged, so that the
+ * allocations for these fail, too. */
 static slow_journal journal;
 
-/* A mesh with something to undo, something to redo, and a dead face. */
+/* Creates a mesh with steps to undo, steps to redo, and a deleted face. */
 static api_bench *begin_over(const st_journal *over)
 {
     api_bench *b = bench_new_over(over);
@@ -161,7 +162,7 @@ static api_bench *begin(void)
     return begin_over(&kept);
 }
 
-/* Dumps everything that a client can see. */
+/* Returns everything that a client can read about the mesh. */
 static char *state_of(api_bench *b)
 {
     static const char *const targets[] = {"/v1/meshes",         "/v1/meshes/m",
@@ -171,7 +172,8 @@ static char *state_of(api_bench *b)
     assert_non_null(state);
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
         bench_reply r = bench_get(b, targets[i]);
-        /* The memory of a mesh includes capacity that a refused edit reserved. */
+        /* The memory of a mesh includes capacity that a refused edit has reserved, so it is left
+         * out of the comparison. */
         char *bytes = strstr(r.body, "\"memory_bytes\":");
         if (bytes != NULL) {
             memset(bytes, ' ', strcspn(bytes, ","));
@@ -182,7 +184,8 @@ static char *state_of(api_bench *b)
     return state;
 }
 
-/* The client did not get the answer, and sends the request again now that there is memory. */
+/* The client got no answer for lack of memory, and sends the request again with its key: the write
+ * must not be done a second time. */
 static void expect_done_once(api_bench *b, const write *w, const char *const *headers,
                              const bench_reply *first)
 {
@@ -202,7 +205,8 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
     free(after);
 }
 
-/* Returns false if there were fewer allocations. */
+/* Tries a write whose allocation number `fail_at` fails, and all later ones if `sticky`. Returns
+ * false if there were fewer allocations. */
 static bool try_write(const write *w, long fail_at, bool sticky)
 {
     memory.fail_at = 0;
@@ -233,7 +237,7 @@ static bool try_write(const write *w, long fail_at, bool sticky)
                      fail_at, sent ? r.status : 0, same ? "" : " not");
         }
     } else {
-        /* If there was no memory for the answer, its status is still correct. */
+        /* If there was no memory for the body of the answer, its status must still be correct. */
         bool bare = r.status == (w->status == 201 ? 201 : 204) && r.length == 0;
         if (same != (w->how != ONCE) || (r.status != w->status && !bare)) {
             fail_msg("%s %s, allocation %ld: %d", w->method, w->target, fail_at, r.status);
@@ -290,7 +294,8 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     }
     assert_string_equal(text_of(&r, "code"), code);
     assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
-    /* The refusal waits for nothing, so it is never replaced by one about a lost change. */
+    /* The refusal does not wait for the disk; otherwise, when a lost change is noticed, another
+     * refusal could replace it. */
     assert_int_equal(api_answer_of(r.exchange)->shown.position, 0);
     assert_true(journal.groups == groups);
     assert_int_equal(journal.out, 0);
@@ -400,7 +405,7 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     } cases[] = {{"/v1/meshes/m", NULL, "*"},
                  {"/v1/meshes/m", "\"x\"", NULL},
                  {"/v1/meshes/absent", "*", NULL}};
-    const st_journal forgetful = st_journal_memory(); /* what is absent is known at once */
+    const st_journal forgetful = st_journal_memory(); /* finds at once that an id is unknown */
     api_bench *b = begin_over(&forgetful);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         api_step step;
@@ -424,7 +429,8 @@ static void a_put_that_must_fail_needs_no_body(void **state)
     bench_free(b);
 }
 
-/* A refusal that shows a revision waits until that is durable, like any answer. */
+/* A refusal that names a revision must wait until this revision is durable, like any other
+ * answer. */
 static void a_stale_write_shows_a_state(void **state)
 {
     (void)state;
@@ -439,7 +445,8 @@ static void a_stale_write_shows_a_state(void **state)
     bench_free(b);
 }
 
-/* A client may guess the tag that a write will make; the write is still not answered by 304. */
+/* A client may guess the entity tag that a write will make and send it as If-None-Match; the write
+ * must not be answered with 304. */
 static void a_write_is_never_not_modified(void **state)
 {
     (void)state;
@@ -461,7 +468,7 @@ static void a_write_is_never_not_modified(void **state)
 
 /* --- costs --- */
 
-/* Waits, so that it does not become a job. */
+/* Sends a request whose client waits, so that it does not become a job. */
 static bench_reply post_and_wait(api_bench *b, const char *target, const char *body)
 {
     return bench_send(b, "POST", target, (const char *const[]){"Prefer", "wait=3600", NULL}, body);
@@ -513,11 +520,11 @@ static void lists_of_operations_have_a_price(void **state)
     api_text_clear(&body);
 }
 
-/* A disk of so many triangles; this vertex is its hub. */
+/* The mesh is a disk of this many triangles; the vertex SPOKES is the hub that they share. */
 enum { SPOKES = 20000 };
 
-/* The second operation names a result of the first one, and the list continues at the hub: each
- * operation visits all half-edges there and removes one. */
+/* Writes a list of edits around the hub. The second operation names an element made by the first
+ * one; each operation visits all half-edges at the hub and removes one. */
 static void write_hub_list(api_bench *b, api_text *body, int operations)
 {
     char path[100];
@@ -556,7 +563,8 @@ static void a_list_about_one_hub_becomes_a_job(void **state)
     char job[100];
     (void)snprintf(job, sizeof job, "%s", bench_header(&r, "Location"));
     bench_reply_free(&r);
-    /* Rolled back: other requests read the old mesh, and cannot write until the job has ended. */
+    /* The job has undone what it did, because it was refused: other requests read the old mesh, but
+     * cannot write until the job has ended. */
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
     bench_reply_free(&r);
@@ -603,7 +611,8 @@ static api_step step_of(api_bench *b, const char *path, const char *body)
     return step;
 }
 
-/* Two rows of points, connected so that flips grow with the square of their number. */
+/* Creates two rows of points with long thin triangles between them, for which the number of
+ * Delaunay flips grows with the square of the number of points. */
 static void put_rows(api_bench *b, int row)
 {
     api_text body = {0};
@@ -622,8 +631,8 @@ static void put_rows(api_bench *b, int row)
     api_text_clear(&body);
 }
 
-/* 20,000 elements are few enough for a worker, but not repeatedly, and not if flips do not end
- * soon. */
+/* A mesh of 20,000 elements is small enough to be edited on a worker, but not by a long list of
+ * operations, and not by flips whose number is not known in advance. */
 static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
 {
     (void)state;
@@ -644,7 +653,8 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each of these visits all elements around the hub, too. */
+    /* Each of these operations welds two vertices on the rim, and visits all elements around the
+     * hub. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",
@@ -742,7 +752,8 @@ static void refusals_name_the_value_and_the_limit(void **state)
     bench_free(b);
 }
 
-/* The type is as in the server's description of its operations. */
+/* The server's description of an operation says which parameters are whole numbers; each of them
+ * must refuse a fraction. */
 static void whole_numbers_have_no_fraction(void **state)
 {
     (void)state;
