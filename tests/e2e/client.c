@@ -21,8 +21,8 @@
 #include <cmocka.h>
 #include <curl/curl.h>
 
-/* A test that would hang fails instead. */
-/* A guard against what never comes; no test is decided by it. */
+/* If no answer comes for this long, a request fails the test instead of hanging. No test depends on
+ * the exact length. */
 enum { LONGEST_SECONDS = 600 };
 
 struct client {
@@ -269,7 +269,7 @@ int client_connect(const daemon_process *d, int buffer)
     return transport_get() == TRANSPORT_TLS ? transport_secure(fd, buffer) : fd;
 }
 
-/* How many whole answers are in what came, going by Content-Length. */
+/* Returns how many complete answers the data contains, going by Content-Length. */
 static int count_answers(const char *data, size_t length)
 {
     int count = 0;
@@ -295,8 +295,9 @@ static int count_answers(const char *data, size_t length)
     return count;
 }
 
-/* Records the first answer to bytes that are, up to the end of the head, a request of a method and
- * a target. The body is left out: where it ends is what such tests are about. */
+/* Records the first answer, for the comparison with the OpenAPI document, if the bytes up to the
+ * end of the head are a request with a method and a target. The body is left out, because the tests
+ * that send raw bytes are about where a body ends. */
 static void record_raw(const char *request, size_t length, const char *answer)
 {
     char method[16], target[8192];
@@ -324,7 +325,7 @@ char *client_raw(const daemon_process *d, const char *data, size_t length, int a
     while (sent < length) {
         ssize_t n = send(fd, data + sent, length - sent, MSG_NOSIGNAL);
         if (n <= 0) {
-            break; /* the server has had enough: what it said is still to be read */
+            break; /* the server closed its end, but its answer can still be read */
         }
         sent += (size_t)n;
     }

@@ -9,21 +9,21 @@
 #include <stddef.h>
 
 typedef struct reply {
-    long status; /* 0: no answer at all */
-    char *body;  /* ends in NUL */
+    long status; /* 0: no answer */
+    char *body;  /* NUL-terminated */
     size_t length;
-    char *headers; /* as they came, lines end in CR LF */
-    cJSON *json;   /* NULL when the body is none */
+    char *headers; /* as received, lines end in CR LF */
+    cJSON *json;   /* NULL if the body is no JSON */
 } reply;
 
 void reply_free(reply *r);
 void reply_done(reply r);
-/* The answer as it came; with another status the test fails and says what came instead. */
+/* Returns `r`; if its status is another one, prints the answer and fails the test. */
 reply reply_expect(long status, reply r);
-/* A header of the answer into `value`, "" when absent. */
+/* Copies a header of the answer into `value`, "" if the answer has no such header. */
 const char *reply_header(const reply *r, const char *name, char *value, size_t size);
-/* A member of the JSON body by path, such as "counts.vertices" or "items.0.id". Fails the test when
- * it is absent. */
+/* Returns a member of the JSON body by its path, such as "counts.vertices" or "items.0.id". Fails
+ * the test if it is absent. */
 const cJSON *reply_find(const reply *r, const char *path);
 double reply_number(const reply *r, const char *path);
 const char *reply_string(const reply *r, const char *path);
@@ -33,29 +33,29 @@ typedef struct client client; /* a libcurl handle, which keeps its connection */
 
 client *client_new(const daemon_process *d);
 void client_free(client *c);
-/* With a daemon that speaks TLS: trust the certificate in this file, which is borrowed, and no
- * other.
- */
+/* Makes the client trust the certificate in this file, and no other, when the daemon speaks TLS.
+ * The name is borrowed. */
 void client_trust(client *c, const char *certificate);
-/* `body` NULL sends none. `headers` are "Name: value" lines that end in NULL, or NULL; a body
- * without a Content-Type among them is application/json. */
+/* Sends a request. `body` NULL: no body. `headers` are lines "Name: value", ended by NULL; the
+ * pointer may be NULL. A body without a Content-Type is sent as application/json. */
 reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,
                   const char *const *headers);
-/* The usual cases. */
+/* Send a GET, and a POST with a JSON body. */
 reply client_get(client *c, const char *path);
 reply client_post(client *c, const char *path, const char *json);
 
-/* A connection of one's own, which the caller closes; over TLS the end of one that a thread
- * encrypts (transport.h). `buffer` is the size of its receive buffer, 0 for the usual one: a small
- * one makes a client slow that does not read. */
+/* Opens a connection outside of libcurl, which the caller must close; over TLS it is one end of a
+ * socket pair whose other end a thread encrypts (transport.h). `buffer` is the size of the receive
+ * buffer, 0 for the default: with a small one, a client that does not read soon makes the daemon
+ * wait. */
 int client_connect(const daemon_process *d, int buffer);
 
-/* Send bytes as they are on a connection of their own and read until the server closes it, or until
- * `answers` whole answers came. What came is the caller's to free. `half_close` ends our side after
- * sending. */
+/* Sends bytes unchanged on a new connection and reads until the server closes it, or until
+ * `answers` complete answers have come. Returns what was read; the caller must free it.
+ * `half_close` closes our direction after sending. */
 char *client_raw(const daemon_process *d, const char *bytes, size_t length, int answers,
                  bool half_close);
-/* The status of the first answer in such bytes, 0 where there is none. */
+/* Returns the status of the first answer in such bytes, 0 if there is none. */
 int client_raw_status(const char *bytes);
 
 #endif

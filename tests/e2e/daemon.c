@@ -32,7 +32,7 @@ struct daemon_process {
     pthread_cond_t changed;
     char *log;
     size_t length, capacity;
-    bool ended; /* nobody writes any more */
+    bool ended; /* all writers have closed the pipe */
     char url[URL_BYTES];
     int port;
 };
@@ -43,7 +43,8 @@ static const char *program(void)
     return path != NULL ? path : "build/hedged";
 }
 
-/* Where the program writes, and the other end, from which a test reads. */
+/* A pipe or terminal: the end into which the program writes, and the end from which the test
+ * reads. */
 typedef struct outlet {
     int reads, writes;
 } outlet;
@@ -55,7 +56,7 @@ static outlet open_pipe(void)
     return (outlet){ends[0], ends[1]};
 }
 
-/* A terminal that adds no carriage return to a line. */
+/* Opens a pseudo-terminal that adds no carriage return to a line. */
 static outlet open_terminal(void)
 {
     outlet o;
@@ -67,8 +68,8 @@ static outlet open_terminal(void)
     return o;
 }
 
-/* Start the program with its stdout and stderr (or only stderr) in `to`, whose end to read from is
- * given back. */
+/* Starts the program with its standard error, and its standard output if asked, connected to `to`;
+ * returns the end from which the test reads. */
 static int spawn(const char *const *head, const char *const *tail, outlet to, bool with_stdout,
                  pid_t *pid)
 {
@@ -113,7 +114,8 @@ static void append(daemon_process *d, const char *bytes, size_t length)
     d->log[d->length] = '\0';
 }
 
-/* Keeps the pipe empty, so that the daemon never waits for its log. */
+/* Reads the daemon's log all the time, so that the pipe never fills up and makes the daemon
+ * wait. */
 static void *read_log(void *context)
 {
     daemon_process *d = context;
@@ -137,7 +139,7 @@ static void *read_log(void *context)
     }
 }
 
-/* The line that ends in "listening on URL". */
+/* Finds the ready line, which ends in "listening on URL". */
 static bool find_url(daemon_process *d)
 {
     static const char words[] = "listening on ";
@@ -191,7 +193,7 @@ static int status_of(int waited)
     return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
 }
 
-/* The log is whole when this returns. */
+/* Ends the daemon by a signal and waits for it; when this returns, its log is complete. */
 static int end(daemon_process *d, int signal)
 {
     int waited = 0;

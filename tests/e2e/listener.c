@@ -14,7 +14,8 @@
 
 #include <cmocka.h>
 
-/* A guard against what never comes; no test is decided by it. */
+/* If nothing comes for this long, the test fails instead of hanging. No test depends on the exact
+ * length. */
 enum { LONGEST_SECONDS = 600 };
 
 static void wait_readable(const listener *l)
@@ -80,7 +81,8 @@ void listener_close(listener *l)
     free(l);
 }
 
-/* The line before or after a chunk is whole: its size, or the blank end of the one before. */
+/* Handles the end of a line before or after a chunk of the answer: it is the size of the next
+ * chunk, or the blank line after the previous one. */
 static void end_line(listener *l)
 {
     l->line[l->line_length] = '\0';
@@ -113,7 +115,8 @@ static void decode(listener *l, const char *bytes, size_t length)
     }
 }
 
-/* False when nothing is there now, or nothing will be any more. */
+/* Reads what the socket has; returns false if it has nothing now and `patient` is false, or if the
+ * stream has ended. */
 static bool receive(listener *l, bool patient)
 {
     char buffer[16 * 1024];

@@ -1,4 +1,5 @@
-/* The thread of transport_secure: what is written into a socket goes out over TLS, and back. */
+/* The thread behind transport_secure(): it encrypts what the test writes into a socket and sends it
+ * to the daemon over TLS, and decrypts the answer. */
 #include "tests/e2e/transport.h"
 
 #include "server/tls/tls_record.h"
@@ -22,16 +23,16 @@
 
 enum { RECORD = 16 * 1024, LITTLE = 4096, LONGEST_MILLIS = 600 * 1000 };
 
-/* A record on its way in one direction. */
+/* A TLS record on its way in one of the two directions. */
 typedef struct parcel {
     unsigned char bytes[RECORD];
     size_t at, end;
-    bool ended; /* nothing follows this one */
-    bool told;  /* the other side knows that */
+    bool ended; /* nothing follows this record */
+    bool told;  /* the other side knows that it was the last */
 } parcel;
 
 typedef struct relay {
-    int inside, outside; /* the pair's other end, the daemon's socket */
+    int inside, outside; /* the test's side of the relay, and the daemon's */
     gnutls_session_t session;
     parcel out, in;
     bool is_left; /* the test closed its socket */
@@ -42,7 +43,7 @@ static bool comes_later(ssize_t code)
     return code == GNUTLS_E_AGAIN || code == GNUTLS_E_INTERRUPTED;
 }
 
-/* Returns false when the connection is of no more use. */
+/* Reads from the test's side. Returns false if that connection is broken. */
 static bool take_from_inside(relay *r)
 {
     parcel *p = &r->out;
@@ -86,7 +87,8 @@ static bool take_from_outside(relay *r)
     if (got < 0 && comes_later(got)) {
         return true;
     }
-    /* The end in order, or cut off: either way what came is passed on first. */
+    /* Whether the daemon ended the connection in order or cut it off: what has come is passed on
+     * first. */
     p->at = 0;
     p->end = got > 0 ? (size_t)got : 0;
     p->ended = got <= 0;
@@ -107,9 +109,9 @@ static bool give_inside(relay *r)
     return p->at < p->end || !p->ended;
 }
 
-/* Waits until one of the sockets can do what is needed next. False where nothing comes for long,
- * where the daemon reset the connection and its client is not reading, and where the test closed
- * its socket and all it wrote is sent. */
+/* Waits until one of the sockets is ready for the next step. Returns false if nothing comes for
+ * long, if the daemon reset the connection while the test does not read, or if the test closed its
+ * socket and everything that it wrote is sent. */
 static bool wait_for_more(relay *r)
 {
     const bool is_out = r->out.at < r->out.end || (r->out.ended && !r->out.told);
@@ -165,7 +167,7 @@ static void *pass_on(void *context)
     return NULL;
 }
 
-/* What all connections trust, for as long as the program runs. */
+/* Returns the credentials that all connections share, for as long as the program runs. */
 static gnutls_certificate_credentials_t trust(void)
 {
     static gnutls_certificate_credentials_t all;

@@ -1,5 +1,5 @@
-/* Content codings of a real daemon: bombs that stay small, answers coded while they are sent, and
- * clients that go away in the middle. */
+/* Content codings of a real daemon: decompression bombs that take little memory, answers that are
+ * compressed while they are sent, and clients that disconnect in the middle. */
 #include "tests/e2e/client.h"
 
 #include "tests/codings.h"
@@ -61,7 +61,8 @@ static void unfold(reply *r, const char *coding)
     r->length = length;
 }
 
-/* Sent without looking up, and the answer read although the server hangs up. */
+/* Sends a request all at once, without looking for an early answer, and requires this status even
+ * if the daemon closes the connection before it has read the body. */
 static void refused(daemon_process *d, const char *target, const char *coding, const char *type,
                     const char *body, size_t length, int status)
 {
@@ -80,7 +81,8 @@ static void refused(daemon_process *d, const char *target, const char *coding, c
     free(request);
 }
 
-/* A sanitizer's own memory is not the daemon's. */
+/* Requires that the memory of the daemon rose by at most `most` bytes. A sanitizer adds memory of
+ * its own, so under one nothing is compared. */
 static void expect_rise(const daemon_process *d, size_t before, size_t most, const char *what)
 {
     size_t rise = daemon_peak(d) - before;
@@ -94,7 +96,8 @@ static void expect_rise(const daemon_process *d, size_t before, size_t most, con
 #endif
 }
 
-/* 10 GiB in 10 MiB of gzip, or less of zstd: members or frames of 10 MiB, one after another. */
+/* Returns a bomb of 10 GiB in 10 MiB of gzip, or in less of zstd: members or frames of 10 MiB, one
+ * after another. */
 static char *bomb_of(const char *coding, char fill, size_t *length)
 {
     enum { PART = 10 << 20, PARTS = 1024 };
@@ -123,7 +126,7 @@ static void bombs_stay_small(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
-        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 422); /* by its NUL */
+        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 422); /* for its NULs */
         refused(d, "POST /v1/meshes", both[i], "application/json", zeros, length, 400);
         refused(d, "POST /v1/meshes/m/edits", both[i], "application/json", zeros, length, 413);
         free(zeros);
@@ -131,7 +134,7 @@ static void bombs_stay_small(void **state)
         refused(d, "PUT /v1/meshes/b", both[i], "application/json", blanks, length, 413);
         refused(d, "PUT /v1/meshes/b", both[i], "model/obj", blanks, length, 413);
         refused(d, "PUT /v1/meshes/b", both[i], "model/x-off", blanks, length, 413);
-        /* A bomb in a bomb is only bytes to whoever reads it. */
+        /* A bomb inside another bomb is decompressed once only, so its bytes are simply no mesh. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
         reply r = send_coded(c, "PUT", "/v1/meshes/b", both[1 - i], "model/obj", nested, folded);
@@ -147,7 +150,7 @@ static void bombs_stay_small(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* A coded body that comes byte by byte, each a chunk of its own. */
+/* A compressed body must also be read if every byte comes in a chunk of its own. */
 static void pieces_may_be_of_one_byte(void **state)
 {
     (void)state;
@@ -185,8 +188,8 @@ static const char *const targets[] = {
 
 enum { TARGETS = sizeof targets / sizeof *targets, SIDE = 400 };
 
-/* So dense that what arrives at once unfolds to several turns of the worker: nothing of it is lost,
- * and others that ask the one worker meanwhile are answered. */
+/* The body is so dense that what arrives at once decompresses to several turns of the only worker.
+ * Nothing of it may be lost, and requests of other clients must be answered in between. */
 static void dense_bodies_take_turns_with_others(void **state)
 {
     (void)state;
@@ -267,7 +270,8 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
         expect_rise(d, before, 6 << 20, targets[i]);
         reply_free(&plain);
     }
-    /* What is coded at once has a length, and HEAD the same one. */
+    /* A short answer is compressed before it is sent, so it has a Content-Length, and the answer to
+     * HEAD has the same one. */
     const char *const zstd[] = {"Accept-Encoding: gzip;q=0.5, zstd", NULL};
     char length[40];
     reply r = expect(200, client_send(c, "GET", "/v1/meshes/m/faces?limit=50", NULL, 0, zstd));
@@ -282,7 +286,8 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Some that read the beginning of a long answer, slowly, and go away; others go on all the time. */
+/* Clients read the beginning of a long compressed answer slowly and then disconnect, while others
+ * send requests all the time: the others must be answered. */
 static void clients_go_away_while_it_is_coded(void **state)
 {
     (void)state;
@@ -309,7 +314,7 @@ static void clients_go_away_while_it_is_coded(void **state)
             close(fds[i]);
         }
     }
-    /* And some are there when it stops. */
+    /* Some clients are still connected when the daemon is told to stop. */
     int left = client_connect(d, 4096);
     static const char request[] = "GET /v1/meshes/m/content?format=obj HTTP/1.1\r\n"
                                   "Host: localhost\r\nAccept-Encoding: gzip\r\n\r\n";
@@ -329,7 +334,8 @@ static double counted(client *c)
     return value;
 }
 
-/* Half of a body, and then nobody: plain and coded, what was read is given back. */
+/* The client sends half of a body and disconnects: the memory for what was read must be released,
+ * both for a plain body and for a compressed one. */
 static void an_upload_that_breaks_off_leaves_nothing(void **state)
 {
     (void)state;
@@ -357,10 +363,10 @@ static void an_upload_that_breaks_off_leaves_nothing(void **state)
             assert_true(n > 0);
             sent += (size_t)n;
         }
-        while (counted(c) < before + 1e6) { /* until it has read some of it */
+        while (counted(c) < before + 1e6) { /* until the daemon has read some of the body */
         }
         close(fd);
-        while (counted(c) > before + 1e5) { /* and has seen that no more comes */
+        while (counted(c) > before + 1e5) { /* until the daemon has noticed the disconnection */
         }
         free(body);
     }
@@ -370,7 +376,8 @@ static void an_upload_that_breaks_off_leaves_nothing(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Behind a job that lasts until it is cancelled. */
+/* The jobs of compressed uploads wait behind a job that lasts until it is cancelled, so that each
+ * state can be seen. */
 static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
 {
     (void)state;
@@ -431,7 +438,7 @@ static void it_can_be_switched_off(void **state)
         200, client_send(c, "GET", targets[0], NULL, 0, ARGUMENTS("Accept-Encoding: gzip, zstd")));
     assert_string_equal(reply_header(&r, "Content-Encoding", value, sizeof value), "");
     reply_free(&r);
-    /* Bodies are taken all the same. */
+    /* While jobs wait, compressed bodies of short requests must still be read. */
     static const char body[] = "{\"shape\":\"cube\"}";
     size_t length;
     char *packed = coding_pack("gzip", body, sizeof body - 1, &length);

@@ -1,4 +1,4 @@
-/* Clients that meet over one mesh. */
+/* Clients that read, write and delete one mesh at the same time. */
 #include "tests/e2e/client.h"
 
 #include <pthread.h>
@@ -15,7 +15,7 @@ enum { CLIENTS = 4, REQUESTS = 300, MESHES = 3 };
 typedef struct visitor {
     const daemon_process *daemon;
     bool removes;
-    int strange; /* the first status that has no place here */
+    int strange; /* the first status that must not occur */
 } visitor;
 
 static void *come_and_go(void *context)
@@ -39,7 +39,7 @@ static void *come_and_go(void *context)
     return NULL;
 }
 
-/* A PUT replaces or creates, whatever others remove meanwhile. */
+/* A PUT must replace or create the mesh even if other clients delete it meanwhile. */
 static void test_put_meets_delete(void **state)
 {
     (void)state;
@@ -72,7 +72,7 @@ static void *poke(void *context)
     return NULL;
 }
 
-/* Every edit of every writer is applied, and applied once. */
+/* Every edit of every writer must be applied exactly once. */
 static void test_writers_of_one_mesh(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* Real and hostile files, where the corpus lies beside the project: what its manifest expects of
- * each is what the daemon does, exports are read back, and no file that is refused costs memory.
- * Without the corpus there is nothing to show. */
+/* A corpus of real and hostile files, if it lies beside the project: the daemon must do with each
+ * file what the manifest of the corpus expects, files that it exports must be readable, and a
+ * refused file must leave no memory allocated. Without the corpus the test is skipped. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 

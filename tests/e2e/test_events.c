@@ -1,7 +1,8 @@
-/* Event streams of a real daemon: a copy that stays equal through ten thousand edits and cuts, slow
- * and dead clients, a thousand listeners, a stop.
+/* Event streams of a real daemon: a copy that stays equal to its mesh through ten thousand edits
+ * and broken connections, slow and dead clients, a thousand listeners, and a stop of the daemon.
  *
- * EDITS (2000; make proof takes 10000) and SEED (from the clock) come from the environment. */
+ * The environment gives EDITS (default 2000; make proof takes 10000) and SEED (default: from the
+ * clock). */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/mirror.h"
@@ -39,13 +40,13 @@ static void put_mesh(client *c, const char *body)
     reply_free(&r);
 }
 
-/* The revision it made, 0 when it was refused. */
+/* Sends an edit; returns the revision that it made, 0 if it was refused. */
 static uint64_t post(client *c, const char *path, const char *json)
 {
     reply r = client_post(c, path, json);
     uint64_t revision = r.status == 200 ? (uint64_t)reply_number(&r, "revision") : 0;
-    /* names of materials are drawn from five: what is not there, or there already, is a bad value
-     */
+    /* Random names of materials are drawn from five, so an edit often names one that is missing or
+     * exists already: that refusal is expected. */
     bool refused = r.status == 422 || r.status == 409 ||
                    (r.status == 400 && strstr(json, "\"material_") != NULL &&
                     strstr(r.body, "\"bad_value\"") != NULL);
@@ -91,7 +92,7 @@ static cJSON *parsed(client *c, const char *target)
     return json;
 }
 
-/* The attributes with their values, page by page, and the materials. */
+/* Reads the attributes with their values, page by page, and the materials. */
 static void dump_values(client *c, mirror *m)
 {
     cJSON *list = parsed(c, "/v1/meshes/m/attributes"), *attribute;
@@ -123,7 +124,7 @@ static void dump_values(client *c, mirror *m)
     cJSON_Delete(list);
 }
 
-/* While nobody edits. */
+/* Reads the whole mesh anew, while no client edits it. */
 static void dump(client *c, mirror *m)
 {
     mirror_clear(m);
@@ -232,7 +233,8 @@ static void a_copy_stays_equal_through_random_edits(void **state)
     c.listener = listener_open(d, EVENTS, NULL, 0);
     dump(c.client, &c.mesh);
     for (; done < edits; asked++) {
-        /* What is drawn from must be what the server has; the rest of the time it may lag. */
+        /* Random arguments are drawn from the copy, so here it must have caught up with the server;
+         * at other times it may lag behind. */
         follow_to(&c, last);
         if (md_chance(&random, 1)) {
             cut(&c);
@@ -288,7 +290,7 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     l = listener_open(d, EVENTS "?since=7", NULL, 0);
     assert_string_equal(listener_next(l, true), "resync");
     assert_string_equal(listener_string(l, "reason"), "future");
-    /* It goes on from there. */
+    /* After the `resync`, the stream continues with the next edit. */
     assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
     assert_string_equal(listener_next(l, true), "edit");
     listener_close(l);
@@ -299,7 +301,8 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* The history keeps nothing, so what the feed has let go of is gone. */
+/* The history has no budget and keeps nothing, so events that the server's queue has dropped cannot
+ * be sent again. */
 static void a_gap_in_the_history_is_a_resync(void **state)
 {
     (void)state;
@@ -337,7 +340,8 @@ static long resident_kilobytes(const daemon_process *d)
     return kilobytes;
 }
 
-/* Events of half a hundred kilobytes, many more than buffers on the way hold. */
+/* Each event has some 50 kB, and there are many more than the buffers between daemon and client
+ * hold. */
 static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
 {
     (void)state;
@@ -361,13 +365,13 @@ static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     assert_true(c.applied > 0);
-    assert_true(c.anew > 0); /* more than once where it catches up and falls behind again */
+    assert_true(c.anew > 0); /* more than once if it falls behind again */
     last = post(c.client, "/v1/meshes/m/edits", POKE);
     follow_to(&c, last);
     require_equal(c.client, &c.mesh);
     printf("note: of %d large events %u were applied, taken anew %u times; %ld KiB more resident\n",
            EDITS, c.applied, c.anew, grown);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* which keep what is freed */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* they keep freed memory */
     assert_true(grown < MOST_KILOBYTES);
 #endif
     listener_close(c.listener);
@@ -390,7 +394,8 @@ static void a_dead_client_makes_room(void **state)
     listener_close(second);
     free(daemon_wait_log(d, "\"status\":503", 1));
     listener_close(first);
-    /* Its line in the log is written when the stream is given up. */
+    /* The access log has a line about the stream only after the daemon has closed it; after this
+     * line a second listener must be allowed. */
     free(daemon_wait_log(d, "/events\",\"status\":200", 1));
     second = listener_open(d, EVENTS, NULL, 0);
     assert_int_equal(second->status, 200);
@@ -399,7 +404,7 @@ static void a_dead_client_makes_room(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* On a busy machine a request may miss a deadline of one second, and is sent again. */
+/* Sends a request until it succeeds: on a busy machine it may miss the deadline of one second. */
 static void send_until_done(const daemon_process *d, const char *method, const char *path,
                             const char *body)
 {
@@ -414,7 +419,8 @@ static void send_until_done(const daemon_process *d, const char *method, const c
     assert_true(status == 200 || status == 201);
 }
 
-/* Deadlines of ordinary requests do not end a stream that is silent. */
+/* The deadlines of ordinary requests must not end an event stream that is silent; it is kept alive
+ * by comments. */
 static void silence_is_filled_with_comments(void **state)
 {
     (void)state;
@@ -479,7 +485,8 @@ static size_t open_descriptors(const daemon_process *d)
     return count;
 }
 
-/* With heartbeats an hour apart nothing but the close itself can tell the daemon. */
+/* With heartbeats an hour apart, the daemon can notice only by the closed connection that a
+ * listener is gone. */
 static void closed_listeners_free_their_descriptors(void **state)
 {
     (void)state;

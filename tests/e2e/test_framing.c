@@ -1,6 +1,6 @@
-/* Requests that are not quite requests, each whole, in pieces, and behind good ones on one
- * connection: the good ones are answered in order, then the case with its problem or as it should
- * be, and after a fault nothing more is answered. */
+/* Malformed requests, each sent at once, in pieces, and behind well-formed requests on one
+ * connection: the well-formed ones must be answered in order, then the malformed one with its
+ * problem, and after a framing fault nothing more. */
 #include "tests/e2e/client.h"
 #include "tests/framing_cases.h"
 
@@ -22,7 +22,8 @@
 enum { DEEP = 100, MOST_ANSWERS = DEEP + 4, WHOLE = 1 << 30, WAIT_MILLIS = 60000 };
 
 #define GOOD "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n"
-/* Closes the connection, where it is read as a request. */
+/* A well-formed last request that closes the connection, if the daemon still reads requests
+ * there. */
 #define LAST "GET /readyz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
 
 static daemon_process *server;
@@ -47,16 +48,16 @@ typedef struct answer {
     size_t head_length, body_length;
 } answer;
 
-/* A connection's answers, cut apart. Interim ones (1xx) are left out. */
+/* The answers on a connection, separated from each other. Interim ones (1xx) are left out. */
 typedef struct answers {
     char *bytes;
     size_t length;
     size_t count;
     answer items[MOST_ANSWERS];
-    bool whole; /* nothing else was sent */
+    bool whole; /* the last answer is complete and nothing follows it */
 } answers;
 
-/* The value of a header in `a`, up to the end of its line; NULL when absent. */
+/* Returns the value of a header in the answer, up to the end of its line; NULL if absent. */
 static const char *header_of(const answer *a, const char *name)
 {
     size_t length = strlen(name);
@@ -93,7 +94,8 @@ static void cut(answers *all)
     all->whole = at == end;
 }
 
-/* Send in pieces of this many bytes and read meanwhile and after that until the server closes. */
+/* Sends the bytes in pieces of this size, and reads meanwhile and afterwards until the server
+ * closes the connection. */
 static answers exchange(const char *bytes, size_t length, size_t piece)
 {
     int fd = client_connect(server, 0), on = 1;
@@ -108,7 +110,7 @@ static answers exchange(const char *bytes, size_t length, size_t piece)
         if ((wait.revents & POLLOUT) != 0) {
             size_t now = length - sent < piece ? length - sent : piece;
             ssize_t n = send(fd, bytes + sent, now, MSG_NOSIGNAL | MSG_DONTWAIT);
-            sent = n > 0 ? sent + (size_t)n : length; /* closed: what it said is still read */
+            sent = n > 0 ? sent + (size_t)n : length; /* on an error the answer is still read */
         }
         if ((wait.revents & (POLLIN | POLLHUP | POLLERR)) != 0) {
             char buffer[16384];
@@ -141,7 +143,8 @@ static bool is_problem(const answer *a, const char *code)
            strstr(text, member) != NULL;
 }
 
-/* What is wrong with the answers to `good` requests, the case and a last one; NULL: nothing. */
+/* Returns what is wrong with the answers to `good` well-formed requests, the malformed one and a
+ * last one; NULL: nothing. */
 static const char *find_wrong(const framing_case *c, const answers *all, size_t good)
 {
     if (!all->whole) {
@@ -183,7 +186,7 @@ static size_t try_cases(size_t good, size_t piece)
         }
         memcpy(all + before, bytes, size);
         memcpy(all + before + size, LAST, sizeof LAST - 1);
-        /* A case of many bytes is cut, but not into single ones. */
+        /* A long case is cut into larger pieces than single bytes, to save time. */
         size_t step = piece < 512 && size > 4096 ? 509 : piece;
         answers got = exchange(all, before + size + sizeof LAST - 1, step);
         const char *what = find_wrong(c, &got, good);
@@ -227,7 +230,8 @@ static void each_case_behind_a_hundred_requests_has_its_answer(void **state)
     assert_int_equal(try_cases(DEEP, WHOLE), 0);
 }
 
-/* As much as is allowed of everything leaves libmicrohttpd room for the answer. */
+/* If the head of a request has the maximum length in every respect, libmicrohttpd must still have
+ * room in its buffer for the answer. */
 static void the_largest_head_is_answered(void **state)
 {
     (void)state;
@@ -236,7 +240,8 @@ static void the_largest_head_is_answered(void **state)
     char *bytes = malloc(ROOM);
     assert_non_null(bytes);
     for (size_t fields = 0; fields <= 98; fields += 14) {
-        /* The target as long as may be, then headers up to the limit of either. */
+        /* The target has its maximum length, and the headers grow beyond the limit for their number
+         * or their length. */
         for (size_t size = 6000; size <= 20000; size += 250) {
             size_t at = (size_t)snprintf(bytes, ROOM, "GET /");
             memset(bytes + at, 'a', 8191);

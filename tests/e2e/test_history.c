@@ -1,5 +1,5 @@
-/* A daemon's history, as a client sees it: what a mesh was is read back to the byte at every depth.
- */
+/* The history of a mesh in a real daemon, as a client sees it: at every depth, the mesh of an
+ * earlier revision is read back to the byte. */
 #include "tests/e2e/client.h"
 
 #include "tests/model/random.h"
@@ -36,7 +36,8 @@ static int stop(void **state)
     return daemon_stop(server);
 }
 
-/* All half-edges with their links and all positions. `revision` 0 is the present. */
+/* Returns all half-edges with their links and all positions at a revision; `revision` 0 is the
+ * present one. */
 static char *dump(uint64_t revision)
 {
     static const char *const lines[] = {"Accept: application/x-ndjson", NULL};

@@ -1,5 +1,6 @@
-/* Jobs of a real daemon: progress as a client sees it, cancelling, a full queue, a mesh that is
- * busy and readable, undo afterwards, and a stop while jobs run. */
+/* Jobs of a real daemon: progress as a client sees it, cancelling, a full queue, a mesh that can be
+ * read but not written while a job edits it, undo afterwards, and a stop of the daemon while jobs
+ * run. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -18,7 +19,7 @@
 static const char *const async[] = {"Prefer: respond-async", "Content-Type: application/json",
                                     NULL};
 
-/* The path of the job goes to `path`. */
+/* Submits a job; `path` becomes its path. */
 static void submit(client *c, const char *method, const char *target, const char *body,
                    char path[80])
 {
@@ -30,7 +31,7 @@ static void submit(client *c, const char *method, const char *target, const char
     reply_free(&r);
 }
 
-/* Ask until the job has ended; the reply is the caller's. */
+/* Requests the job until it has ended; the caller must free the reply. */
 static reply await(client *c, const char *path)
 {
     for (;;) {
@@ -44,8 +45,8 @@ static reply await(client *c, const char *path)
     }
 }
 
-/* How many values of progress a listener hears while a file is imported. The job waits behind
- * another one, so that the listener can be there before it begins. */
+/* Returns how many different values of progress a listener gets while a file is imported. The
+ * import waits behind another job, so that the listener connects before it begins. */
 static int hear_an_import(client *c, const reply *file)
 {
     char first[80], second[80], events[100];
@@ -76,7 +77,8 @@ static int hear_an_import(client *c, const reply *file)
     return values;
 }
 
-/* Where other programs want the processor, a listener may come late: it listens to another one. */
+/* On a busy machine the listener may connect late and miss the progress; then the import is
+ * repeated. */
 static void an_import_tells_how_far_it_is(void **state)
 {
     (void)state;
@@ -137,7 +139,7 @@ static void a_full_queue_refuses(void **state)
     assert_true(taken >= 1);
     reply_free(&r);
     client_free(c);
-    assert_int_equal(daemon_stop(d), 0); /* with one that runs and one that waits */
+    assert_int_equal(daemon_stop(d), 0); /* while one job runs and one waits */
 }
 
 static void a_long_edit_is_busy_readable_and_undone(void **state)
@@ -152,7 +154,7 @@ static void a_long_edit_is_busy_readable_and_undone(void **state)
     reply_free(&r);
     reply before = client_get(c, "/v1/meshes/m/content?format=ply");
     submit(c, "POST", "/v1/meshes/m/edits", TRANSFORM, path);
-    /* Busy until it has ended, and readable all the time. */
+    /* Until the job has ended, the mesh must refuse edits and still answer reads. */
     int refused = 0;
     for (;;) {
         r = client_post(c, "/v1/meshes/m/edits", poke);

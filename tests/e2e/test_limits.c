@@ -1,4 +1,5 @@
-/* Limits of clients of a real daemon: requests, connections, and meshes beyond a restart. */
+/* Limits per client in a real daemon: for requests, for connections, and for meshes even after a
+ * restart. */
 #include "tests/e2e/client.h"
 #include "tests/store_folder.h"
 
@@ -13,10 +14,11 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* The SHA-256 of "test". */
+/* The SHA-256 hash of the token "test". */
 #define HASH "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
 
-/* At one request a second the first thousand are far more than it takes. */
+/* The limit is one request a second, so a client that sends a thousand without pause must be
+ * refused at some point, however slow the machine is. */
 static void an_address_that_asks_without_end_is_told_to_wait(void **state)
 {
     (void)state;
@@ -51,14 +53,14 @@ static void one_connection_too_many_is_told_so_and_closed(void **state)
     client *first = client_new(d), *second = client_new(d);
     reply_done(reply_expect(200, client_get(first, "/v1/meshes")));
     reply_done(reply_expect(200, client_get(second, "/v1/meshes")));
-    char *answer = client_raw(d, ask, sizeof ask - 1, 2, false); /* until it is closed */
+    char *answer = client_raw(d, ask, sizeof ask - 1, 2, false); /* until the daemon closes it */
     assert_int_equal(client_raw_status(answer), 429);
     assert_non_null(strstr(answer, "too_many_connections"));
     assert_non_null(strstr(answer, "Connection: close"));
     free(answer);
     client_free(second);
     int status = 429;
-    while (status == 429) { /* the daemon has to see that it is closed */
+    while (status == 429) { /* until the daemon has noticed the closed connection */
         answer = client_raw(d, ask, sizeof ask - 1, 1, false);
         status = client_raw_status(answer);
         free(answer);

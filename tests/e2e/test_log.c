@@ -1,5 +1,5 @@
-/* What the daemon says on standard error: each line in its format, what it starts and stops with,
- * traces, settings that are read again, and no secret. */
+/* The log of the daemon on standard error: each line in its format, the lines at start and stop,
+ * trace ids, settings that are reloaded, and no secret anywhere. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -32,7 +32,7 @@ static const char *member(const cJSON *json, const char *name)
     return cJSON_IsString(item) ? item->valuestring : "";
 }
 
-/* The lines of a log, as JSON; the one that is none must be the ready line. */
+/* The lines of a log, parsed as JSON; the only one that is no JSON must be the ready line. */
 typedef struct lines {
     cJSON *all[200];
     size_t count;
@@ -193,7 +193,8 @@ static void a_level_says_no_more_than_asked_beside_the_requests(void **state)
     free(log);
 }
 
-/* Sends what is given and, where `trace_id` is not NULL, expects that trace to be answered. */
+/* Sends a request with this header and, if `trace_id` is not NULL, requires that the answer belongs
+ * to this trace. */
 static void ask_in_trace(client *c, const char *header, const char *trace_id, char flag, char *span)
 {
     char answered[128], expected[64];
@@ -299,8 +300,8 @@ static void a_reload_reads_the_settings_of_the_log_again(void **state)
     unlink(file);
 }
 
-/* A token goes over the wire as a header, in a URL by mistake, and to the daemon as its hash; a
- * ticket is in a query. None is ever said, at any level and in either format. */
+/* Tokens reach the daemon in a header, by mistake in a URL, and as a hash in its file; a ticket is
+ * in a query. None of these may appear in the log, at any level and in either format. */
 static void no_token_and_no_ticket_is_ever_said(void **state)
 {
     (void)state;

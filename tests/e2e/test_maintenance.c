@@ -1,4 +1,4 @@
-/* hedged --backup, --restore, --verify and --dump. */
+/* The options for maintenance of a store: hedged --backup, --restore, --verify and --dump. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/daemon.h"
 #include "tests/e2e/listener.h"
@@ -35,7 +35,7 @@ static int remove_folder(void **state)
     (void)state;
     (void)snprintf(command, sizeof command, "rm -rf '%s'", folder);
     (void)unlink(file);
-    return system(command); /* a restore leaves a folder in it */
+    return system(command); /* removes all: a restore leaves a folder in it */
 }
 
 static void expect_run(const char *const *arguments, int status, const char *says)
@@ -151,7 +151,7 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     }
     reply_done(reply_expect(200, client_post(c, "/v1/meshes/cube/undo", "{}")));
     client_free(c);
-    /* Beside the daemon. */
+    /* The store can be verified and backed up while the daemon runs. */
     expect_run(ARGUMENTS("--store", store, "--verify"), 0, "cube: whole, revision 5");
     assert_non_null(strstr(output, "3 meshes whole, 0 not"));
     expect_run(ARGUMENTS("--store", store, "--backup", file), 0, "holds 3 meshes");
@@ -172,11 +172,13 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     assert_glb("cube.glb", false);
     assert_glb("cube.revision-2.glb", true);
     assert_glb("torus.glb", true);
-    /* An id is a name of a file only where it is an id. */
+    /* A damaged row has an id that is no valid id: it must not be used as a file name, which could
+     * lead out of the folder. */
     run_sql("UPDATE mesh SET id = '../torus' WHERE id = 'torus'");
     expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "its id cannot be read");
     assert_glb("../torus.glb", false);
-    /* An index without its entries hides no mesh. */
+    /* The index of the mesh ids is damaged so that it lists none: the verification must still find
+     * the meshes in the table. */
     run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
             "FROM sqlite_schema WHERE name = 'kept_by_time') "
             "WHERE name = 'sqlite_autoindex_mesh_1'");

@@ -1,4 +1,5 @@
-/* What the daemon counts is what it takes, and what it may not take it refuses. */
+/* The memory that the daemon counts is what it really takes, and it refuses what exceeds its
+ * budget. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -31,7 +32,7 @@ static void put_grid(client *c, const char *path, int side, long status)
 
 static const char lift[] = "{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]}";
 
-/* A sanitizer's own memory is not the daemon's. */
+/* A sanitizer adds memory of its own, so under one resident memory is not compared. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 
 static double resident(const daemon_process *d)
@@ -80,7 +81,7 @@ static void what_is_counted_is_what_is_taken(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Reads one answer to /livez, which may come in parts. */
+/* Reads one answer to /livez, which may arrive in parts. */
 static void take_answer(int fd)
 {
     char text[4096];
@@ -94,11 +95,12 @@ static void take_answer(int fd)
     assert_memory_equal(text, "HTTP/1.1 200", 12);
 }
 
-/* A session of TLS has keys and buffers of its own beside the connection. */
+/* Besides the connection itself, a TLS session has keys and buffers of its own. */
 enum { CONNECTIONS = 1000, LOOKS = 200000, IDLE_BYTES = 10 * 1024, IDLE_TLS_BYTES = 16 * 1024 };
 
-/* Each has asked once, so that libmicrohttpd has used its buffer. They rest while another client
- * asks on; how often is the bound, not how long. */
+/* Each connection has sent one request, so that libmicrohttpd has used its buffer, and then stays
+ * idle. Another client looks at the counted memory until it has fallen; the number of looks is
+ * limited, not the time. */
 static void a_connection_at_rest_holds_little(void **state)
 {
     (void)state;
@@ -163,7 +165,8 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
     assert_int_equal(status, 507);
     assert_true(made > 3 && made < MANY);
 
-    /* Full, it refuses edits that take more, whole, and answers what takes little. */
+    /* When the budget is used up, edits that need more memory must be refused as a whole, and small
+     * requests still be answered. */
     int edits = 0;
     for (status = 200; edits < MANY && status == 200;) {
         reply r = client_post(c, "/v1/meshes/m/edits", lift);
@@ -184,7 +187,8 @@ static void what_does_not_fit_the_budget_is_refused(void **state)
         reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
     }
 
-    /* And there is room again, with nothing half done left behind. */
+    /* After meshes were deleted there is room again, and undo must show that no refused edit was
+     * done in part. */
     reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/edits", lift)));
     for (int i = 0; i < edits + 1; i++) {
         reply_done(reply_expect(200, client_post(c, "/v1/meshes/m/undo", NULL)));

@@ -1,10 +1,12 @@
-/* In a control group that allows little, the daemon refuses before the kernel ends it.
+/* In a control group with little memory, the daemon must refuse requests before the kernel kills
+ * it.
  *
- * The group is made below that of this test, in the version that limits memory here. By hand, as
- * root: mkdir /sys/fs/cgroup/small; echo 300M >/sys/fs/cgroup/small/memory.max; echo $$
- * >/sys/fs/cgroup/small/cgroup.procs; build/hedged (in version 1 the files are below
- * /sys/fs/cgroup/memory and the limit is memory.limit_in_bytes). Where none can be made the test
- * says so and gives the daemon the budget that 300 MiB lead to. */
+ * The test makes the group below its own, in the version of control groups that limits memory on
+ * this machine. To try it by hand, as root: mkdir /sys/fs/cgroup/small; echo 300M
+ * >/sys/fs/cgroup/small/memory.max; echo $$ >/sys/fs/cgroup/small/cgroup.procs; build/hedged (in
+ * version 1 the files are below /sys/fs/cgroup/memory and the limit is memory.limit_in_bytes). If
+ * no group can be made, the test says so and gives the daemon the budget that it would derive from
+ * 300 MiB. */
 #include "tests/e2e/client.h"
 
 #include "system/memory_limit.h"
@@ -22,7 +24,7 @@
 
 #define MIB (UINT64_C(1) << 20)
 
-/* A sanitizer's own memory is not the daemon's, and more than the group allows. */
+/* A sanitizer needs memory of its own, more than the group allows. */
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 enum { IN_GROUP = 0 };
 #else
@@ -33,7 +35,7 @@ enum { LIMIT_MIB = 300, MANY = 400, PATH_BYTES = 512 };
 
 typedef struct group {
     char parent[PATH_BYTES], own[PATH_BYTES + 32];
-    const char *usage; /* the file that says what the group ever held */
+    const char *usage; /* the file with the most memory that the group ever held */
 } group;
 
 static bool write_text(const char *folder, const char *name, const char *text)
@@ -45,7 +47,8 @@ static bool write_text(const char *folder, const char *name, const char *text)
     return file != NULL && fclose(file) == 0 && good;
 }
 
-/* Where this process is in version 1 (`key` ":memory:") or 2 ("0::"), below `mount`. */
+/* Finds the control group of this process in version 1 (`key` ":memory:") or 2 ("0::"), below
+ * `mount`. */
 static bool find_parent(const char *key, const char *mount, char out[PATH_BYTES])
 {
     char line[PATH_BYTES];
@@ -93,7 +96,7 @@ static bool make_group(group *g)
     return false;
 }
 
-/* This process goes back to where it came from; the daemon stays. */
+/* Moves this process back to the group where it was before; the daemon stays in the small one. */
 static void leave_group(const group *g)
 {
     char pid[32];
@@ -116,7 +119,7 @@ static void end_group(const group *g)
     assert_int_equal(rmdir(g->own), 0);
 }
 
-/* What the daemon says at start, and its budget. */
+/* Requires that the daemon says these words about its budget at start. */
 static void expect_budget(daemon_process *d, client *c, const char *words)
 {
     char *log = daemon_wait_log(d, "listening on", 1);

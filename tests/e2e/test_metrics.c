@@ -1,5 +1,5 @@
-/* GET /metrics of a real daemon: what happens is counted under its name, promtool finds nothing
- * wrong with the page, and the rules for alerts name metrics that there are. */
+/* GET /metrics of a real daemon: each event is counted under its name, promtool finds no fault in
+ * the page, and the alerting rules name only metrics that exist. */
 #include "api/metric/metric_page.h"
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
@@ -24,7 +24,7 @@ static reply read_page(client *c)
     return reply_expect(200, client_get(c, "/metrics"));
 }
 
-/* The value of a sample, 0 where the page has none. */
+/* Returns the value of a sample, 0 if the page has none. */
 static double value_of(const reply *page, const char *sample)
 {
     const size_t length = strlen(sample);
@@ -38,7 +38,7 @@ static double value_of(const reply *page, const char *sample)
     return 0;
 }
 
-/* Asks for what each row of `moved` counts. */
+/* Sends requests that cause everything that the rows of `moved` count. */
 static void let_things_happen(client *c)
 {
     const char *const async[] = {"Prefer: respond-async", NULL};
@@ -62,7 +62,7 @@ static void let_things_happen(client *c)
     reply_header(&job, "Location", target, sizeof target);
     snprintf(stream, sizeof stream, "%s/events", target);
     reply_done(job);
-    /* The stream of a job ends when the job has. */
+    /* The event stream of a job ends when the job has ended, so this waits for the job. */
     reply_done(reply_expect(200, client_get(c, stream)));
 }
 
@@ -137,7 +137,7 @@ static void what_happens_is_counted(void **state)
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
 
-    /* Its mesh is on the disk, and is loaded when it is asked for. */
+    /* After the restart the mesh is only on the disk, and the first request for it loads it. */
     d = daemon_start(ARGUMENTS("--store", store));
     c = client_new(d);
     reply_done(reply_expect(200, client_get(c, "/v1/meshes/m")));
@@ -154,7 +154,7 @@ static void what_happens_is_counted(void **state)
 
 static int run(const char *command)
 {
-    int status = system(command); /* NOLINT(cert-env33-c): the command is this test's own */
+    int status = system(command); /* NOLINT(cert-env33-c): this file builds the command */
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

@@ -1,4 +1,4 @@
-/* The daemon as a process: its options, its log, its signals, and what it does at its limits. */
+/* The daemon as a process: its options, its log, its signals, and its behaviour at its limits. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -46,7 +46,7 @@ static void test_port_in_use(void **state)
     (void)state;
     daemon_process *d = daemon_start(NULL);
     const char *address = strstr(daemon_url(d), "127");
-    address = address == NULL ? daemon_url(d) : address; /* a path */
+    address = address == NULL ? daemon_url(d) : address; /* of a Unix socket: its path */
     char output[4096];
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", address, "--store", "memory"), output, sizeof output), 1);
@@ -76,7 +76,7 @@ static void test_samples_and_log(void **state)
     assert_string_not_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "bad\"id");
     reply_free(&r);
     client_free(c);
-    kill(daemon_pid(d), SIGHUP); /* not a reason to stop, with or without tokens */
+    kill(daemon_pid(d), SIGHUP); /* must not stop the daemon, with or without tokens */
     c = client_new(d);
     r = client_get(c, "/livez");
     assert_int_equal(r.status, 200);
@@ -85,7 +85,7 @@ static void test_samples_and_log(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Each request leaves one line of JSON, written by the time the daemon has ended. */
+/* Each request must leave one line of JSON, which is written before the daemon ends. */
 static void test_log_lines(void **state)
 {
     (void)state;
@@ -124,7 +124,7 @@ static void a_terminal_is_told_what_to_open_and_spared_the_log(void **state)
     daemon_process *d = daemon_start_on_terminal(NULL);
     char hint[400];
     const char *url = daemon_url(d);
-    if (transport_get() == TRANSPORT_UNIX) { /* which no browser opens */
+    if (transport_get() == TRANSPORT_UNIX) { /* a browser cannot open it */
         snprintf(hint, sizeof hint,
                  ": listening on %s\ncurl --unix-socket %s http://localhost/v1/meshes asks hedge; "
                  "Ctrl-C stops it\n",
@@ -155,7 +155,7 @@ typedef struct worker {
     int id, answered;
 } worker;
 
-/* Writes until the daemon is gone. Whatever was answered was a whole answer. */
+/* Sends edits until the daemon has stopped; each answer that came must be complete. */
 static void *edit_on(void *context)
 {
     worker *w = context;
@@ -192,11 +192,11 @@ static void test_stop_under_load(void **state)
         workers[i] = (worker){d, i, 0};
         assert_int_equal(pthread_create(&threads[i], NULL, edit_on, &workers[i]), 0);
     }
-    reply r = client_get(c, "/v1/meshes/m0"); /* they are at work by the time this is answered */
+    reply r = client_get(c, "/v1/meshes/m0"); /* by its answer the writers have begun */
     assert_int_equal(r.status, 200);
     reply_free(&r);
     client_free(c);
-    /* The workers use the daemon's facts until they have seen it go. */
+    /* `d` stays allocated until all writers have seen the daemon end, because they use it. */
     kill(daemon_pid(d), SIGTERM);
     for (int i = 0; i < WORKERS; i++) {
         pthread_join(threads[i], NULL);

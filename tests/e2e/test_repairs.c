@@ -1,5 +1,5 @@
-/* A large broken file sent to a real daemon: its job is refused with the repairs that let it pass,
- * and with them it passes and tells what it is at. */
+/* A large broken file is sent to a real daemon: its job is refused and names the repairs that would
+ * help, and with these it is accepted and reports its progress. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -13,8 +13,8 @@
 
 enum { SIDE = 250, LINE = 64 };
 
-/* A grid whose rows have vertices of their own, every third triangle turned, and the first one
- * there twice. */
+/* Returns a grid in which each row has vertices of its own, every third triangle is reversed, and
+ * the first triangle is there twice. */
 static char *broken_file(size_t *length)
 {
     size_t room = (size_t)LINE * SIDE * SIDE * 5 + 1000, used = 0;
@@ -43,7 +43,7 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* What became of a job: asked of its events, which end with it. */
+/* Uploads the file as a job and reads its events, which end with the job; returns the ended job. */
 static reply run(client *c, const char *target, const char *body, size_t length, reply *events)
 {
     static const char *const headers[] = {"Prefer: respond-async", "Content-Type: model/obj", NULL};

@@ -1,5 +1,5 @@
-/* A daemon that is killed, or stopped, and started again on its folder: everything it had answered
- * is there, the history with it, and goes on from there. */
+/* A daemon that is killed or stopped and started again on its folder: everything that it had
+ * answered is there, including the history, and can be edited further. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -60,8 +60,8 @@ static void send(const char *method, const char *path, const char *body, long st
     reply_done(reply_expect(status, client_send(http, method, path, body, strlen(body), NULL)));
 }
 
-/* What takes another value in each process, or another one for the same content: the bytes that a
- * mesh takes in memory. */
+/* Replaces values that differ between two processes although the content is equal, such as the
+ * bytes that a mesh takes in memory. */
 static void blank(char *text)
 {
     for (char *at = strstr(text, "\"memory_"); at != NULL; at = strstr(at + 1, "\"memory_")) {
@@ -69,7 +69,7 @@ static void blank(char *text)
     }
 }
 
-/* All that clients see, tags and history included. */
+/* Returns everything that clients can see, including entity tags and histories. */
 static char *state_of(void)
 {
     static const char *const targets[] = {"/v1/meshes",
@@ -145,7 +145,8 @@ static void what_was_answered_is_there_after_a_kill(void **state)
     kill_and_start();
     reply_done(reply_expect(404, client_get(http, "/v1/meshes/gone")));
     expect_state(before);
-    /* In the other order: the list from the disk, and of meshes that are in memory. */
+    /* The state must also survive a stop by signal and another start; the list of meshes is
+     * requested first, before any mesh is loaded from the disk. */
     stop_and_start();
     expect_state(before);
     free(before);
@@ -159,7 +160,9 @@ static void undo_and_redo_lead_where_they_would_have_led(void **state)
     char *would[STEPS], path[64];
     make_history();
     send("PUT", "/v1/meshes/again", "{\"shape\":\"cube\"}", 201);
-    /* A copy of the folder lives on without the kill. */
+    /* The folder is copied after a stop, so that two daemons can start from the same state: one
+     * undoes and redoes without interruption, the other is killed after each step. Both must show
+     * the same meshes. */
     char other[FOLDER_PATH];
     folder_make(other);
     client_free(http);
@@ -188,7 +191,7 @@ static void undo_and_redo_lead_where_they_would_have_led(void **state)
     snprintf(folder, sizeof folder, "%s", other);
 }
 
-/* Tags of a state that was replaced or removed are never those of another one. */
+/* The entity tags of a state that was replaced or removed must never be given to another state. */
 static void a_tag_names_one_state_for_ever(void **state)
 {
     (void)state;
@@ -210,7 +213,8 @@ static void a_tag_names_one_state_for_ever(void **state)
     }
 }
 
-/* A request that was answered before the kill is not done again after it. */
+/* A request that was answered before the kill must not be executed again when it is repeated
+ * afterwards. */
 static void a_key_is_good_after_a_restart(void **state)
 {
     (void)state;
@@ -251,8 +255,9 @@ static void a_key_is_good_after_a_restart(void **state)
     reply_free(&r);
 }
 
-/* Who was listening is told what it missed by the history that came back, and one that listened to
- * another mesh of the id is sent to fetch it anew. */
+/* A listener that was connected before the restart must get the events that it missed from the
+ * history on the disk; one that listened to an earlier mesh of the same id must be told to fetch it
+ * anew. */
 static void listeners_go_on_where_they_were(void **state)
 {
     (void)state;
@@ -298,8 +303,8 @@ static double meshes_there(void)
     return count;
 }
 
-/* A first start that ended between two samples is made good by the next; a sample that was deleted
- * since stays so. */
+/* The first start of a daemon adds sample meshes. If it is killed between two of them, the next
+ * start must add the rest; a sample that was deleted since must not come back. */
 static void samples_come_to_a_store_until_they_were_all_there(void **state)
 {
     (void)state;

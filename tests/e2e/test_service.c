@@ -1,5 +1,5 @@
-/* What an operator's tools take for granted: systemd is told, a file holds the settings.
- */
+/* The daemon as a service of an operator: it tells systemd its state, and a file holds its
+ * settings. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -18,7 +18,8 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* systemd's end of NOTIFY_SOCKET; a file, or with '@' a name that the kernel keeps. */
+/* Opens systemd's end of NOTIFY_SOCKET; the name is that of a file or, with '@', one in the
+ * kernel's abstract namespace. */
 static int be_systemd(const char *name)
 {
     struct sockaddr_un own = {.sun_family = AF_UNIX};
@@ -37,7 +38,7 @@ static int be_systemd(const char *name)
     return fd;
 }
 
-/* The next message that is no sign of life; `text` has room for 512 bytes. */
+/* Receives the next message that is not a watchdog heartbeat; `text` has room for 512 bytes. */
 static void hear(int fd, char *text)
 {
     do {
@@ -56,7 +57,7 @@ static void expect_message(int fd, const char *expected)
     assert_string_equal(text, expected);
 }
 
-/* systemd shows the last STATUS. */
+/* Requires the message READY with a STATUS, of which systemd shows the last one. */
 static void expect_ready(int fd, const daemon_process *d)
 {
     char expected[256], text[512];
@@ -94,7 +95,7 @@ static void systemd_hears_of_start_life_and_stop(void **state)
     rmdir(folder);
 }
 
-/* Another process is watched: this one is not asked, and asks nobody. */
+/* If WATCHDOG_PID names another process, this daemon must send no heartbeats. */
 static void a_watchdog_of_another_process_is_not_fed(void **state)
 {
     (void)state;
@@ -152,7 +153,8 @@ static void a_file_holds_the_settings(void **state)
 #define TOKEN_LINE \
     "me read sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08\n"
 
-/* systemd hears when a reload begins, by its clock, and when it has ended and how. */
+/* systemd must be told when a reload begins, by the monotonic clock, when it has ended, and whether
+ * it succeeded. */
 static void systemd_hears_of_a_reload(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Clients that take a large mesh slowly keep nobody waiting: neither who edits it nor who reads it.
- */
+/* Clients that read a large mesh slowly delay no other client, neither one that edits the mesh nor
+ * one that reads it. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -18,7 +18,7 @@
 
 #include <cmocka.h>
 
-/* SIDE x SIDE quads: a million, and less where a sanitizer is slow. */
+/* The mesh has SIDE x SIDE quads: a million, and fewer under a sanitizer, which is slow. */
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 enum { SIDE = 500 };
 #else
@@ -32,7 +32,7 @@ typedef struct slow_client {
     char first[FIRST];
 } slow_client;
 
-/* Ask, take the first KiB, and then nothing. */
+/* Sends a request, reads the first KiB of the answer, and then nothing more. */
 static void begin_slowly(slow_client *s, const daemon_process *d, const char *path)
 {
     char request[256];
@@ -59,7 +59,7 @@ static bool next_byte(int fd, char *buffer, size_t *at, size_t *got, size_t size
     return true;
 }
 
-/* The rest of a chunked answer, which must be `whole` to its last byte. */
+/* Reads the rest of a chunked answer, which must equal `whole` to its last byte. */
 static void end_quickly(slow_client *s, const char *whole, size_t length)
 {
     enum { SIZE = 1 << 16 };
@@ -93,8 +93,9 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
     free(buffer);
 }
 
-/* Everything between begin and end is answered while the slow clients take nothing: that it comes
- * to its end is the test. More of them than there are workers. */
+/* There are more slow clients than workers. The requests between begin_slowly and end_quickly
+ * are sent while the slow clients read nothing: if these delayed the others, the test would
+ * never end. */
 static void slow_downloads_delay_nobody(void **state)
 {
     (void)state;
@@ -128,7 +129,7 @@ static void slow_downloads_delay_nobody(void **state)
                 memcmp(after.body, before.body, after.length) != 0);
     reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
 
-    /* And each of them gets the mesh as it was when it asked. */
+    /* Each of the slow clients must get the mesh as it was when its request came. */
     for (int i = 0; i < SLOW; i++) {
         end_quickly(&slow[i], before.body, before.length);
     }
@@ -138,9 +139,9 @@ static void slow_downloads_delay_nobody(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* --- who does not read at all --- */
+/* --- clients that do not read at all --- */
 
-/* Some connection buffers are kept for the next connections. */
+/* The daemon keeps some buffers of closed connections for the next connections. */
 enum { KEPT_BYTES = 8 << 20 };
 
 enum {
@@ -171,7 +172,8 @@ static void ask_and_wait(const daemon_process *d, int sockets[IDLERS])
     }
 }
 
-/* The daemon resets a connection whose client took too little, so it shows as an error. */
+/* Requires that every connection is closed. The daemon resets the connection of a client that reads
+ * too little, so the client sees an error. */
 static void expect_all_closed(int sockets[IDLERS])
 {
     for (int i = 0; i < IDLERS; i++) {
@@ -182,7 +184,8 @@ static void expect_all_closed(int sockets[IDLERS])
     }
 }
 
-/* With an hour until a silent connection is closed, only the rule about reading can close these. */
+/* An idle connection is closed only after an hour, so it must be the rule about the minimum rate of
+ * reading that closes these. */
 static const char *const impatient[] = {
     "--log", "off", "--body-grace", "1", "--min-rate", "4K", "--idle-timeout", "3600", NULL};
 
@@ -200,7 +203,8 @@ static void a_reader_who_stops_is_closed_though_all_of_the_answer_was_sent(void 
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* Bytes that wait in the daemon's sockets, without the kernel's own records. */
+/* Returns the bytes that wait in the daemon's sockets to be read by clients, without the kernel's
+ * own records. */
 static size_t waiting_bytes(const daemon_process *d)
 {
     char line[512];
@@ -226,7 +230,8 @@ static double counted(client *c)
     return bytes;
 }
 
-/* Each look is a request, so that what is waited for is work and not time. */
+/* Each look at the counters is a request, so that the waiting is bounded by a number of requests
+ * and not by time. */
 static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
 {
     (void)state;
@@ -252,7 +257,8 @@ static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
     print_message("note: %d clients who read nothing: %.1f MB in sockets, counted %.1f MB more\n",
                   IDLERS, (double)waiting / 1e6, (counted(c) - before) / 1e6);
     assert_true(counted(c) >= before + (double)waiting);
-    /* They took nothing, so that their sockets were not made larger. */
+    /* The daemon enlarges the send buffer of a client that reads well; these clients read nothing,
+     * so their buffers must be small. */
     assert_true(waiting_bytes(d) <= (size_t)IDLERS * SRV_SEND_BUFFER / 2);
     for (int i = 0; i < IDLERS; i++) {
         close(sockets[i]);

@@ -1,5 +1,5 @@
-/* What clients hold of a daemon across its end, whether it was told to stop or killed: jobs, keys,
- * cursors, event ids and tags. */
+/* What clients hold of a daemon stays valid after it was stopped or killed and started again: jobs,
+ * idempotency keys, cursors, event ids and entity tags. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -21,7 +21,7 @@
 static char folder[FOLDER_PATH], store[FOLDER_PATH + 16];
 static daemon_process *server;
 static client *http;
-static bool kills; /* the end of the daemon is a kill */
+static bool kills; /* whether the daemon is killed or stopped */
 
 static void begin(void)
 {
@@ -91,7 +91,7 @@ static void submit(const char *method, const char *path, const char *body, const
     reply_free(&r);
 }
 
-/* The job as it is told when it has ended; the caller frees it. */
+/* Returns the job as the daemon shows it when it has ended; the caller must free it. */
 static char *await(const char *job)
 {
     for (;;) {
@@ -154,7 +154,8 @@ static void jobs_that_had_ended_are_told_as_before(void **state)
     r = reply_expect(200, client_get(http, path));
     char *file = strdup(r.body);
     reply_free(&r);
-    /* A page of the list goes on where it was. */
+    /* The cursor of a page of the list of jobs, taken before the restart, must lead to the next
+     * page after it. */
     r = reply_expect(200, client_get(http, "/v1/jobs?limit=2"));
     char *next = strdup(reply_string(&r, "next")), list[200];
     reply_free(&r);
@@ -180,7 +181,7 @@ static void jobs_that_had_ended_are_told_as_before(void **state)
         assert_string_equal(reply_string(&r, "items.1.id"), read + strlen("/v1/jobs/"));
         reply_free(&r);
     }
-    /* One that comes now is the last of the list. */
+    /* A job submitted after the restart must be the last one in the list. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":1}", NULL, edit);
     r = reply_expect(200, client_get(http, "/v1/jobs"));
     assert_string_equal(reply_string(&r, "items.4.id"), edit + strlen("/v1/jobs/"));
@@ -214,7 +215,7 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     end_and_begin();
     expect_job(waiting, told);
     free(told);
-    /* This request has not been done before. */
+    /* The job with this key was interrupted, so the repeated request must be executed. */
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            again);
     told = await(again);
@@ -335,7 +336,7 @@ static void cursors_tags_and_event_ids_go_on(void **state)
         listener_close(l);
         for (size_t i = 0; i < LISTS; i++) {
             char *again = page(lists[i][1], cursors[i]);
-            if (i > 0) { /* the list of meshes says how much memory each takes */
+            if (i > 0) { /* the list of meshes contains their memory, which differs */
                 assert_string_equal(again, pages[i]);
             }
             free(again);

@@ -1,5 +1,5 @@
-/* A daemon that speaks TLS, and one on a Unix socket: who gets through, and what a new certificate
- * does. */
+/* A daemon that speaks TLS, and one on a Unix socket: which clients get through, and what a new
+ * certificate changes. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 #include "tests/store_folder.h"
@@ -22,7 +22,7 @@
 static char folder[FOLDER_PATH];
 static char certificate[FOLDER_PATH + 20], key[FOLDER_PATH + 20], first[FOLDER_PATH + 20];
 
-/* Runs a command of the shell and gives its status and what it said. */
+/* Runs a shell command; returns its status, and its output in `said`. */
 static int shell(char *said, size_t size, const char *format, ...)
 {
     char command[2000];
@@ -48,7 +48,7 @@ static daemon_process *start(void)
     return daemon_start(ARGUMENTS("--tls-cert", certificate, "--tls-key", key));
 }
 
-/* What openssl says of a connection that it makes with these options. */
+/* Connects with openssl s_client and these options; `said` becomes its output. */
 static void s_client(const daemon_process *d, const char *options, char *said, size_t size)
 {
     shell(said, size,
@@ -64,7 +64,7 @@ static void versions_before_1_2_are_refused(void **state)
     static const char *const old[] = {"-tls1", "-tls1_1"};
     for (size_t i = 0; i < 2; i++) {
         s_client(d, old[i], said, sizeof said);
-        /* The client did begin, and the daemon ended it. */
+        /* The client must have begun a handshake, and the daemon must have ended it. */
         if (strstr(said, "Cipher is (NONE)") == NULL || strstr(said, "unexpected eof") == NULL) {
             fail_msg("%s: %s", old[i], said);
         }
@@ -76,8 +76,8 @@ static void versions_before_1_2_are_refused(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-/* In TLS 1.2 a client may ask for another handshake; openssl does at a line "R". Its input stays
- * open, so that it ends when the daemon ends the connection. */
+/* In TLS 1.2 a client may ask for another handshake, and openssl does so at a line "R". Its input
+ * stays open, so it ends only if the daemon closes the connection. */
 static void a_client_that_renegotiates_is_closed(void **state)
 {
     (void)state;
@@ -126,7 +126,8 @@ static void a_new_certificate_is_for_new_connections(void **state)
     free(daemon_wait_log(d, "new connections get the certificate", 1));
     s_client(d, "", said, sizeof said);
     assert_non_null(strstr(said, "subject=CN = after"));
-    /* A new connection would not be trusted. */
+    /* The client of the old certificate keeps its connection; on a new one it would not trust the
+     * new certificate. */
     reply_done(reply_expect(200, client_get(c, "/livez")));
     client *other = client_new(d);
     client_trust(other, certificate);
@@ -197,7 +198,8 @@ static void what_cannot_serve_stops_the_start(void **state)
         2);
 }
 
-/* Its framing is refused over TLS too, and a body that is cut off hears why. */
+/* Framing faults must be refused over TLS as they are over TCP, and if a body breaks off, the
+ * client must be answered why. */
 static void what_comes_over_tls_is_checked_byte_for_byte(void **state)
 {
     (void)state;
@@ -271,7 +273,7 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(found.st_mode & 07777, 0660);
     client *c = client_new(d);
     reply_done(reply_expect(201, client_post(c, "/v1/meshes", "{\"shape\":\"cube\"}")));
-    /* A live one is not taken away. */
+    /* The socket of a running daemon must not be taken over by a second daemon. */
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
     assert_non_null(strstr(said, "another program listens there"));
@@ -281,11 +283,11 @@ static void a_unix_socket_is_made_and_removed(void **state)
     client_free(c);
     daemon_kill(d);
     assert_int_equal(stat(listen + 5, &found), 0);
-    /* One that was left behind is. */
+    /* A socket that a killed daemon left behind must be replaced. */
     d = daemon_start(ARGUMENTS("--listen", listen));
     assert_int_equal(daemon_stop(d), 0);
     assert_int_not_equal(stat(listen + 5, &found), 0);
-    /* What is no socket is nobody's to remove. */
+    /* A file that is no socket must not be removed, even if it has the name. */
     assert_int_equal(shell(said, sizeof said, "echo x >%s", listen + 5), 0);
     assert_int_equal(
         daemon_run(ARGUMENTS("--listen", listen, "--store", "memory"), said, sizeof said), 1);
@@ -296,7 +298,8 @@ static void a_unix_socket_is_made_and_removed(void **state)
     assert_int_equal(daemon_run(ARGUMENTS("--listen", longest), said, sizeof said), 2);
 }
 
-/* A client that reads nothing of a long answer is closed, as over TCP. */
+/* A client of a Unix socket that reads nothing of a long answer must be closed, as it is over
+ * TCP. */
 static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 {
     (void)state;
@@ -311,7 +314,7 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
     static const char request[] =
         "GET /v1/meshes/large/content?format=obj HTTP/1.1\r\nHost: localhost\r\n\r\n";
     assert_int_equal(write(fd, request, sizeof request - 1), (int)sizeof request - 1);
-    /* Its line is written when it is closed, and nothing of the answer was read before. */
+    /* The request is logged when its connection is closed; until then the client reads nothing. */
     free(daemon_wait_log(d, "/v1/meshes/large/content", 1));
     close(fd);
     client_free(c);
@@ -321,7 +324,7 @@ static void a_slow_reader_of_a_unix_socket_is_closed(void **state)
 static int make_folder(void **state)
 {
     (void)state;
-    transport_choose(TRANSPORT_TCP); /* each test has options of its own */
+    transport_choose(TRANSPORT_TCP); /* each test chooses options itself */
     folder_make(folder);
     snprintf(certificate, sizeof certificate, "%s/certificate.pem", folder);
     snprintf(key, sizeof key, "%s/key.pem", folder);

@@ -1,4 +1,5 @@
-/* A daemon with --tokens: who gets in, and what a file that is read again does. */
+/* A daemon with --tokens: which requests are admitted, and what changes when the file of tokens is
+ * reloaded. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/listener.h"
 #include "tests/store_folder.h"
@@ -15,7 +16,7 @@
 
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* A token that the daemon made, and its line of the file. */
+/* A token made by the daemon's own command, and its line for the file of tokens. */
 typedef struct made {
     char token[64], line[256], header[100];
 } made;

@@ -1,7 +1,7 @@
-/* Files made to hurt: numbers that promise more than follows, elements that need no bytes, nesting,
- * and 16 MB of what readers do slowly. Sent to a real daemon plain and in gzip, each gets its
- * answer, within 256 MB of memory over its own size and ten times the processor time that the same
- * daemon takes for an ordinary file of 16 MB. */
+/* Files made to hurt: numbers that promise more data than follows, elements that need no bytes,
+ * nesting, and 16 MB of what readers do slowly. They are sent to a real daemon plain and in gzip.
+ * Each must get its answer, within 256 MB of memory beyond its own size, and within ten times the
+ * processor time that the same daemon takes for an ordinary file of 16 MB. */
 #include "tests/e2e/client.h"
 
 #include "tests/codings.h"
@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* The memory of a sanitizer is not the daemon's. */
+/* A sanitizer adds memory of its own, so under one memory is not compared. */
 #if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
 static const bool counts_memory = false;
 #else
@@ -27,12 +27,12 @@ enum { ONE = 16 << 20, OVER = 256 << 20, ROOM = 600, TIMES_ORDINARY = 10 };
 
 typedef struct trap {
     const char *what, *type;
-    /* `before`, `part` again and again up to `size` bytes in all, `after`; a NUL of the file is
-     * written as $ */
+    /* The file consists of `before`, `part` repeated up to `size` bytes in all, and `after`; a NUL
+     * in it is written as $. */
     const char *before, *part, *after;
     size_t size;
     long status;
-    const char *words; /* of the problem */
+    const char *words; /* expected in the problem */
 } trap;
 
 #define ASCII  "ply\nformat ascii 1.0\n"
@@ -121,7 +121,8 @@ static const trap traps[] = {
      "endsolid\n", ONE, 422, ""},
 };
 
-/* A tree whose levels each show the next one twice: 2^40 meshes. */
+/* Returns a glTF with a tree of nodes, each level of which refers to the next one twice: 2^40
+ * meshes. */
 static char *double_nodes(size_t *length)
 {
     size_t room = 8192, at;
@@ -158,7 +159,7 @@ static char *bytes_of(const trap *t, size_t *length)
     return bytes;
 }
 
-/* What time_ordinary found last. */
+/* The last result of time_ordinary(). */
 static double ordinary;
 
 static reply put_body(client *c, const daemon_process *d, const char *type, const char *coding,
@@ -170,8 +171,8 @@ static reply put_body(client *c, const daemon_process *d, const char *type, cons
     const char *const headers[] = {content, coding == NULL ? NULL : encoding, NULL};
     double start = daemon_cpu(d);
     reply r = client_send(c, "PUT", "/v1/meshes/trap", body, length, headers);
-    /* When an answer comes in the middle of a long body the daemon waits a while for the rest; a
-     * client that goes on sending may lose the answer with the connection. */
+    /* If the answer comes in the middle of a long body, the daemon waits a while for the rest and
+     * then closes; a client that still sends may lose the answer, and sends the request again. */
     for (int tries = 0; tries < 10 && r.status < 200; tries++) {
         reply_free(&r);
         start = daemon_cpu(d);
@@ -181,7 +182,7 @@ static reply put_body(client *c, const daemon_process *d, const char *type, cons
     return r;
 }
 
-/* The processor time that the daemon takes at this moment for 16 MB of triangles. */
+/* Returns the processor time that the daemon takes now for 16 MB of triangles. */
 static double time_ordinary(client *c, const daemon_process *d)
 {
     static const trap triangles = {
@@ -195,7 +196,8 @@ static double time_ordinary(client *c, const daemon_process *d)
     return took;
 }
 
-/* What the body costs, held against what `size` bytes may: that many has the body, unfolded. */
+/* Sends a body, and fails the test if it takes more processor time or memory than a body of `size`
+ * decompressed bytes may. */
 static reply send(client *c, const daemon_process *d, const char *what, const char *type,
                   const char *coding, const char *body, size_t length, size_t size)
 {
@@ -215,7 +217,7 @@ static reply send(client *c, const daemon_process *d, const char *what, const ch
         r = put_body(c, d, type, coding, body, length, &took);
     }
     size_t peak = daemon_peak(d);
-    /* the body, and the soup or mesh that it is */
+    /* the daemon may hold the body, and the triangle soup or mesh made from it */
     if (counts_memory && peak > OVER + 2 * (size_t)ONE + 40 * 1024 * 1024) {
         fail_msg("%s, %s: %zu MB", type, what, peak >> 20);
     }
@@ -233,7 +235,8 @@ static void try_trap(client *c, const daemon_process *d, const trap *t, const ch
                  t->status, t->words, r.body);
     }
     reply_free(&r);
-    /* What unfolds to more than a hundred times its size is refused for that. */
+    /* In gzip, a body that decompresses to more than a hundred times its size may be refused for
+     * that reason instead. */
     size_t packed;
     char *coded = coding_pack("gzip", bytes, length, &packed);
     r = send(c, d, t->what, t->type, "gzip", coded, packed, length);

@@ -1,5 +1,5 @@
-/* The main job from end to end, as a client does it: make a mesh, edit it, walk it, ask about it,
- * take edits back, save it. Every route answers once over a real connection. */
+/* The main work from end to end, as a client does it: create a mesh, edit it, walk along it, query
+ * it, undo edits, save it. Every route answers at least once over a real connection. */
 #include "tests/e2e/client.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ static void expect_counts(const reply *r, int vertices, int edges, int faces)
     assert_int_equal((int)reply_number(r, "counts.faces"), faces);
 }
 
-/* Create, and give the path of the mesh. */
+/* Creates a mesh; `path` becomes its path. */
 static void create(const char *json, char path[128])
 {
     reply r = reply_expect(201, client_post(http, "/v1/meshes", json));
@@ -69,7 +69,7 @@ static void test_document_edit_walk_undo(void **state)
     assert_true(reply_number(&r, "area") == 1);
     reply_free(&r);
 
-    /* The diagonal 2-0 is edge 2; splitting it makes 4 triangles. */
+    /* The square has the diagonal 2-0, edge 2; splitting this edge makes 4 triangles. */
     r = reply_expect(200, client_post(http, below(mesh, "/edits"),
                                       "{\"op\":\"edge_split\",\"edge\":2,\"t\":0.5}"));
     assert_int_equal((int)reply_number(&r, "revision"), 2);
@@ -91,7 +91,7 @@ static void test_document_edit_walk_undo(void **state)
     assert_string_equal(reply_string(&r, "relation"), "faces");
     reply_free(&r);
 
-    /* Walk around face 0 by its links alone. */
+    /* Follows the `next` links around face 0, one request each. */
     r = reply_expect(200, client_get(http, below(mesh, "/faces/0")));
     int first = (int)reply_number(&r, "halfedge"), h = first, steps = 0;
     reply_free(&r);
@@ -146,7 +146,8 @@ static void test_atomic_list(void **state)
     assert_true(reply_number(&r, "position.2") == 3);
     reply_free(&r);
 
-    /* The second operation is refused: the first is as if it had never been. */
+    /* The second operation of the list is refused, so the first one must not have been done
+     * either. */
     reply before = reply_expect(200, client_get(http, below(mesh, "/content")));
     r = reply_expect(422, client_post(http, below(mesh, "/edits"),
                                       "{\"ops\":[{\"op\":\"face_poke\",\"face\":0},"
@@ -206,15 +207,15 @@ static void test_edits_without_effect_make_no_revision(void **state)
     (void)state;
     char mesh[128];
     create("{\"shape\":\"tetrahedron\"}", mesh);
-    /* The plane misses it, and no edge of it is to be flipped. */
+    /* These edits find nothing to do: the plane misses the mesh, and no edge has to be flipped. */
     expect_no_effect(mesh, "{\"op\":\"plane_split\",\"point\":[0,0,9],\"normal\":[0,0,1]}");
     expect_no_effect(mesh, "{\"op\":\"delaunay\"}");
     expect_no_effect(mesh, "{\"ops\":[{\"op\":\"delaunay\"},{\"op\":\"plane_split\","
                            "\"point\":[0,0,-9],\"normal\":[1,1,1]}]}");
 }
 
-/* What lies beside elements of a sphere of triangles whose vertices from the twelfth on have six
- * neighbours. */
+/* Checks the neighbours of elements of a sphere of triangles, in which each vertex from the twelfth
+ * on has six neighbours. */
 static void expect_adjacency(const char *mesh)
 {
     static const struct {

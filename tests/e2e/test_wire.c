@@ -1,5 +1,5 @@
-/* What a hostile or broken client sends, byte for byte: each gets its documented answer, and the
- * mesh is bit-identical afterwards. */
+/* The bytes that a hostile or broken client may send: each case gets its documented answer, and the
+ * mesh is unchanged in every bit afterwards. */
 #include "tests/e2e/client.h"
 #include "tests/e2e/transport.h"
 
@@ -55,8 +55,8 @@ static void expect_unchanged(void)
     reply_free(&r);
 }
 
-/* The request as this transport wants it, the caller's to free: over TLS the daemon's own pages
- * come from https. */
+/* Returns the request for this transport: over TLS, the daemon's own pages have an https origin.
+ * The caller must free it. */
 static char *with_own_origin(const char *request)
 {
     static const char wanted[] = "Origin: http://localhost";
@@ -145,7 +145,8 @@ static void test_framing(void **state)
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n"
          "Content-Type: application/json\r\nContent-Length: 16\r\n\r\n{\"shape\":\"cube\"}",
          403},
-        /* a form of any page can send this type without asking */
+        /* A form on any web page can send this type without asking the server first, so the origin
+         * is checked. */
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: http://evil.example\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Origin: null\r\n" FILES, 403},
         {"POST /v1/meshes HTTP/1.1\r\n" HOST "Sec-Fetch-Site: cross-site\r\n" FILES, 403},
@@ -171,7 +172,8 @@ static void test_framing(void **state)
     expect_unchanged();
 }
 
-/* An ambiguous request must not leave a second request behind on its connection. */
+/* An ambiguous request must not leave a second request behind on its connection (request
+ * smuggling). */
 static void test_no_second_answer(void **state)
 {
     (void)state;

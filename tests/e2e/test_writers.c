@@ -1,5 +1,5 @@
-/* Eight writers at once: nothing is lost, nothing is applied twice. EDITS= edits a writer; the full
- * size is 10000. */
+/* Eight writers edit at the same time: no edit is lost, and none is applied twice. The environment
+ * gives EDITS for each writer; make proof takes 10000. */
 #include "tests/e2e/client.h"
 
 #include <pthread.h>
@@ -13,7 +13,8 @@
 
 #include <cmocka.h>
 
-/* Two that send the same edits wait for each other so often that no key between them is old. */
+/* Two writers that send the same edits wait for each other after TOGETHER edits, so that the keys
+ * of the slower one are not forgotten before it uses them. */
 enum { WRITERS = 8, MESHES = 3, DEFAULT_EDITS = 400, TOGETHER = 500 };
 
 typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;
@@ -29,10 +30,10 @@ typedef struct writer {
     const daemon_process *daemon;
     condition condition;
     int index, meshes, edits;
-    int *revisions[MESHES]; /* that its edits made */
+    int *revisions[MESHES]; /* the revisions that its edits made */
     int made[MESHES];
     long stale;
-    char strange[200]; /* what has no place here */
+    char strange[200]; /* the first unexpected answer */
     pthread_barrier_t *pair;
 } writer;
 
@@ -43,7 +44,7 @@ static void note_strange(writer *w, const reply *r)
     }
 }
 
-/* What the writer knows of a mesh. */
+/* What a writer knows about a mesh. */
 typedef struct known {
     int revision;
     char etag[128];
@@ -64,7 +65,8 @@ static int revision_of(const reply *r)
     return cJSON_IsNumber(revision) ? revision->valueint : -1;
 }
 
-/* One try of moving vertex 0 by one. True when it was done. */
+/* Tries to move vertex 0 by one, under the writer's condition; returns true if the edit was
+ * done. */
 static bool try_edit(writer *w, client *c, int mesh, int number, known *k)
 {
     char path[64], body[160], header[200];
@@ -136,8 +138,8 @@ static double position_of(client *c, int mesh)
     return x;
 }
 
-/* Each revision was acknowledged to one writer (two with keys, who ask for the same edits), and
- * what the edits add up to is there. */
+/* Each revision must have been acknowledged to one writer, or to the two with keys, which send the
+ * same edits; and vertex 0 must be where the sum of all edits puts it. */
 static void check_mesh(client *c, const writer *writers, int mesh, double start, int share)
 {
     char path[64];

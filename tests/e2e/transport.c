@@ -19,8 +19,8 @@
 static struct {
     transport way;
     int is_known;
-    char folder[FOLDER_PATH]; /* "": not made yet */
-    pid_t owner;              /* who made it, since children of fork() end as well */
+    char folder[FOLDER_PATH]; /* "": not created yet */
+    pid_t owner;              /* it removes the folder, and children of fork() do not */
     char certificate[FOLDER_PATH + 20], key[FOLDER_PATH + 20], listen[FOLDER_PATH + 20];
     unsigned sockets;
 } chosen;

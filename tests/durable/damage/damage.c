@@ -1,10 +1,13 @@
-/* damage.c - a store's files are cut at every byte, or every bit of them is flipped (D6, D7).
+/* damage.c - damages the files of a small store at every byte or bit, one copy for each place, and
+ * looks at what the store makes of each copy. `cut` ends a file at a byte (D6 of the promises in
+ * core/store), `flip` inverts a bit (D7).
  *
  *     damage cut|flip FOLDER [EVERY [SEED [WORKERS]]]
  *
- * FOLDER is best in memory. Every EVERY-th place is tried, from one on that the seed draws. The
- * places are shared by workers, each a process, in which one place comes after the other. The last
- * lines are counts, `3 refused`; the exit status is 0 when nothing was wrong. */
+ * The program works below FOLDER, which is best in memory. Of all places it tries every EVERY-th,
+ * beginning with one drawn from SEED. WORKERS processes share the places. The last lines of the
+ * output count the verdicts, as in `3 refused`; the exit status is 0 if no copy was judged wrong.
+ */
 #include "durable/damage/specimen.h"
 
 #include "model/random.h"
@@ -26,16 +29,16 @@ enum { FILES = 3, WORKERS = 16, PATIENCE = 120, BALLAST = 8 << 20 };
 static const char *const names[FILES] = {"hedge.db", "hedge.db-wal", "hedge.mark"};
 
 static struct {
-    unsigned char *bytes[FILES]; /* of the store, undamaged */
+    unsigned char *bytes[FILES]; /* contents of the store's files, undamaged */
     size_t sizes[FILES];
-    size_t total, every, first; /* places */
+    size_t total, every, first; /* which places are tried */
     bool cuts;
 } plan;
 
-/* What the workers share. */
+/* The memory that the workers share. */
 typedef struct shared {
     atomic_size_t next;
-    atomic_size_t at[WORKERS]; /* the place that a worker is at */
+    atomic_size_t at[WORKERS]; /* the place that each worker tries now */
     atomic_uint verdicts[SPECIMEN_WRONG + 1], crashes;
 } shared;
 
@@ -69,7 +72,8 @@ static void describe(size_t place, char out[80])
 
 /* --- one place after the other --- */
 
-/* Without the ballast, which is not read. */
+/* Writes the undamaged files of the store into a folder. The ballast, a file that only reserves
+ * space, is made empty because nobody reads it. */
 static void lay_out(const char *folder)
 {
     char path[2 * FOLDER_PATH];
@@ -136,7 +140,8 @@ static pid_t start(const char *base, unsigned worker)
     return pid;
 }
 
-/* One that a place ended goes on with the next. */
+/* Runs the workers. If damage at some place crashes a worker, that is counted, and another worker
+ * goes on with the next place. */
 static void run(const char *base, unsigned count)
 {
     pid_t workers[WORKERS];
@@ -165,7 +170,8 @@ static void run(const char *base, unsigned count)
 
 /* --- would it be seen? --- */
 
-/* As it is the store is whole; without its log and mark, an older state of itself, it is wrong. */
+/* Checks that the test would notice a loss: the undamaged store must be judged whole, and the store
+ * without its write-ahead log and mark, which is an older state of itself, must be judged wrong. */
 static bool sees(const char *base)
 {
     char folder[FOLDER_PATH], why[SPECIMEN_WHY], path[2 * FOLDER_PATH];
@@ -189,7 +195,8 @@ static bool sees(const char *base)
     return whole && wrong;
 }
 
-/* In a process of its own: workers are forked from one that has no threads. */
+/* Runs sees() in a process of its own, because it starts threads, and the workers must be forked
+ * from a process without threads. */
 static bool is_seen(const char *base)
 {
     int status;

@@ -14,15 +14,15 @@
 
 enum { MESHES = 5, ID = 4, STATES = 2 };
 
-/* What an id may show. */
+/* What the store may show for a mesh id. */
 typedef struct expected {
     char id[ID];
     bool absent;
-    unsigned states; /* that it may be in */
+    unsigned states; /* number of states in `digests`, any of which the mesh may have */
     uint64_t digests[STATES][2];
 } expected;
 
-static uint64_t key_revision; /* that the key's answer showed */
+static uint64_t key_revision; /* the revision in the answer stored with the key */
 static expected acknowledged[MESHES] = {
     {.id = "a"}, {.id = "b"}, {.id = "c"}, {.id = "d"}, {.id = "e"}};
 
@@ -57,7 +57,8 @@ static void add_info(he_siphash *hash, const st_mesh_info *info)
     add(hash, times, sizeof times);
 }
 
-/* Where the history ended once, a mesh that was loaded lists no more. */
+/* Adds the entries of the mesh's history to a hash. A mesh that was loaded lists none from before
+ * the oldest revision that can be reached, so those are left out. */
 static uint64_t add_history(he_siphash *hash, st_mesh *mesh)
 {
     st_history reach;
@@ -99,7 +100,7 @@ static void digest(st_mesh *mesh, uint64_t out[2])
 
 /* --- the store --- */
 
-/* NULL with a sentence. */
+/* Opens a store; returns NULL, with a sentence in `why`, if it cannot be opened. */
 static st_store *open_with(const char *folder, uint64_t budget, st_pool *pool,
                            char why[SPECIMEN_WHY])
 {
@@ -128,7 +129,7 @@ static void resume(st_wait *wait)
     sem_post(ended);
 }
 
-/* Waits until the newest change is durable: false when it was lost. */
+/* Waits until the newest change is durable or lost; returns false if it was lost. */
 static bool is_kept(st_store *store)
 {
     struct {
@@ -176,7 +177,7 @@ static st_status edit(st_mesh *mesh, const char *operations)
 
 static const st_key key = {.text = "a key", .digest = {1, 2}};
 
-/* An edit of a request that may be sent again. */
+/* Makes an edit with an idempotency key, so that the store keeps the key and its answer. */
 static void edit_once(st_store *store, st_mesh *mesh)
 {
     st_keyed *keyed;
@@ -204,7 +205,7 @@ static void post(void *context)
     sem_post(context);
 }
 
-/* Until the pool has done what was asked of it before for this mesh. */
+/* Waits until the pool has done all earlier tasks for this mesh. */
 static void await_base(st_pool *pool, const char *id)
 {
     sem_t done;
@@ -233,7 +234,8 @@ static int snapshots_in(const char *folder)
     return count;
 }
 
-/* A mesh that is loaded from a snapshot: what was before it can no longer be undone. */
+/* Makes the mesh that is later loaded from a snapshot; edits from before the snapshot can then no
+ * longer be undone. */
 static void make_based(const char *folder)
 {
     char why[SPECIMEN_WHY];
@@ -335,8 +337,8 @@ static specimen_verdict judge_content(const expected *e, st_mesh *mesh, const ch
                  e->states == 0 ? "there, and was removed" : "another one than it was");
 }
 
-/* A damaged key was told at one of the starts; where its text is what it was, nobody else gets it.
- */
+/* Whether the store reported a damaged key at one of its starts. A damaged key may be forgotten,
+ * but it must never give another answer. */
 static bool key_was_told;
 
 static specimen_verdict judge_key(st_store *store, st_mesh *mesh, char why[SPECIMEN_WHY])
@@ -429,7 +431,8 @@ static specimen_verdict judge_all(st_store *store, const expected *all, const ch
 
 /* --- going on with it --- */
 
-/* The mesh was changed: was it made durable? If not it may be so all the same. */
+/* Notes that a mesh was changed; returns whether the change became durable. If it did not, the mesh
+ * may later show it or not. */
 static bool is_changed(st_store *store, expected *e, st_mesh *mesh)
 {
     uint64_t after[2];
@@ -454,7 +457,8 @@ static bool is_removed(st_store *store, expected *e, st_mesh *mesh)
     return kept;
 }
 
-/* Were all changes taken? None is tried of a mesh that is damaged, but for its removal. */
+/* Changes, creates and removes meshes; returns whether the store accepted all of it. A damaged mesh
+ * is only removed. */
 static bool go_on(st_store *store, expected all[MESHES])
 {
     bool taken = true;

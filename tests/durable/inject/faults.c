@@ -1,11 +1,12 @@
-/* faults.c - a disk that fails, is slow or loses power, preloaded into a daemon (LD_PRELOAD).
+/* faults.c - simulates a disk that fails, is slow or loses power. It is preloaded into a daemon
+ * (LD_PRELOAD) and replaces the C library's functions for files.
  *
- * It looks at calls on files below one folder only; N counts them from 1.
- *     FAULT_FOLDER=DIR   the folder, absolute and without links
- *     FAULT_WHEN=FILE    nothing is counted, and nothing fails, while this file is missing
+ * It counts calls on files below one folder only, and N is a number in this count, from 1.
+ *     FAULT_FOLDER=DIR   the folder, absolute and without symbolic links
+ *     FAULT_WHEN=FILE    calls are only counted, and only fail, while this file exists
  *     FAULT_SYNC=N       the N-th fsync or fdatasync fails with EIO
  *     FAULT_WRITE=N      the N-th write fails with ENOSPC
- *     FAULT_STUCK=1      and so do all later ones of that kind
+ *     FAULT_STUCK=1      all later calls of the failed kind fail, too
  *     FAULT_SHORT=N      the N-th write is cut to half, the next one fails with ENOSPC
  *     FAULT_RENAME=N     the N-th rename fails with EIO
  *     FAULT_KILL=N       the process is killed before the N-th sync
@@ -14,7 +15,7 @@
  *     FAULT_PLATTER=DIR  what is synced is copied there: what is left after a loss of power
  *     FAULT_REPORT=FILE  a line `fired ...` for each fault, and at the exit one with the counts
  * A run whose report has no line `fired` has proved nothing. */
-#define _GNU_SOURCE /* RTLD_NEXT */
+#define _GNU_SOURCE /* declares RTLD_NEXT */
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
@@ -33,7 +34,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-/* The C library's function of the same name. */
+/* Declares `real` as the C library's function that this file replaces. */
 #define REAL(result, name, ...)                         \
     static result (*real)(__VA_ARGS__);                 \
     do {                                                \
@@ -73,7 +74,8 @@ __attribute__((constructor)) static void begin(void)
     want.folder = getenv("FAULT_FOLDER");
 }
 
-/* By calls that are not replaced below. */
+/* Writes a line to the report with the C library's own functions, so that it is neither counted nor
+ * fails. */
 static void tell(const char *line)
 {
     REAL(ssize_t, "write", int, const void *, size_t);
@@ -132,7 +134,8 @@ static void die(const char *what, long n)
     kill(getpid(), SIGKILL);
 }
 
-/* A call that changes the folder is about to be made. */
+/* Counts a call that is about to change the folder, and kills the process if it is the chosen
+ * one. */
 static void count_call(void)
 {
     long n = ++seen.calls;
@@ -150,7 +153,8 @@ static void copy_to_platter(int fd, const char *name)
     char copy[PATH_MAX + NAME_MAX], made[PATH_MAX + NAME_MAX + 4];
     snprintf(copy, sizeof copy, "%s/%s", want.platter, name);
     snprintf(made, sizeof made, "%s.new", copy);
-    /* Read by the descriptor there is: closing another one lets go of all locks on the file. */
+    /* The file is read by the descriptor that the caller has. Opening and closing another one would
+     * release all POSIX locks that the process holds on the file. */
     int out = openat(AT_FDCWD, made, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     off_t at = 0;
     ssize_t got = 0;
@@ -164,7 +168,8 @@ static void copy_to_platter(int fd, const char *name)
     }
 }
 
-/* What was removed from the folder is gone once the folder itself was synced. */
+/* Removes from the copy of the disk each file that is gone from the folder. This happens when the
+ * folder itself is synced, since a removal is durable only then. */
 static void clean_platter(const char *folder)
 {
     DIR *platter = opendir(want.platter);
@@ -238,7 +243,7 @@ int fdatasync(int fd)
 
 /* --- writes --- */
 
-/* How many of `size` bytes may be written; -1: none, with errno. */
+/* Returns how many of `size` bytes the write may have; -1, with errno set, if it must fail. */
 static ssize_t admit(int fd, size_t size)
 {
     if (!is_watched(fd)) {
