@@ -396,7 +396,7 @@ export class Contract {
             return; // it becomes a job before its body is read
         } else if (content.schema !== undefined && isJson(media) && whole && !namesFormat(query)) {
             const { schema } = content;
-            const taken = schema.$ref.endsWith('/query') ? takenOf(bytes, answer) : bytes;
+            const taken = schema.$ref?.endsWith('/query') ? takenOf(bytes, answer) : bytes;
             this.checkJson(schema, taken, wrong);
         }
     }
