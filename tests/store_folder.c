@@ -29,7 +29,11 @@ void folder_remove(const char *folder)
 {
     DIR *open_folder = opendir(folder);
     for (struct dirent *e; open_folder != NULL && (e = readdir(open_folder)) != NULL;) {
-        (void)unlinkat(dirfd(open_folder), e->d_name, 0); /* "." and ".." are refused */
+        if (unlinkat(dirfd(open_folder), e->d_name, 0) != 0 && e->d_name[0] != '.') {
+            char inner[2 * FOLDER_PATH];
+            (void)snprintf(inner, sizeof inner, "%s/%s", folder, e->d_name);
+            folder_remove(inner);
+        }
     }
     if (open_folder != NULL) {
         (void)closedir(open_folder);

@@ -10,7 +10,7 @@ enum { FOLDER_PATH = 256 };
 
 /* Makes a new empty folder. */
 void folder_make(char out[FOLDER_PATH]);
-/* Removes the folder with the files in it. */
+/* Removes the folder with all files and folders in it. */
 void folder_remove(const char *folder);
 /* Copies the files of a store as they are, like those that a killed process leaves. */
 void folder_copy(const char *from, const char *to);
