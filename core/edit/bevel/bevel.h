@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-/* The largest part of an edge's length that a cut takes, so that no cut meets another or the other
- * end. */
+/* A bevel cuts at most this part of an edge's length off, so that no cut reaches the other end of
+ * the edge. */
 #define HE_BEVEL_MOST 0.99
 
-/* Returns where the edge of h is cut at `width` (above 0) from the origin of h, as a part of its
- * length: at most HE_BEVEL_MOST, and one half on an edge without length, whose ends are at one
- * position. */
+/* Returns where the edge of half-edge h is cut, as a part of its length: `width` (above 0) from the
+ * origin of h, but at most HE_BEVEL_MOST. An edge whose ends are at one position is cut
+ * half-way. */
 static inline double he_bevel_part(const he_mesh *m, he_halfedge h, double width)
 {
     he_vec3 a = he_position(m, he_origin(m, h)), b = he_position(m, he_target(m, h));

@@ -29,7 +29,8 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* After the hole, or other fans, this fan begins where turning clockwise ends. */
+        /* Clockwise of this half-edge is a hole or another fan, so this fan begins here; the rest
+         * of it is walked from the other side of the edge. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
@@ -115,8 +116,8 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
         need.edges += ends[i].gap > 0;
         need.deleted_vertices += ends[i].gap == 0;
     }
-    /* Each cut edge writes its origin and two links; the faces beside the edge two links and a
-     * stored half-edge; a hole two links more. */
+    /* Each cut edge writes its origin and two links; each face beside the bevelled edge writes two
+     * links and a stored half-edge; a hole writes two more links. */
     need.links = 3 * cuts + 2 * (3 + 2 + HE_SETTLE_LINKS);
     need.attributes = cuts;
     need.lineage = need.vertices + need.edges + 1;
@@ -127,7 +128,7 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
-/* The new face while its sides are linked one by one. */
+/* The new face that replaces the edge, while its sides are linked one by one. */
 typedef struct new_face {
     he_face face;
     he_halfedge first, last;
@@ -146,7 +147,7 @@ static void add_side(he_mesh *m, new_face *rim, he_halfedge h)
     rim->last = h;
 }
 
-/* Returns half-edge 2e, which runs along the new face. */
+/* Makes an edge and returns its half-edge 2e, which runs along the new face. */
 static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
 {
     he_halfedge h = he_edge_halfedge(he_new_edge(m), 0);
@@ -166,7 +167,8 @@ static he_vertex cut_at(const bevel_end *end, size_t i)
     return (he_vertex){end->first + (uint32_t)i};
 }
 
-/* Returns where edge i is cut, from this end (0) to its other end (1). */
+/* Returns where edge i at this end is cut, as a part of its length: 0 at this end, 1 at the
+ * other. */
 static double part_of(const he_mesh *m, const bevel_end *end, size_t i, double width)
 {
     return he_bevel_part(m, at(end, i), width);
@@ -186,8 +188,9 @@ static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
     }
 }
 
-/* Makes a long side, which takes the place of `h`, from cut 0 of its origin to the last cut of its
- * target, in the face to the left of h. Returns its half-edge along the new face. */
+/* Makes one of the two long sides of the new face, in the face left of `h`, whose place it takes:
+ * from cut 0 of the origin of `h` to the last cut of its target. Returns its half-edge along the
+ * new face. */
 static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *from,
                                   const bevel_end *to, double width)
 {
@@ -205,8 +208,9 @@ static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *fr
     return in;
 }
 
-/* Makes the two sides at the hole: from the cut at index `gap` - 1 to the end, and on to the next
- * cut. `corner` leaves the first inside the face before it. */
+/* Makes the two sides of the new face that border the hole at an end on the boundary: from the cut
+ * at index `gap` - 1 to the end itself, and on to the next cut. `corner` leaves that first cut in
+ * the face before it. */
 static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new_face *rim)
 {
     he_vertex v = he_origin(m, end->along);
@@ -228,7 +232,8 @@ static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new
     add_side(m, rim, in);
 }
 
-/* `corner` leaves cut 0 inside the face beside the edge. */
+/* Makes the sides of the new face between the cuts at one end. `corner` leaves cut 0 inside the
+ * face beside the edge. */
 static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_halfedge corner,
                              new_face *rim)
 {
@@ -257,7 +262,8 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
             he_carry_copy(m, HE_HALFEDGE, in.i, h.i);
         }
         he_set_origin(m, h, cut_at(end, i));
-        /* The first cut after the hole stores its stub, which is on the boundary. */
+        /* The first cut after the hole must store a boundary half-edge, which is that of its
+         * stub. */
         bool stub = end->gap > 0 && i == end->gap;
         he_halfedge stored = stub ? he_next(m, he_twin(h)) : h;
         he_set_vertex_halfedge(m, cut_at(end, i), stored);

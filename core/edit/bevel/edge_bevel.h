@@ -27,7 +27,8 @@ typedef struct he_bevel {
  *          /   g                      /            and the stubs from it to the cuts are sides.
  *                                    2---
  *
- * Other fans of such an end stay with it; d counts the edges of the fan with the edge only.
+ * Other fans of an end on the boundary stay with it; d1 and d2 count only the edges of the fan that
+ * has the edge.
  *
  * No cut is farther along its edge than 0.99 of the length, so that none passes the other end; an
  * edge without length is cut half-way (bevel.h).
@@ -39,7 +40,8 @@ typedef struct he_bevel {
  * theirs, and the face from the one left of half-edge 2e. Half-edge 2e of a new edge runs along the
  * new face, whose stored half-edge leaves the first vertex.
  *
- * `out` may be NULL, else he_bevel_clear frees it. Costs the fans of both ends.
+ * `out` may be NULL; otherwise he_bevel_clear frees it. Takes time linear in the size of the fans
+ * at both ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_BAD_VALUE unless width > 0.

@@ -36,8 +36,9 @@ static he_status check(const he_mesh *m, he_vertex v, double width, he_error *er
     return check_locks(m, v, err);
 }
 
-/* Makes the new edge in the face of h, between the cut of h and that of the half-edge
- * counter-clockwise of it; both still leave v. Returns its half-edge that has no face yet. */
+/* Makes the new edge that cuts the face of h off the vertex v: between the cut of h and the cut of
+ * the next half-edge counter-clockwise. Both half-edges still leave v. Returns the half-edge of the
+ * new edge that has no face yet. */
 static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, double t, double s)
 {
     he_halfedge in = he_twin(following), out = he_edge_halfedge(he_new_edge(m), 0);
@@ -50,7 +51,7 @@ static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, 
     return out;
 }
 
-/* Moves w, which may be v, to the cut of a half-edge that leaves v. */
+/* Moves vertex w, which may be v itself, to the point where half-edge h, which leaves v, is cut. */
 static void move(he_mesh *m, he_vertex w, he_vertex v, he_halfedge h, double t)
 {
     he_vertex far = he_target(m, h);
@@ -77,8 +78,8 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     he_vertex w = v;
     he_face f = he_new_face(m);
     do {
-        /* The edge after the last one is the first, whose end has not moved yet either: it is v,
-         * which moves at the end. */
+        /* After the last edge comes the first again. Its end has not moved yet either: it is v,
+         * which moves last. */
         he_halfedge following = he_turn_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);

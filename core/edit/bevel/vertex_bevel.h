@@ -15,14 +15,14 @@
  *          /       \                    /           \         from it.
  *        o           o                o               o
  *
- * Every edge at v is cut at `width` from there, though never beyond 0.99 of its length, and
- * half-way where that is 0 (bevel.h): so the cuts do not pass the other ends. Edges and faces keep
- * their ids; each face has a corner more. Attributes of vertices and corners are interpolated along
- * the edges. The half-edge of the new face n leaves v, and half-edges 2e of the new edges run along
- * it.
+ * Every edge at v is cut at `width` from v, but never beyond 0.99 of its length, so no cut passes
+ * the other end; an edge without length is cut half-way (bevel.h). Edges and faces keep their ids;
+ * each face gets one more corner. Attributes of vertices and corners are interpolated along the
+ * edges. The half-edge that the new face n stores leaves v, and half-edges 2e of the new edges run
+ * along n.
  *
- * New vertices and edges are appended to `vertices` and `edges`, counter-clockwise from v's stored
- * half-edge on; they and `face` may be NULL.
+ * The ids of new vertices and edges are appended to `vertices` and `edges`, counter-clockwise from
+ * v's stored half-edge on. Each output may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BAD_VALUE unless width > 0.
  * Returns HE_BOUNDARY_VERTEX if the vertex is on the boundary.

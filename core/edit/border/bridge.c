@@ -12,8 +12,9 @@ void he_bridge_clear(he_bridge *bridge)
     he_ids_clear(&bridge->faces);
 }
 
-/* Corner i of the first loop is the origin of a[i], corner j of the second the target of b[j]: the
- * second is listed backwards, since the two loops run in opposite directions along the strip. */
+/* The plan of a strip between two loops. Corner i of the first loop is the origin of a[i]; corner j
+ * of the second is the target of b[j]. The second loop is listed backwards, because the two run in
+ * opposite directions along the strip. */
 typedef struct plan {
     const he_mesh *m;
     he_ids a, b;
@@ -110,7 +111,7 @@ static void find_scale(plan *p)
 
 /* --- the rungs --- */
 
-/* Returns the squared distance between two corners. */
+/* Returns the squared distance between corner i of the first loop and corner j of the second. */
 static double apart(const plan *p, uint32_t i, uint32_t j)
 {
     he_vec3 x = he_vec3_scale(he_position(p->m, corner_of_a(p, i)), p->scale);
@@ -131,9 +132,10 @@ static double twist(const plan *p, uint32_t s)
     return sum;
 }
 
-/* Is i of n less than half a loop ahead of j of m? Each loop has at least three corners, so the
- * side that is behind can always go on, and no two rungs join one pair of corners: for that one
- * side would have to go round while the other stands still. */
+/* Returns true if side one, with i of its n edges done, is less than half a loop ahead of side two,
+ * with j of m done. Each loop has at least three corners, so the side that is behind can always go
+ * on, and no two rungs join the same pair of corners: for that, one side would have to go round
+ * while the other stands still. */
 static bool is_abreast(uint64_t i, uint64_t n, uint64_t j, uint64_t m)
 {
     uint64_t x = i * m, y = j * n;
@@ -153,7 +155,8 @@ static bool steps_along_a(const plan *p, uint32_t i, uint32_t j, uint32_t s)
            apart(p, (i + 1) % n, (s + j) % m) <= apart(p, i % n, (s + j + 1) % m);
 }
 
-/* Computes the rungs of pairing s; there is room. */
+/* Computes the rungs, the edges from one loop to the other, of pairing s. The caller has reserved
+ * room for them. */
 static void make_rungs(plan *p, uint32_t s)
 {
     uint32_t n = (uint32_t)p->a.count, m = (uint32_t)p->b.count;
@@ -175,8 +178,8 @@ static he_status refuse_rung(const plan *p, uint32_t i, uint32_t j, he_error *er
                    u.i, v.i);
 }
 
-/* If a loop passes a vertex twice, two rungs may have equal ends. `first` and `next` chain the
- * rungs of each vertex of the first loop. */
+/* Refuses a pairing in which two rungs join the same two vertices, which is possible if a loop
+ * passes a vertex twice. `first` and `next` chain the rungs of each vertex of the first loop. */
 static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, he_error *err)
 {
     he_ids ends = {0};
@@ -235,8 +238,9 @@ static he_status check_rungs(const plan *p, he_error *err)
 
 /* --- the pairing --- */
 
-/* Marks each pairing that has a rung where an edge is, to be skipped. Corners of loops that pass no
- * vertex twice have the numbers of their vertices. */
+/* Marks in `passed` each pairing in which a rung would join two vertices that an edge already
+ * joins; such a pairing is skipped. In loops that pass no vertex twice, corners are numbered by
+ * their vertices. */
 static void pass_over_joined(const plan *p, uint64_t *passed)
 {
     uint32_t n = (uint32_t)p->a.count;
@@ -252,8 +256,8 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
     }
 }
 
-/* Returns the pairing of least twist that is not skipped (`passed` is NULL if none is); `count` if
- * all are. */
+/* Returns the pairing of corners with the least twist that is not marked in `passed`, which is NULL
+ * if none is to be skipped; `count` if all are skipped. */
 static uint32_t least_twisted(const double *twists, uint32_t count, const uint64_t *passed)
 {
     uint32_t best = count;
@@ -317,8 +321,8 @@ static he_status choose_rungs(plan *p, he_error *err)
 
 /* --- writing --- */
 
-/* Makes the face between the rungs from p_i to q_j and from p_k to q_l, which differ at one end at
- * least. */
+/* Makes the face between two consecutive rungs, from p_i to q_j and from p_k to q_l, which differ
+ * in at least one end. */
 static he_face close_face(he_mesh *m, const plan *p, size_t at, const he_ids *edges)
 {
     size_t count = p->rungs.count / 2, after = at + 1 == count ? 0 : at + 1;
@@ -359,7 +363,8 @@ static void commit(he_mesh *m, const plan *p, he_bridge *made)
     for (size_t k = 0; k < count; k++) {
         made->faces.ids[made->faces.count++] = close_face(m, p, k, &made->edges).i;
     }
-    /* Each vertex once: at one with many rungs the call walks around all of them. */
+    /* he_ring_settle is called once for each vertex: it walks around the vertex, so one call for
+     * each rung would be slow at a vertex with many rungs. */
     for (size_t k = 0; k < p->corners.ids.count; k++) {
         he_vertex v = {p->corners.ids.ids[k]};
         he_ring_settle(m, v, he_vertex_halfedge(m, v));

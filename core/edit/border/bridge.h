@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* What loop_bridge made, from the origin of `a` on along its loop. */
+/* The elements that loop_bridge made, in the order of the loop of half-edge `a` from the origin of
+ * `a` on. */
 typedef struct he_bridge {
     he_ids edges; /* rungs: half-edge 2e leaves the loop of a */
     he_ids faces; /* face n is between rung n and the one after it */
@@ -21,8 +22,9 @@ typedef struct he_bridge {
  *
  * a and b are any boundary half-edges of the two loops; they only decide the order of the new
  * elements. Loops follow the boundary links; at a bow-tie a loop may pass a vertex more than once.
- * The strip fills the gaps between fans that it passes there, so that they become one fan; a gap of
- * a fan with itself exists only if the vertex has no other fan, so no fan closes beside another.
+ * The strip fills the gaps between fans that it passes there, so that they become one fan. Only a
+ * vertex with a single fan has a gap of the fan with itself, so no vertex gets a closed fan beside
+ * another fan.
  *
  * LEAST TWIST. Corner i of one loop is paired with corner s + i * m / n, rounded, of the other, and
  * s is chosen so that the squared distances of the pairs sum to the least, the lowest s where
@@ -36,13 +38,14 @@ typedef struct he_bridge {
  *
  * Old elements keep their ids; new ones have no parents.
  *
- * `out` may be NULL, else he_bridge_clear frees it. Costs the loops.
+ * `out` may be NULL; otherwise he_bridge_clear frees it. Takes time linear in the lengths of the
+ * loops.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
  * Returns HE_SAME_LOOP if a and b are on one loop.
  * Returns HE_SHARED_VERTEX if the loops share a vertex.
- * Returns HE_DOUBLED_EDGE if in each pairing tried an edge, or another rung, joins the ends of a
- * rung already (the message names one in the pairing of least twist).
+ * Returns HE_DOUBLED_EDGE if every pairing that was tried has a rung whose ends another edge or
+ * rung joins already (the message names one in the pairing of least twist).
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *out,

@@ -11,8 +11,8 @@ void he_walls_clear(he_walls *walls)
     he_ids_clear(&walls->faces);
 }
 
-/* A vertex of chains: the indices of the edges in the list that arrive and leave along the
- * boundary, HE_NONE if a chain begins or ends there. */
+/* A vertex of the edges that are extruded: the list indices of the edge that arrives there and of
+ * the one that leaves along the boundary, or HE_NONE if a chain of edges begins or ends there. */
 typedef struct joint {
     uint32_t in, out;
 } joint;
@@ -36,7 +36,7 @@ static he_halfedge at(const plan *p, uint32_t i)
     return (he_halfedge){p->chain.ids[i]};
 }
 
-/* Returns the index of a vertex that is among the ends. */
+/* Returns the index of vertex v in the plan's list of the edges' ends, which contains it. */
 static size_t place_of(const plan *p, he_vertex v)
 {
     size_t low = 0, high = p->ends.count - 1;
@@ -162,20 +162,20 @@ static he_status reserve(he_mesh *m, const plan *p, he_walls *made, he_error *er
     return status == HE_OK ? he_reserve(m, need, err) : status;
 }
 
-/* The first new ids: the copy of end i is `vertex` + i and the edge to it `side` + i; the far edge
- * of index i in the chain is `far` + i. */
+/* The lowest ids of the new elements: the copy of vertex i is vertex `vertex` + i, the edge to it
+ * is `side` + i, and the copy of edge i of the chain is `far` + i. */
 typedef struct fresh {
     uint32_t vertex, side, far;
 } fresh;
 
-/* Returns half-edge 2e of the edge from end i to its copy. */
+/* Returns half-edge 2e of the edge from vertex i to its copy. */
 static he_halfedge side_at(const fresh *new, size_t i)
 {
     return he_edge_halfedge((he_edge){new->side + (uint32_t)i}, 0);
 }
 
-/* Returns the far half-edge inside the quad; its twin runs along the boundary as the old one
- * did. */
+/* Returns the half-edge of the copy of edge i that lies inside the new quad. Its twin runs along
+ * the boundary, as the original edge did before. */
 static he_halfedge far_at(const fresh *new, uint32_t i)
 {
     return he_edge_halfedge((he_edge){new->far + i}, 0);
@@ -219,7 +219,8 @@ static he_face make_wall(he_mesh *m, const plan *p, const fresh *new, uint32_t i
     for (unsigned k = 0; k < 4; k++) {
         he_link(m, loop[k], loop[(k + 1) % 4]);
         he_set_face(m, loop[k], f);
-        /* The first and last corner are at the origin of h or above it. */
+        /* The first and the last corner of the quad lie at the origin of h, or above it on the
+         * copy. */
         he_carry_copy(m, HE_HALFEDGE, loop[k].i, k % 3 == 0 ? he_next(m, inner).i : inner.i);
     }
     he_set_face_halfedge(m, f, h);

@@ -11,9 +11,10 @@ typedef struct he_walls {
     he_ids faces;    /* in the order of the given edges */
 } he_walls;
 
-/* edge_extrude: for each chain of k edges V + k + 1, E + 2k + 1, F + k; a closed one V + k, E + 2k,
- * F + k. Each edge gets a quad on its open side, between it and a copy that lies at `by` from it.
- * Edges that follow each other along the boundary share corners.
+/* edge_extrude: V + k + 1, E + 2k + 1, F + k for each chain of k edges that follow each other along
+ * the boundary; V + k, E + 2k, F + k for a closed chain. Each edge gets a quad on its open side,
+ * between it and a copy that is shifted by the vector `by`. Neighbouring quads of a chain share a
+ * side.
  *
  *                                        v1----->v2----->v3     the far edges
  *                                        |       |       |
@@ -30,14 +31,14 @@ typedef struct he_walls {
  *
  * Deleting the new faces is the inverse.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_walls_clear frees it. Costs
- * the edges, and the fans at bow-ties.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_walls_clear frees it.
+ * Takes time linear in the number of edges, plus the fans at bow-ties.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
  * Returns HE_BRANCHING_CHAIN if at a bow-tie more than one edge would arrive, or leave, along the
  * boundary.
- * Returns HE_CLOSED_FAN if a fan would close beside another.
+ * Returns HE_CLOSED_FAN if a vertex that has other fans would get a closed fan.
  * Returns HE_NOT_FINITE if a position is not finite.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */

@@ -27,11 +27,12 @@ typedef struct he_filled {
  *                                    polygon                  fan                triangulate
  *
  * The loop follows the boundary links: at a bow-tie it may lead from one fan to another. The new
- * faces fill the gap between these fans, which become one; a gap of a fan with itself exists only
- * if the vertex has no other fan, so no fan closes beside another. Old elements keep their ids; the
+ * faces fill the gap between these fans, which become one. Only a vertex with a single fan has a
+ * gap of the fan with itself, so no vertex gets a closed fan beside another fan. Old elements keep
+ * their ids; the
  * new faces and the vertex have no parents. A polygon stores h.
  *
- * `out` may be NULL, else he_filled_clear frees it.
+ * `out` may be NULL; otherwise he_filled_clear frees it.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
  * Returns HE_REPEATED_CORNER if the loop visits a vertex twice.

@@ -6,8 +6,9 @@
 #include "mesh/marks.h"
 #include "query/idmap.h"
 
-/* a[i] is joined to b[i]: the first loop runs forwards, the second backwards. Vertex i of the first
- * is the origin of a[i], of the second the target of b[i]. */
+/* The plan of a join: half-edge a[i] is joined to b[i]. The first loop runs forwards, the second
+ * backwards, so vertex i of the first loop is the origin of a[i], and of the second the target of
+ * b[i]. */
 typedef struct plan {
     he_mesh *m;
     he_ids a, b;
@@ -42,7 +43,7 @@ static he_vertex goes(const plan *p, uint32_t i)
     return (he_vertex){p->vertices.ids.ids[i]};
 }
 
-/* Returns the vertex into which v is merged, or v. */
+/* Returns the vertex into which v is merged; v itself if it is merged into none. */
 static he_vertex becomes(const plan *p, he_vertex v)
 {
     uint32_t i = he_idmap_find(&p->vertices, v.i);
@@ -117,8 +118,8 @@ static he_status check_sides(const plan *p, he_error *err)
 
 /* --- elements that would become one --- */
 
-/* Adds the faces at a vertex, except that of the loop's half-edge `own`; with `again` a face that
- * is in the set already is refused. */
+/* Adds the faces at a vertex to the set `seen`, except the face of `own`, the loop's half-edge
+ * there. With `again`, a face that is in the set already is refused. */
 static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first, bool again,
                               he_idmap *seen, he_error *err)
 {
@@ -154,7 +155,7 @@ static he_status check_faces(const plan *p, uint32_t i, he_error *err)
     return status;
 }
 
-/* Adds the neighbours of a vertex, as they will be after the merge. */
+/* Adds the neighbours of a vertex to the set `seen`, as they will be after the loops are joined. */
 static he_status gather_neighbours(const plan *p, he_halfedge first, const he_halfedge skip[2],
                                    he_idmap *seen, he_error *err)
 {
@@ -179,7 +180,8 @@ static he_status gather_neighbours(const plan *p, he_halfedge first, const he_ha
     return HE_OK;
 }
 
-/* The edges of the second loop are merged into those of the first, so they do not count. */
+/* Checks that no two edges would join the same two vertices. The edges of the second loop do not
+ * count, because they are merged into those of the first. */
 static he_status check_neighbours(const plan *p, uint32_t i, he_error *err)
 {
     he_idmap seen = {.log2 = 0};
@@ -242,14 +244,14 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
 {
     he_halfedge h = first;
     do {
-        /* Turning uses links only, which do not change in this loop. */
+        /* Turning about a vertex reads only links, and this loop changes origins only. */
         he_set_origin(m, h, to);
         h = he_turn_ccw(m, h);
     } while (h.i != first.i);
 }
 
-/* a[i] takes the place of the twin of b[i]. If the twin of a neighbour of b[i] follows or precedes
- * that twin, its place is taken too. */
+/* Lets a[i] take the place of the twin of b[i]. If that twin's neighbour in its loop is the twin of
+ * a neighbour of b[i], then its place is taken, too. */
 static void sew_side(const plan *p, uint32_t i)
 {
     he_mesh *m = p->m;
@@ -325,7 +327,8 @@ static he_status check(plan *p, he_halfedge a, he_halfedge b, he_error *err)
     return status == HE_OK ? check_marks(p, err) : status;
 }
 
-/* Values of the vertices move to corners first; a failure restores them. */
+/* Performs the join. Values that merged vertices would lose are moved to corners first; if anything
+ * fails, they are moved back. */
 static he_status write(plan *p, uint64_t *moved, he_error *err)
 {
     const uint32_t *ids = p->vertices.ids.ids;

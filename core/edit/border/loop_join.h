@@ -22,20 +22,20 @@
  * two differ move to their corners (keep.h) and are counted in `moved`, which may be NULL. Corner
  * values follow their half-edges.
  *
- * No fan closes beside another: the ring about a joined vertex is the two rings one after the
- * other.
+ * At no vertex does a fan become closed while the vertex has other fans: the half-edges around a
+ * joined vertex are those of its two vertices, one ring after the other.
  *
- * Costs the rings of the vertices of both loops.
+ * Takes time linear in the number of half-edges around the vertices of both loops.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_SAME_LOOP if a and b are on one loop.
  * Returns HE_LOOP_LENGTH if the loops have different lengths.
  * Returns HE_REPEATED_CORNER if a loop passes a vertex twice, or a face has two corners that would
  * become one.
  * Returns HE_SHARED_VERTEX if the loops share a vertex.
- * Returns HE_BOUNDARY_EDGE if neither of two edges would have a face left.
- * Returns HE_DOUBLED_EDGE if two other edges would join the same vertices.
- * Returns HE_LOCKED_ELEMENT if an element that would be deleted, a vertex that would move, or an
- * edge or face at a vertex of b, which would get another one, is locked (marks.h).
+ * Returns HE_BOUNDARY_EDGE if an edge that results from two would have no face.
+ * Returns HE_DOUBLED_EDGE if two edges that are not on the loops would join the same two vertices.
+ * Returns HE_LOCKED_ELEMENT if an element is locked (marks.h) that would be deleted or moved, or an
+ * edge or face at a vertex of b, which would get another vertex.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_loop_join(he_mesh *m, he_halfedge a, he_halfedge b, uint64_t *moved,
                                     he_error *err);

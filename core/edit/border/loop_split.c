@@ -3,7 +3,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Returns the half-edge of e that leaves v, or HE_NONE. */
+/* Returns the half-edge of e that leaves v, or HE_NONE if v is no end of e. */
 static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -13,7 +13,8 @@ static he_halfedge leaving(const he_mesh *m, he_edge e, he_vertex v)
     return he_target(m, h).i == v.i ? he_twin(h) : (he_halfedge){HE_NONE};
 }
 
-/* Sorts the edges: cycle[0] is half-edge 2a, and each ends where the next begins. */
+/* Sorts the three edges into a cycle of half-edges: cycle[0] is half-edge 2a of the first edge, and
+ * each half-edge ends where the next begins. */
 static he_status find_cycle(const he_mesh *m, const he_edge edges[3], he_halfedge cycle[3],
                             he_error *err)
 {
@@ -47,8 +48,8 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
     return HE_OK;
 }
 
-/* The half-edges that leave the origin of cycle[i] on its right are, counter-clockwise, between the
- * edge that arrives and the one that leaves. */
+/* Returns the first half-edge, counter-clockwise, that leaves the origin of cycle[i] on the right
+ * of the cycle: those lie between the edge of the cycle that arrives and the one that leaves. */
 static he_halfedge first_on_right(const he_mesh *m, const he_halfedge cycle[3], unsigned i)
 {
     return he_turn_ccw(m, he_twin(cycle[(i + 2) % 3]));
@@ -100,7 +101,8 @@ static he_status check(const he_mesh *m, const he_edge edges[3], he_halfedge cyc
     return status == HE_OK ? check_locks(m, cycle, err) : status;
 }
 
-/* Gives the vertex `to` to the elements on the right of the cycle at the origin of cycle[i]. */
+/* Makes `to` the origin of all half-edges that leave the origin of cycle[i] on the right of the
+ * cycle. */
 static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_vertex to)
 {
     for (he_halfedge h = first_on_right(m, cycle, i); h.i != cycle[i].i; h = he_turn_ccw(m, h)) {
@@ -108,7 +110,8 @@ static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_ve
     }
 }
 
-/* `outer` takes the place of the twin of cycle[i], which will belong to the cap. */
+/* Lets `outer` take the place of `twin`, the twin of an edge of the cycle, which will belong to the
+ * face that caps the cut. */
 static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 {
     he_face f = he_face_of(m, twin);
@@ -123,7 +126,8 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
 {
-    /* The half-edges of the new edges along the new cap, which run as the cycle. */
+    /* The half-edges of the new edges that border the new cap. They run in the direction of the
+     * cycle. */
     he_halfedge inner[3];
     for (unsigned i = 0; i < 3; i++) {
         he_vertex u = he_origin(m, cycle[i]);
@@ -139,7 +143,8 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_carry_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
-    /* Rings are walked before any of their links is changed. */
+    /* The elements on the right are found by walking around the vertices, so this must come before
+     * any link there is changed. */
     for (unsigned i = 0; i < 3; i++) {
         move_right(m, cycle, i, made->vertices[i]);
     }
@@ -179,8 +184,8 @@ he_status he_loop_split(he_mesh *m, he_edge a, he_edge b, he_edge c, he_loop_par
     }
     he_need need = {.vertices = 3, .edges = 3, .faces = 2, .lineage = 6};
     for (unsigned i = 0; i < 3; i++) {
-        /* Origins; two links of neighbours, a face's stored half-edge, the cap's three, a vertex's
-         * stored half-edge. */
+        /* The links are the origins around the vertex, two links of neighbours, the stored
+         * half-edge of a face, three links of the cap, and the vertex's stored half-edge. */
         need.links += (size_t)he_vertex_degree(m, he_origin(m, cycle[i])) + 7;
     }
     status = he_reserve(m, need, err);

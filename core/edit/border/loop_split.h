@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* The results of loop_split, in the order of the cycle from the origin of half-edge 2a on. */
+/* The results of loop_split, in the order of the cycle of the three edges, from the origin of
+ * half-edge 2a on. */
 typedef struct he_loop_parts {
     he_vertex vertices[3];
     he_edge edges[3];
@@ -31,9 +32,9 @@ typedef struct he_loop_parts {
  * get the new vertices as ends and corners. Caps have no parents; their corners get the values of
  * the half-edges whose place they take.
  *
- * `out` may be NULL. Costs the rings of the three vertices.
+ * `out` may be NULL. Takes time linear in the degrees of the three vertices.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
- * Returns HE_NOT_A_CYCLE if the edges form no cycle, or one is given twice.
+ * Returns HE_NOT_A_CYCLE if the edges form no cycle, or if one is given twice.
  * Returns HE_BOUNDARY_VERTEX if a vertex is on the boundary.
  * Returns HE_SHARED_FACE unless there are six different faces at the edges.
  * Returns HE_LOCKED_ELEMENT if an edge or face that would get a new vertex is locked (marks.h); a

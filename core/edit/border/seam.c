@@ -28,7 +28,8 @@ static void clear_plan(plan *p)
     he_mem_free(p->once);
 }
 
-/* Returns the index of an edge among those cut, or their count. */
+/* Returns the index of edge e in the list of the edges to cut; the length of the list if e is not
+ * in it. */
 static size_t find_cut(const plan *p, he_edge e)
 {
     size_t low = 0, high = p->cuts.count;
@@ -48,13 +49,15 @@ static bool is_cut(const plan *p, he_halfedge h)
     return find_cut(p, he_edge_of(h)) < p->cuts.count;
 }
 
-/* Does the side of the edge with the face left of h keep its id? */
+/* Returns true if the side of a cut edge that has the face left of h keeps the edge's id; the other
+ * side gets a new id. */
 static bool keeps_id(he_halfedge h)
 {
     return h.i % 2 == 0;
 }
 
-/* Is anything locked in the part of a fan from half-edge `first` to its border `end`? */
+/* Checks the locks of a part of a fan that gets a new vertex, from half-edge `first` to `end`, a
+ * cut edge or the border of the fan. */
 static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge end,
                             he_error *err)
 {
@@ -65,7 +68,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_turn_ccw(m, h);
-        /* In this part the side of the border may be the new one. */
+        /* On this side of a cut edge the edge may be the new one, which is not locked. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
         }
@@ -84,7 +87,8 @@ static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfe
     return status != HE_OK ? status : he_ids_add(&p->parts, first.i, err);
 }
 
-/* Counts the cut edges of the fan from `first`; *lowest is the lowest of them. */
+/* Counts the cut edges of the fan that begins at `first`; *lowest is set to the half-edge of the
+ * one with the lowest id. */
 static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge *lowest)
 {
     uint32_t count = 0;
@@ -99,7 +103,8 @@ static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, h
     return count;
 }
 
-/* `first` begins the fan, or is a cut edge of a closed one. */
+/* Plans which parts a fan falls into. `first` begins the fan, or is a cut edge if the fan is
+ * closed. */
 static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error *err)
 {
     he_halfedge lowest = {HE_NONE};
@@ -189,8 +194,8 @@ static he_status plan_cut(const he_mesh *m, const uint32_t *edges, size_t count,
 
 enum { OPEN_LINKS = 8 + 2 * HE_SETTLE_LINKS, PART_LINKS = 4 + HE_SETTLE_LINKS };
 
-/* Moves half-edge 2e + 1 out of its face and puts a new edge there; between the two is a hole of
- * two sides. */
+/* Splits edge e into two edges: half-edge 2e + 1 leaves its face and a half-edge of a new edge
+ * takes its place. Between the two edges is a hole of two sides. */
 static he_edge open_edge(he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0), t = he_twin(h);
@@ -217,7 +222,7 @@ static he_edge open_edge(he_mesh *m, he_edge e)
     return made;
 }
 
-/* Gives the fan that begins with `first` a new vertex at the same position. */
+/* Gives the part of a fan that begins with `first` a new vertex at the position of the old one. */
 static he_vertex split_fan(he_mesh *m, he_halfedge first)
 {
     he_vertex v = he_origin(m, first), w = he_new_vertex(m);

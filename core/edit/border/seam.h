@@ -1,7 +1,7 @@
 /* seam.h - opens a mesh along edges (edge_cut), and closes it again (edge_weld).
  *
- * edge_cut and edge_weld are inverse: welding an edge, as a, to the one its cut made restores every
- * link, except which half-edge an interior vertex stores. */
+ * The two edits are inverse: if edge_cut splits edge a into a and a', edge_weld of a and a'
+ * restores every link, except which half-edge an interior vertex stores. */
 #ifndef HE_EDIT_BORDER_SEAM_H
 #define HE_EDIT_BORDER_SEAM_H
 
@@ -36,8 +36,8 @@ typedef struct he_seam {
  * A cut edge keeps its id on the side of half-edge 2e, the other side is new and descends from it,
  * with the corner of the face there. Half-edge 2e of a new edge runs along its face.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_seam_clear frees it. Costs
- * the fans at the ends.
+ * If the edit is refused, nothing changes. `out` may be NULL; otherwise he_seam_clear frees it.
+ * Takes time linear in the size of the fans at the ends of the edges.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
@@ -51,7 +51,8 @@ HE_NODISCARD he_status he_edge_cut(he_mesh *m, const uint32_t *edges, size_t cou
                                    he_error *err);
 void he_seam_clear(he_seam *seam);
 
-/* Where the ends of welded edges are afterwards. */
+/* Where the ends of two edges are after these are welded: half-way between both, or at the ends of
+ * edge a, or at those of edge b. */
 typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
 
 /* edge_weld: V - 1 where a and b have an end in common, else V - 2; E - 1, F + 0. Two boundary
@@ -63,19 +64,21 @@ typedef enum he_keep { HE_KEEP_MEAN, HE_KEEP_A, HE_KEEP_B } he_keep;
  *        |       | v       |            |       |       |
  *        o-------p s-------o            o-------p-------o
  *
- * r is merged into q and s into p, b into a: a's ids stay. The ends move half-way to those of b, or
- * stay with HE_KEEP_A, or move to those of b with HE_KEEP_B. Values in which the ends differ move
+ * r is merged into q, s into p, and b into a, so the ids of a stay. The ends of a move half-way to
+ * those of b; or they stay with HE_KEEP_A, or move to those of b with HE_KEEP_B. Values in which
+ * the ends differ move
  * to their corners (keep.h) and are counted in `moved`, which may be NULL; edge a keeps its values.
  * A common end stays as it is. At a bow-tie the chain of fans is rearranged if other fans are
  * between a and b (ring.h).
  *
- * Costs the faces at the ends of b.
+ * Takes time linear in the size of the faces at the ends of b.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if a = b.
  * Returns HE_NOT_BOUNDARY if an element is not on the boundary.
  * Returns HE_REPEATED_CORNER if a face has two corners that would become one.
  * Returns HE_DOUBLED_EDGE if other edges would join the same two vertices.
- * Returns HE_CLOSED_FAN if the fan at the common end would close beside another.
+ * Returns HE_CLOSED_FAN if a and b have an end in common which would get a closed fan beside other
+ * fans.
  * Returns HE_LOCKED_ELEMENT if an element is locked that would be deleted, move, or get another end
  * or corner (marks.h).
  * Returns HE_NO_MEMORY if memory is out. */

@@ -6,15 +6,15 @@
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
 
-/* An end of a, and the end of b that is merged into it; the two are equal at a common end. `in` and
- * `out` are the boundary half-edges of a and b that arrive and leave there; the two edges will be
- * between them. */
+/* An end of edge a (`stays`), and the end of edge b that is merged into it (`goes`); both are one
+ * vertex if the edges share this end. `in` and `out` are the boundary half-edges of a and b that
+ * arrive and leave there. */
 typedef struct pair {
     he_vertex stays, goes;
     he_halfedge in, out;
 } pair;
 
-/* Returns the half-edge of a boundary edge that runs along the hole. */
+/* Returns that half-edge of a boundary edge which has no face. */
 static he_halfedge outer(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -30,8 +30,8 @@ static he_status require_boundary(const he_mesh *m, he_edge e, he_error *err)
     return status;
 }
 
-/* Checks that the two vertices can be merged: no face has both, and no vertex except the other end
- * of a and b is a neighbour of both. */
+/* Checks that two vertices can be merged: no face may have both as corners, and no vertex may be a
+ * neighbour of both, except the other end of the edges a and b. */
 static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_edge b, he_error *err)
 {
     he_vertex v = end->stays, w = end->goes;
@@ -120,7 +120,7 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     return status;
 }
 
-/* Moves everything at `goes` to `stays`. */
+/* Moves all edges and faces at vertex `goes` to vertex `stays`. */
 static void merge(he_mesh *m, const pair *end, he_keep keep)
 {
     he_halfedge first = he_vertex_halfedge(m, end->goes), h = first;

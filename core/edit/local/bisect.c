@@ -8,8 +8,8 @@ void he_bisect_need(he_need *need)
 {
     need->vertices++;
     need->edges++;
-    /* Links of the neighbours and of both old half-edges, the stored half-edges of the target and
-     * of two faces, the origin of 2e + 1. */
+    /* The links are those of the neighbours and of both old half-edges, the half-edges stored by
+     * the target and by two faces, and the origin of half-edge 2e + 1. */
     need->links += 16;
     need->attributes += 2;
     need->lineage++;
@@ -47,7 +47,7 @@ he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t)
         he_carry_between(m, HE_HALFEDGE, on.i, h.i, next.i, t);
     }
     if (right.i != HE_NONE) {
-        /* The half-edge `off` now leaves the corner at b. */
+        /* The half-edge `off` now leaves the corner at b, which `back` left before. */
         he_carry_move(m, HE_HALFEDGE, off.i, back.i);
         he_carry_between(m, HE_HALFEDGE, back.i, he_next(m, back).i, off.i, t);
     }
@@ -143,8 +143,8 @@ he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)
         kept = gone;
         gone = swap;
     }
-    /* `kept` runs from v to a, `gone` from v to b: kept takes the place of twin(gone) and of
-     * itself. */
+    /* `kept` runs from v to a, and `gone` from v to b. Afterwards `kept` runs from b to a: in its
+     * loop it takes the place of twin(gone) and of itself. */
     he_halfedge to_v = he_twin(gone), in = he_twin(kept);
     he_vertex b = he_target(m, gone);
     he_face right = he_face_of(m, gone), left = he_face_of(m, kept);

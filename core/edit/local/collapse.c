@@ -12,7 +12,7 @@ static he_status refuse(he_error *err, he_halfedge h, const char *rule, const ch
                    he_edge_of(h).i, rule, kind, id);
 }
 
-/* Returns the corner opposite h in a triangle on its left, HE_NONE if there is no triangle. */
+/* Returns the corner opposite to h if the face left of h is a triangle, else HE_NONE. */
 static he_vertex opposite(const he_mesh *m, he_halfedge h)
 {
     return he_is_triangle(m, h) ? he_origin(m, he_prev(m, h)) : (he_vertex){HE_NONE};
@@ -20,13 +20,14 @@ static he_vertex opposite(const he_mesh *m, he_halfedge h)
 
 enum { SMALL_RING = 24, BLOCK = 8 };
 
-/* The half-edges that leave a vertex, and their targets, padded with HE_NONE to whole blocks. */
+/* The half-edges that leave a vertex of low degree, and their targets. Both arrays are padded with
+ * HE_NONE to whole blocks, so that they can be compared block by block. */
 typedef struct ring {
     uint32_t count, out[SMALL_RING], target[SMALL_RING];
 } ring;
 
-/* Two walks in opposite directions around a vertex from one half-edge on, and what is not visited
- * yet. */
+/* Two walks around a vertex in opposite directions that start at one half-edge, and the number of
+ * half-edges that neither has visited yet. */
 typedef struct hands {
     he_halfedge up, down;
     uint32_t ups, downs; /* entries written from the front of the ring, and from the back */
@@ -39,7 +40,8 @@ static void put(const he_mesh *m, ring *r, uint32_t place, he_halfedge h)
     r->target[place] = he_target(m, h).i;
 }
 
-/* Advances each walk by one. Returns false if the ring is not small. */
+/* Advances each of the two walks by one half-edge. Returns false if the vertex has too many
+ * half-edges for the arrays. */
 static bool turn(const he_mesh *m, hands *at, ring *r)
 {
     if (at->ups + at->downs + 2 > SMALL_RING) {
@@ -56,7 +58,7 @@ static bool turn(const he_mesh *m, hands *at, ring *r)
     return true;
 }
 
-/* Sorts the entries in the order of turning counter-clockwise from h. */
+/* Sorts what the two walks have gathered in the order of turning counter-clockwise from h. */
 static void close_ring(const hands *at, ring *r)
 {
     r->count = at->ups;
@@ -69,8 +71,9 @@ static void close_ring(const hands *at, ring *r)
     }
 }
 
-/* Gathers both ends' rings, from h and from its twin on. Each step waits for memory, so the walks
- * in both directions around both ends advance together. Returns false if a ring is not small. */
+/* Gathers the half-edges around both ends of h. Each step of a walk waits for memory, so four
+ * walks, in both directions around both ends, advance together. Returns false if an end has too
+ * many half-edges for the arrays. */
 static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
 {
     ring *const rings[2] = {of_u, of_v};
@@ -102,8 +105,8 @@ static bool is_in(const ring *r, uint32_t vertex)
     return found;
 }
 
-/* Checks L1, and L4 in the same walk around u. Without `of_v` the ring of v is searched for each
- * neighbour. */
+/* Checks the link condition's parts L1 and L4 (collapse.h) in one walk around u. If `of_v` is NULL,
+ * the half-edges around v are searched for each neighbour. */
 static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k, const ring *of_v,
                                  he_vertex c, he_vertex d, he_error *err)
 {
@@ -112,7 +115,7 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
         (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
         return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
     }
-    /* All corners of a triangle at u are neighbours of u, so L1 covers it. */
+    /* All corners of a triangle at u are neighbours of u, so L1 already covers this face for L4. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
         return HE_OK;
     }
@@ -143,7 +146,7 @@ static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
-/* Checks L3 for the triangle left of h. */
+/* Checks part L3 of the link condition (collapse.h) for the triangle left of h. */
 static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
     if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
@@ -154,7 +157,7 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
     return HE_OK;
 }
 
-/* Is h's origin interior with three triangles around it? */
+/* Returns true if the origin of h is an interior vertex with three triangles around it. */
 static bool is_apex(const he_mesh *m, he_halfedge h)
 {
     he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
@@ -189,7 +192,7 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     return status;
 }
 
-/* Checks the locks of everything at u, which is deleted or moved to v. */
+/* Checks the locks (marks.h) of every element at u: all of them are deleted or moved to v. */
 static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                              he_error *err)
 {
@@ -201,7 +204,8 @@ static he_status check_locks(const he_mesh *m, const he_marks *marks, he_halfedg
     return status == HE_OK ? he_require_unlocked_about(m, marks, h, err) : status;
 }
 
-/* Counts the feature edges at the origin of h. *which is one of them, if possible not that of h. */
+/* Counts the feature edges at the origin of h. *which is set to one of them, if possible not to the
+ * edge of h. */
 static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfedge h,
                                he_edge *which)
 {
@@ -217,7 +221,7 @@ static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfe
     return count;
 }
 
-/* Checks F1 to F4 of marks.h. */
+/* Checks the rules F1 to F4 for feature edges, which marks.h lists. */
 static he_status check_features(const he_mesh *m, const he_marks *marks, he_halfedge h, bool moves,
                                 he_error *err)
 {
@@ -263,8 +267,8 @@ static he_status check_marks(const he_mesh *m, he_halfedge h, he_vec3 place, he_
     return status != HE_OK ? status : check_features(m, &marks, h, moves, err);
 }
 
-/* The triangle left of h now has only two sides, kept and gone. Deletes `gone`: `kept` takes the
- * place of its twin, `outer`. */
+/* The triangle left of h now has only the two sides `kept` and `gone`, so they become one edge.
+ * Deletes `gone`: `kept` takes the place of `outer`, the twin of `gone`. */
 static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
 {
     he_halfedge outer = he_twin(gone);
@@ -290,7 +294,7 @@ static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
     he_delete_face(m, f);
 }
 
-/* Takes h out of the loop on its left. */
+/* Takes h out of the loop of the face on its left. */
 static void unlink_side(he_mesh *m, he_halfedge h)
 {
     he_face f = he_face_of(m, h);
@@ -329,8 +333,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     if (!interior) {
         he_ring_settle(m, v, after);
     } else if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
-        /* v is interior, so the search for a boundary half-edge around it, which may take long, is
-         * not needed. */
+        /* v is an interior vertex, so it needs no boundary half-edge (I8) and the search for one,
+         * which may take long, is skipped. */
         he_set_vertex_halfedge(m, v, after);
     }
 }

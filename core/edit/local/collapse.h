@@ -43,8 +43,8 @@
  * an interior end (L2), whose only fan opens at the edge and is spliced into the other end's; at a
  * boundary edge two open fans are put end to end, and the outer ends stay apart (L3).
  *
- * `vertex` is v and may be NULL. Costs at most the half-edges of the mesh, and for bounded degrees
- * a constant.
+ * The output `vertex` is v and may be NULL. Takes at most time linear in the half-edges of the
+ * mesh, and constant time if degrees are bounded.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_LINK_CONDITION if a part of it fails, which the message names.
  * Returns HE_BAD_VALUE unless 0 <= t <= 1.
@@ -54,7 +54,8 @@
 HE_NODISCARD he_status he_edge_collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to,
                                         he_vertex *vertex, he_error *err);
 
-/* he_edge_collapse with both: v moves to `to`, and attributes are taken at t. */
+/* he_edge_collapse with both a position and a parameter: v moves to `to`, and attributes are
+ * interpolated at t. */
 HE_NODISCARD he_status he_edge_collapse_at(he_mesh *m, he_halfedge h, double t, he_vec3 to,
                                            he_error *err);
 

@@ -115,7 +115,8 @@ he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
 }
 
 /* Returns a corner of face(h), other than the ends of h, that is on `other` too; HE_NONE if there
- * is none. Walks around each corner, so it costs at most the half-edges of the mesh. */
+ * is none. Walks around each corner, so it takes at most time linear in the half-edges of the
+ * mesh. */
 static he_vertex shared_corner(const he_mesh *m, he_halfedge h, he_face other)
 {
     he_halfedge x = he_next(m, he_next(m, h));

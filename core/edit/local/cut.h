@@ -18,7 +18,7 @@
  * The part to the left of from -> to keeps the id of f and its values; the other is new, descends
  * from f and has the half-edge `from`. The new corners copy those they were cut from.
  *
- * Outputs may be NULL.
+ * Each output may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if the face or a half-edge is not live.
  * Returns HE_NOT_A_CORNER if a half-edge is of another face.
  * Returns HE_SAME_CORNER if both are one corner.
@@ -33,8 +33,9 @@ HE_NODISCARD he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he
  * f. */
 he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
 
-/* face_join: V + 0, E - 1, F - 1. The inverse: the edge is deleted, and the other face is merged
- * into f, the face of its half-edge 2e. Interpolated attributes of f become the mean of both.
+/* face_join: V + 0, E - 1, F - 1. The inverse of face_split: the edge is deleted, and the other
+ * face is merged into f, the face of its half-edge 2e. Interpolated attributes of f become the mean
+ * of both.
  *
  *           o-------o-------o             o-------o-------o
  *           |       ^       |             |               |
@@ -42,7 +43,7 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  *           |       |       |             |               |
  *           o-------o-------o             o-------o-------o
  *
- * `face` is f and may be NULL.
+ * The output `face` is f and may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_SHARED_BOUNDARY if the faces have another corner in common, at which f would pass
@@ -51,9 +52,9 @@ he_halfedge he_face_corner(const he_mesh *m, he_face f, he_vertex v);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err);
 
-/* The COMMIT part of face_split, for edits that check and reserve themselves. he_cut_need adds to
- * `need` what cutting off a face of `corners` corners writes. he_cut_commit returns half-edge 2e of
- * the diagonal; the new face is that of its twin. */
+/* The last part of face_split, which writes, for edits that do their own checks and reserve their
+ * own memory. he_cut_need adds to `need` what cutting off a face of `corners` corners writes.
+ * he_cut_commit returns half-edge 2e of the diagonal; the new face is on the side of its twin. */
 void he_cut_need(uint32_t corners, he_need *need);
 he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to);
 

@@ -4,7 +4,7 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Lists the corners of the merged face. */
+/* Lists the vertices around the face that results when all faces at v are merged. */
 static he_status find_ring(const he_mesh *m, he_vertex v, he_ids *ring, he_error *err)
 {
     he_status status = HE_OK;
@@ -76,7 +76,7 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
         he_set_face_halfedge(m, f, he_next(m, first));
     }
     double taken = 0; /* faces merged into f */
-    /* The spokes keep their own links until they are deleted, so turning about v still works. */
+    /* The edges at v keep their links until they are deleted, so turning about v still works. */
     do {
         he_halfedge next = he_turn_ccw(m, k), back = he_twin(k), out = he_next(m, k);
         he_vertex a = he_target(m, k);

@@ -10,14 +10,14 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
     return he_is_boundary_halfedge(m, he_twin(h));
 }
 
-/* Adds what erasing a face writes. If it is not `alone`, faces around it may be deleted before, so
- * every edge may die. */
+/* Adds what erasing face f writes to `need`. Unless the face is the only one to be deleted
+ * (`alone`), its neighbours may be deleted before it, so any of its edges may die. */
 static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
-        /* The face and the stored half-edge of each corner; for each dying edge two pairs of links
-         * and two stored half-edges. */
+        /* This counts the face and the stored half-edge of each corner; and for each edge that dies
+         * two pairs of links and two stored half-edges. */
         need->links += 2;
         if (!alone || edge_would_die(m, h)) {
             need->links += 6;
@@ -30,7 +30,8 @@ static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
 }
 
 /* Takes an edge without faces out of the rings of its ends. If an end has another half-edge, the
- * one that followed in the hole is a boundary half-edge and becomes the stored one. */
+ * one that followed the edge in the loop of the hole is a boundary half-edge and becomes the stored
+ * one. */
 static void erase_edge(he_mesh *m, he_edge e)
 {
     for (unsigned side = 0; side < 2; side++) {
@@ -82,8 +83,8 @@ static void erase_face(he_mesh *m, he_face f, he_leftover leftover)
     }
 }
 
-/* Is anything locked that would be deleted with face f? A corner is deleted if the face is its
- * last. */
+/* Checks whether an element is locked that would be deleted with face f. A corner's vertex is
+ * deleted if f is its last face. */
 static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
     he_marks marks;
@@ -106,7 +107,7 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     return status;
 }
 
-/* Is the face left of h a hole or one of these, which are deleted? */
+/* Returns true if left of h is a hole, or a face of the given set, whose faces are deleted. */
 static bool goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
 {
     he_face f = he_face_of(m, h);
@@ -125,8 +126,8 @@ static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
     return true;
 }
 
-/* Checks that what is deleted with the faces around the vertices is unlocked. Each locked corner is
- * visited once. */
+/* Checks that no element is locked that is deleted with the given faces. Each corner's vertex that
+ * is locked is visited once. */
 static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_leftover leftover,
                                   he_error *err)
 {
@@ -187,8 +188,8 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     if (count == 1) {
         return erase_one(m, (he_face){faces[0]}, leftover, err);
     }
-    /* Which edges die depends on the order, so each face reserves for itself: one reservation for
-     * all would have to count every edge twice. */
+    /* Which edges are deleted depends on the order of the faces, so memory is reserved for each
+     * face in turn: one reservation for all would have to count every edge twice. */
     he_bracket bracket;
     status = he_edit_begin(m, &bracket, err);
     if (status != HE_OK) {
@@ -220,7 +221,8 @@ he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_lef
     for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
         he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
         status = he_watch_at(m->watch, i, 2 * count, err);
-        /* It may be deleted already, with a face beside an earlier edge of the list. */
+        /* The edge may be deleted already, together with a face beside an earlier edge of the
+         * list. */
         if (status == HE_OK && he_edge_is_live(m, he_edge_of(h)) &&
             !he_is_boundary_halfedge(m, h)) {
             status = erase_one(m, he_face_of(m, h), leftover, err);

@@ -20,13 +20,11 @@
 
 #include "mesh/mesh.h"
 
-/* What happens to vertices left without an edge. */
+/* What happens to vertices that are left without an edge: they are deleted or kept. */
 typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 
-/* face_delete: F - count, V and E as above. Other elements keep their ids. All or nothing: a
- * refusal changes nothing.
- * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
- * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
+/* face_delete: deletes `count` faces, with the edges that are left without a face. All other
+ * elements keep their ids. If it is refused, nothing changes. */
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 

@@ -33,7 +33,8 @@ static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_er
                    he_vertex_fans(m, (he_vertex){v}) - 1);
 }
 
-/* Fills sides[i] with the half-edge that runs from vertices[i] to the next. */
+/* Checks the vertices of the new face and fills sides[i] with the existing half-edge from
+ * vertices[i] to the next vertex, or HE_NONE. */
 static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides,
                        he_error *err)
 {
@@ -59,8 +60,8 @@ static he_status check(const he_mesh *m, const uint32_t *vertices, size_t n, uin
     return HE_OK;
 }
 
-/* Links the corner between two sides, of which some are new and have no links yet. Writes only
- * links at this vertex. */
+/* Links two consecutive sides of the new face at vertex v. Either side may be a new half-edge that
+ * has no links yet. Writes only links at this vertex. */
 static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out,
                         bool out_is_new)
 {
@@ -85,7 +86,8 @@ static void link_corner(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new,
     }
 }
 
-/* While the fan at v is open, the stored half-edge must be a boundary one (I8). */
+/* Makes v store a boundary half-edge if its fan is still open, as invariant I8 of mesh.h
+ * demands. */
 static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_new, he_halfedge out)
 {
     he_halfedge stored = he_vertex_halfedge(m, v);
@@ -105,7 +107,7 @@ static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_n
 static void commit(he_mesh *m, const uint32_t *vertices, size_t n, uint32_t *sides, he_face *out,
                    he_ids *edges)
 {
-    /* New sides have ids from here on. */
+    /* Half-edges with ids from here on are sides that this call makes. */
     uint32_t old = 2 * m->c.edges.issued;
     for (size_t i = 0; i < n; i++) {
         if (sides[i] == HE_NONE) {

@@ -23,14 +23,15 @@
  * ids of new edges are appended to `edges`, in the face's order. Both may be NULL. Half-edge 2e of
  * a new edge runs along the face.
  *
- * No edge can be doubled: an edge that joins two neighbours is adopted or refused.
+ * No pair of vertices can get a second edge: an existing edge between two neighbours is adopted or
+ * the edit is refused.
  * Returns HE_TOO_FEW_CORNERS if there are fewer than three vertices.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_CORNER if a vertex is not live or
  * is listed twice.
  * Returns HE_INTERIOR_VERTEX if a vertex has a closed fan.
  * Returns HE_NONMANIFOLD_EDGE if a side is an edge with two faces.
- * Returns HE_ORIENTATION if a side is an edge with a face on this side.
- * Returns HE_CLOSED_FAN if a fan would close beside another.
+ * Returns HE_ORIENTATION if a side is an edge that already has a face on this side.
+ * Returns HE_CLOSED_FAN if a fan would become closed at a vertex that has other fans.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_add(he_mesh *m, const uint32_t *vertices, size_t count, he_face *out,

@@ -3,8 +3,8 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* Returns the side after corner `a` of what is left of the face; if the face is deleted already,
- * the last side. */
+/* Returns the side that leaves corner `a`, of what is left of the face; if the face is deleted
+ * already, the half-edge from `a` to `last`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {
@@ -17,8 +17,8 @@ static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex
     return he_twin(h);
 }
 
-/* Bounds the work of checking the sides: the loops at the corners, except f's own. Every step
- * visits them again, at a vertex into which the corners before were merged. */
+/* Refuses a face whose collapse would take too much work. Every collapse of a side visits the loops
+ * of the faces around its ends again, at a vertex into which the earlier corners were merged. */
 static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *err)
 {
     uint64_t steps = 0, most = HE_FACE_COLLAPSE_STEPS / n;
@@ -61,7 +61,7 @@ he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *e
         return status;
     }
     for (uint32_t k = 1; status == HE_OK && k < n; k++) {
-        /* The weight of the corner that is merged into a, which stands for k corners already. */
+        /* The weight of the corner that is merged into a. Vertex a already stands for k corners. */
         double t = (double)k / (k + 1);
         status = he_edge_collapse(m, next_side(m, f, a, last), t, NULL, NULL, err);
     }

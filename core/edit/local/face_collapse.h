@@ -4,7 +4,8 @@
 
 #include "mesh/mesh.h"
 
-/* The most work for one face: its corners times the half-edges of the loops at them. */
+/* The most work that the collapse of one face may take, measured as the number of its corners times
+ * the half-edges of the loops at them. */
 enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
 
 /* face_collapse: a face of n corners is deleted, and its corners become one vertex at their mean: V
@@ -27,7 +28,7 @@ enum { HE_FACE_COLLAPSE_STEPS = 1 << 24 };
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_LINK_CONDITION or HE_LOCKED_ELEMENT or HE_FEATURE_EDGE if edge_collapse refuses one of
  * the sides.
- * Returns HE_LIMIT if that is more work than HE_FACE_COLLAPSE_STEPS.
+ * Returns HE_LIMIT if the face needs more work than HE_FACE_COLLAPSE_STEPS.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_face_collapse(he_mesh *m, he_face f, he_vertex *vertex, he_error *err);
 

@@ -3,9 +3,9 @@
 #include "edit/local/cut.h"
 #include "mesh/marks.h"
 
-/* The origin of h, of edge e, loses that edge and must keep three unless it is on the boundary.
- * Three steps around the vertex decide whether its degree is at least 4: a walk around the whole
- * vertex would make a thousand flips at one vertex slow. */
+/* Checks that the origin of h, which loses edge e, keeps at least three edges or is on the
+ * boundary. Three steps around the vertex decide whether its degree is at least 4; a walk around
+ * the whole vertex would make a thousand flips at one vertex slow. */
 static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_halfedge second = he_turn_ccw(m, he_turn_ccw(m, h));
@@ -61,8 +61,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     if (status != HE_OK) {
         return status;
     }
-    /* This half-edge leaves c inside face(h), so the search, which walks in both directions around
-     * c, soon reaches both sides of that face. */
+    /* Half-edge twin(next(h)) leaves c inside face(h). The search for an edge from c to d walks in
+     * both directions around c, so starting there it soon reaches both sides of that face. */
     he_halfedge joined = he_find_halfedge_from(m, he_twin(he_next(m, h)), d);
     if (joined.i != HE_NONE) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
@@ -81,8 +81,8 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     return check_marks(m, e, err);
 }
 
-/* Moves the origin of h, whose face loses that corner, to the corner after the other end: `side` is
- * the half-edge that follows twin(h) and moves into face(h). */
+/* Moves the origin of h to the next corner of the face of twin(h); the face of h loses the old
+ * corner. `side` is the half-edge that follows twin(h), and moves into face(h). */
 static void turn_end(he_mesh *m, he_halfedge h, he_halfedge side)
 {
     he_vertex a = he_origin(m, h);

@@ -18,9 +18,10 @@
  *
  * The corner values of f's new corner d are those it had in g, and the reverse for c.
  *
- * Every fan concerned loses or gains an edge between two of its faces, so none closes or opens.
+ * At every vertex concerned a fan loses or gains an edge between two of its faces, so no fan closes
+ * or opens.
  *
- * Costs the corners of both faces and the lesser degree of c and d.
+ * Takes time linear in the corners of both faces and the lesser degree of c and d.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_BOUNDARY_EDGE if the edge is on the boundary.
  * Returns HE_SAME_ENDS if c = d.

@@ -1,4 +1,4 @@
-/* poke.h - fills a loop with triangles around a new vertex. */
+/* poke.h - fills a loop, the border of a face or a hole, with triangles around a new vertex. */
 #ifndef HE_EDIT_LOCAL_POKE_H
 #define HE_EDIT_LOCAL_POKE_H
 
@@ -20,7 +20,7 @@
  * at `position`, or at the mean of the corners if that is NULL; its interpolated attributes, and
  * those of its corners, are the mean of those around it.
  *
- * New ids are appended to `edges` and `faces`; outputs may be NULL.
+ * New ids are appended to `edges` and `faces`; each output may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_NOT_FINITE if the position is not finite.
  * Returns HE_NO_MEMORY if memory is out.
@@ -28,8 +28,8 @@
 HE_NODISCARD he_status he_face_poke(he_mesh *m, he_face f, const he_vec3 *position,
                                     he_vertex *vertex, he_ids *edges, he_ids *faces, he_error *err);
 
-/* face_poke for any loop, of a face or a hole. Without `keep` all n triangles are new faces, as in
- * a hole; with it the first keeps the id of the face of `first`. */
+/* A planned face_poke of any loop, of a face or a hole. Without `keep` all n triangles are new
+ * faces, as in a hole; with `keep` the first triangle keeps the id of the face of `first`. */
 typedef struct he_poke {
     he_halfedge first;
     bool keep;
@@ -39,13 +39,13 @@ typedef struct he_poke {
         loop; /* the corners' vertices and half-edges; filled only if there are columns */
 } he_poke;
 
-/* CHECK and RESERVE: adds what COMMIT writes to `need`. he_poke_clear frees.
- * Returns HE_NO_MEMORY if memory is out. */
+/* Plans the edit and adds what he_poke_commit writes to `need`; the caller reserves it.
+ * he_poke_clear frees the plan. */
 HE_NODISCARD he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
                                     he_need *need, he_error *err);
 void he_poke_clear(he_poke *poke);
-/* COMMIT. `edges` and `faces` have room, or are NULL. For the vertices of a hole's loop the caller
- * must call he_ring_settle. */
+/* Writes the planned triangles and cannot fail. `edges` and `faces` must have room, or be NULL. For
+ * the vertices of a hole's loop the caller must call he_ring_settle. */
 he_vertex he_poke_commit(he_mesh *m, const he_poke *poke, he_ids *edges, he_ids *faces);
 
 #endif

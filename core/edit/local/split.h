@@ -29,7 +29,8 @@ typedef struct he_split {
  * triangle; in the face on the other side, b, a, d, ..., it goes to d.
  *
  * Edge e and both faces keep the part with a, the origin of half-edge 2e. New edge and faces have
- * the old ones as parents; the diagonals have none. Left of 2e comes first.
+ * the old ones as parents; the diagonals have none. In the output, what lies left of 2e comes
+ * first.
  *
  * `out` may be NULL.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.

@@ -26,7 +26,8 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
     return HE_OK;
 }
 
-/* Puts h into the corner after the half-edge `enters`, which arrives at the vertex. */
+/* Links h into the loop of a corner, between the half-edge `enters`, which arrives at the vertex,
+ * and the half-edge that followed it. */
 static void into_corner(he_mesh *m, he_halfedge enters, he_halfedge h)
 {
     he_halfedge leaves = he_next(m, enters);

@@ -3,8 +3,9 @@
 #include "edit/piece/point.h"
 #include "edit/piece/ring.h"
 
-/* What v is cut along: half-edges v -> left and v -> right, HE_NONE for a null, and the half-edges
- * that will leave u: `count` of them, counter-clockwise from `first`. */
+/* Where vertex v is cut: along the half-edges v -> left and v -> right, of which one is HE_NONE if
+ * the client gave null. The `count` half-edges counter-clockwise from `first` will leave the new
+ * vertex u. */
 typedef struct cut {
     he_halfedge left, right;
     he_halfedge first;
@@ -63,8 +64,9 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     if (status != HE_OK) {
         return status;
     }
-    /* A null stands for the hole at v: the ring passes it from its last half-edge, the boundary
-     * half-edge that leaves v, to the first of the fan. */
+    /* A null for `left` or `right` stands for the hole at v. In the order of turning, the hole lies
+     * between the last half-edge of the fan, which is the boundary half-edge that v stores, and the
+     * first. */
     he_halfedge hole = he_vertex_halfedge(m, v);
     he_halfedge end = c.right.i != HE_NONE ? c.right : he_turn_ccw(m, hole);
     he_halfedge h = he_turn_ccw(m, c.left.i != HE_NONE ? c.left : hole);
@@ -91,7 +93,7 @@ static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
     return h;
 }
 
-/* `made` takes the place of `old` in the loop to its left. */
+/* Lets the new half-edge `made` take the place of `old` in the loop on the left of `old`. */
 static void replace(he_mesh *m, he_halfedge old, he_halfedge made)
 {
     he_face f = he_face_of(m, old);
@@ -117,8 +119,8 @@ static he_face new_triangle(he_mesh *m, he_halfedge a, he_halfedge b, he_halfedg
     return f;
 }
 
-/* Puts a boundary half-edge between the one that arrives at v from the hole and the one that
- * leaves. */
+/* Links the new boundary half-edge h into a hole at v: after the half-edge that arrives at v, and
+ * before `hole`, which leaves v. */
 static void into_hole(he_mesh *m, he_halfedge h, he_halfedge hole)
 {
     he_link(m, he_prev(m, hole), h);

@@ -29,8 +29,9 @@ typedef struct he_vertex_parts {
  * stays where it is. Two triangles fill the gap: u, v, left and v, u, right. edge_collapse of u ->
  * v is the exact inverse: it restores all links, except which half-edge an interior v stores.
  *
- * On the boundary one of the two may be null, {HE_NONE}: it stands for the hole at v, which
- * afterwards is on that side of the new edge, and there is a triangle on the other side only.
+ * If v is on the boundary, `left` or `right` may be null ({HE_NONE}) and then stands for the hole
+ * at v. Afterwards the hole is on that side of the new edge, and there is a triangle on the other
+ * side only.
  *
  * The edges v-left and v-right keep their ids; the edges of u to the same vertices are new and
  * descend from them, as u does from v. Half-edge 2e of a new edge leaves u.
@@ -40,7 +41,7 @@ typedef struct he_vertex_parts {
  * Returns HE_BOWTIE if v has several fans.
  * Returns HE_NOT_NEIGHBOUR if left or right is no neighbour of v.
  * Returns HE_REPEATED_ELEMENT if left = right.
- * Returns HE_NOT_BOUNDARY if one is null and v is interior.
+ * Returns HE_NOT_BOUNDARY if left or right is null and v is interior.
  * Returns HE_NO_SECTOR if no face lies from left to right.
  * Returns HE_BAD_VALUE if both are null.
  * Returns HE_NOT_FINITE if `to` is not finite.

@@ -3,7 +3,7 @@
 #include "base/word_hash.h"
 #include "edit/piece/list.h"
 
-/* Returns the next half-edge of the loop before h whose ends stay apart. */
+/* Returns the last half-edge before h in its loop whose ends are not merged into one vertex. */
 static he_halfedge before(const he_merge_plan *p, he_halfedge h)
 {
     do {
@@ -12,7 +12,8 @@ static he_halfedge before(const he_merge_plan *p, he_halfedge h)
     return h;
 }
 
-/* Returns the old half-edge whose face will run along h, HE_NONE at a boundary. */
+/* Returns the old half-edge whose face will be the face of h after the merge; HE_NONE if h will be
+ * a boundary half-edge. */
 static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -22,7 +23,7 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* Returns what he_turn_ccw will be, for a half-edge with a face. */
+/* Returns what he_turn_ccw of h will be after the merge. h must have a face then. */
 static he_halfedge turn(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
@@ -63,7 +64,7 @@ he_status he_merge_find_group(he_merge_plan *p, he_error *err)
         p->rep[i] = p->group.ids[i];
         p->next[i] = HE_NONE;
     }
-    /* Backwards, so that each list is in the caller's order. */
+    /* Going backwards puts each list into the caller's order. */
     for (size_t i = how->count; i-- > 0;) {
         uint32_t gone = he_merge_index(&p->group, how->gone[i]),
                  into = he_merge_index(&p->group, how->into[i]);
@@ -94,7 +95,7 @@ he_status he_merge_find_rings(he_merge_plan *p, he_error *err)
     return status == HE_OK ? he_ids_sort(&p->faces, err) : status;
 }
 
-/* Counts the corners that a face keeps; if it is deleted, all its edges become part of the plan. */
+/* Counts the corners that face i keeps; if it is deleted, all its edges become part of the plan. */
 static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -118,7 +119,7 @@ static he_status measure_face(he_merge_plan *p, size_t i, he_error *err)
     return status;
 }
 
-/* Checks that no corner of a face that stays occurs twice. */
+/* Checks that face i, if it stays, does not pass a vertex twice after the merge. */
 static he_status check_corners(const he_merge_plan *p, size_t i, he_ids *corners, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -173,7 +174,8 @@ static size_t slot_of(const he_merge_plan *p, uint32_t a, uint32_t b)
     return (size_t)(h >> 32) & (p->slot_count - 1);
 }
 
-/* Marks edge i as one that stays, or as merged into the one that has its ends. */
+/* Records that edge i stays, or that it is merged into an edge which will have the same two
+ * ends. */
 static void enter(he_merge_plan *p, uint32_t i)
 {
     he_halfedge h = {2 * p->edges.ids[i]};
@@ -219,9 +221,10 @@ he_status he_merge_pair_edges(he_merge_plan *p, he_error *err)
     return HE_OK;
 }
 
-/* --- faces along them ----------------------------------------------------------------------- */
+/* --- which faces lie along the edges that stay --- */
 
-/* Do the faces of two old half-edges run through the same corners, from these on? */
+/* Returns true if the faces of the old half-edges a and b will pass the same vertices in the same
+ * order, starting at a and b. */
 static bool is_same_face(const he_merge_plan *p, he_halfedge a, he_halfedge b)
 {
     he_halfedge h = a, k = b;
@@ -252,7 +255,8 @@ static void occupy_face(const he_merge_plan *p, size_t i)
 {
     he_halfedge first = he_face_halfedge(p->m, (he_face){p->faces.ids[i]});
     first = he_merge_shrinks(p, first) ? he_merge_after(p, first) : first;
-    /* Any half-edge of a face that is equal to another is merged into a side of that. */
+    /* If the face equals another one, each of its half-edges is merged into a side of that one, so
+     * looking at one half-edge suffices. */
     uint32_t at = he_merge_index(&p->edges, he_edge_of(he_merge_heir(p, first)).i);
     if (at != HE_NONE && p->fates[at].occupant[he_merge_heir(p, first).i & 1] != HE_NONE) {
         he_halfedge other = {p->fates[at].occupant[he_merge_heir(p, first).i & 1]};
@@ -284,7 +288,7 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
         he_merge_fate *f = &p->fates[i];
         uint32_t e = p->edges.ids[i];
         for (unsigned side = 0; f->into == e && side < 2; side++) {
-            /* A face beside a deleted one may not be touched by the merge otherwise. */
+            /* The face beside a deleted face may have no merged vertex, so it is added here. */
             he_halfedge h = he_edge_halfedge((he_edge){e}, side);
             if (!he_is_boundary_halfedge(m, h) &&
                 he_merge_index(&p->faces, he_face_of(m, h).i) == HE_NONE) {
@@ -328,7 +332,8 @@ static he_status find_rim(he_merge_plan *p, he_error *err)
     return status;
 }
 
-/* Lists the half-edges that will leave rim vertex v. */
+/* Lists the half-edges that will leave vertex v after the merge. v is a vertex at which the links
+ * between fans may change. */
 static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he_error *err)
 {
     const he_mesh *m = p->m;
@@ -357,7 +362,7 @@ static bool is_boundary(const he_merge_plan *p, he_halfedge h)
     return occupant_of(p, h).i == HE_NONE;
 }
 
-/* Links the fans at rim vertex i, and chooses the half-edge it stores. */
+/* Links the fans at the i-th vertex whose fans change, and chooses the half-edge that it stores. */
 static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_error *err)
 {
     he_vertex v = {p->rim.ids[i]};
@@ -371,8 +376,8 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         if (is_boundary(p, h) || !is_boundary(p, he_twin(h))) {
             continue;
         }
-        /* A fan begins; the half-edge that leaves the one before follows the one that enters this
-         * fan. */
+        /* A new fan begins here: the boundary half-edge that ends the fan before it is linked to
+         * the one that arrives at this fan. */
         if (out.i != HE_NONE) {
             status = he_ids_add(&p->holes, he_twin(h).i, err);
             if (status == HE_OK) {

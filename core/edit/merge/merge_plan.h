@@ -1,11 +1,12 @@
-/* merge_plan.h - the plan of he_merge_vertices: merge_plan.c makes it, merge.c writes it. */
+/* merge_plan.h - what a merge of vertices (he_merge_vertices) will do to each element concerned.
+ * merge_plan.c computes this plan and merge.c writes it. */
 #ifndef HE_EDIT_MERGE_MERGE_PLAN_H
 #define HE_EDIT_MERGE_MERGE_PLAN_H
 
 #include "edit/merge/merge.h"
 #include "mesh/write.h"
 
-/* What happens to an edge with an end in a merge, or beside a face that is deleted. */
+/* What happens to an edge if one of its ends is merged, or if a face beside it is deleted. */
 typedef struct he_merge_fate {
     uint32_t into; /* the edge into which it is merged, itself, or HE_NONE if its ends become one */
     uint32_t turned;      /* 1 if half-edge 2e takes the place of 2 * into + 1 */
@@ -14,7 +15,8 @@ typedef struct he_merge_fate {
     uint32_t uses[2];     /* how many faces will run along each side */
 } he_merge_fate;
 
-/* Lists of ids are sorted unless they say otherwise; arrays are parallel to them. */
+/* What a merge will do to each element concerned. Lists of ids are sorted unless they say
+ * otherwise; each array is parallel to a list. */
 typedef struct he_merge_plan {
     he_mesh *m;
     const he_merge *how;
@@ -49,20 +51,21 @@ static inline uint32_t he_merge_index(const he_ids *list, uint32_t id)
     return low < list->count && list->ids[low] == id ? (uint32_t)low : HE_NONE;
 }
 
-/* Returns the vertex that v becomes. */
+/* Returns the vertex into which v is merged; v itself if it is merged into none. */
 static inline he_vertex he_merge_rep(const he_merge_plan *p, he_vertex v)
 {
     uint32_t i = he_merge_index(&p->group, v.i);
     return i == HE_NONE ? v : (he_vertex){p->rep[i]};
 }
 
-/* Do the ends of h become one? */
+/* Returns true if both ends of h are merged into one vertex, so that its edge is deleted. */
 static inline bool he_merge_shrinks(const he_merge_plan *p, he_halfedge h)
 {
     return he_merge_rep(p, he_origin(p->m, h)).i == he_merge_rep(p, he_target(p->m, h)).i;
 }
 
-/* Returns the next half-edge of the loop after h whose ends stay apart. There must be one. */
+/* Returns the first half-edge after h in its loop whose ends are not merged into one vertex. There
+ * must be one. */
 static inline he_halfedge he_merge_after(const he_merge_plan *p, he_halfedge h)
 {
     do {
@@ -71,7 +74,7 @@ static inline he_halfedge he_merge_after(const he_merge_plan *p, he_halfedge h)
     return h;
 }
 
-/* Returns the half-edge that takes the place of h. */
+/* Returns the half-edge into which h is merged, or h itself if its edge stays. */
 static inline he_halfedge he_merge_heir(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -79,7 +82,7 @@ static inline he_halfedge he_merge_heir(const he_merge_plan *p, he_halfedge h)
                         : (he_halfedge){2 * p->fates[i].into + ((h.i & 1) ^ p->fates[i].turned)};
 }
 
-/* Does h's edge stay, with h in its own place? */
+/* Returns true if the edge of h stays and is not turned, so that h keeps its id. */
 static inline bool he_merge_stays(const he_merge_plan *p, he_halfedge h)
 {
     uint32_t i = he_merge_index(&p->edges, he_edge_of(h).i);
@@ -88,7 +91,8 @@ static inline bool he_merge_stays(const he_merge_plan *p, he_halfedge h)
             (p->fates[i].occupant[0] != HE_NONE || p->fates[i].occupant[1] != HE_NONE));
 }
 
-/* CHECK, in this order; each uses the results of those before. Errors are those of merge.h. */
+/* These functions plan a merge and must be called in this order, because each uses the results of
+ * those before. They return the errors that merge.h lists. */
 HE_NODISCARD he_status he_merge_find_group(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_rings(he_merge_plan *p, he_error *err);
 HE_NODISCARD he_status he_merge_find_faces(he_merge_plan *p, he_error *err);

@@ -13,8 +13,9 @@
  *     |   c       d   |     --->      |   c   |          |  \ / g  --->  |   |    sides are one
  *     o---o       o---o               o---o---o          o---o           o---o    edge (g too)
  *
- * merge.h says which other elements are merged or deleted. The vertex moves to the mean of all of
- * them, or with HE_MERGE_INTO stays where it is. `into`, which may be NULL, is the one that stays;
+ * merge.h says which other elements are merged or deleted. The vertex with the lowest id moves to
+ * the mean of all, or stays where it is if `place` is HE_MERGE_INTO. `into`, which may be NULL,
+ * gets the vertex that stays;
  * `moved`, which may be NULL, counts the values that moved from vertices to corners (keep.h).
  *
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -26,13 +27,15 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
                                       he_merge_place place, he_vertex *into, uint64_t *moved,
                                       he_error *err);
 
-/* weld: in rising order of their ids, each vertex is merged into the first one that is no farther
- * away than `tolerance` and was not itself merged, or else stays for others to be merged into. So
- * all vertices that become one are within a ball around the lowest, and merging does not run along
+/* weld: merges all vertices that are close together. Takes the vertices in rising order of ids.
+ * Each is merged into the first vertex that is no farther away than `tolerance` and was not itself
+ * merged; if there is none, it stays and later vertices may be merged into it. So all vertices that
+ * become one lie in a ball around the one with the lowest id, and merging does not run along
  * chains. With a tolerance of 0 vertices at equal positions are merged.
  *
  * The ids of the vertices into which others were merged are appended to `into`, in rising order.
- * Linear in the vertices: near.h. Fails as vertex_weld does.
+ * Takes time linear in the number of vertices, with the grid of near.h. Returns the errors of
+ * vertex_weld, too.
  * Returns HE_BAD_VALUE if the tolerance is negative. */
 HE_NODISCARD he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place,
                                     he_ids *into, uint64_t *moved, he_error *err);

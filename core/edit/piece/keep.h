@@ -27,27 +27,30 @@
 
 #include "mesh/write.h"
 
-/* gone[i] is merged into into[i]. */
+/* One weld's list of merges: vertex gone[i] is merged into vertex into[i]. */
 typedef struct he_keep_pairs {
     const uint32_t *gone, *into;
     size_t count;
 } he_keep_pairs;
 
-/* The kept values of one weld, from he_keep_begin to he_keep_end. */
+/* What a weld that is under way must keep: he_keep_begin fills it, he_keep_end clears it. */
 typedef struct he_keeping {
-    /* Values of vertices that differ from that of the vertex they are merged into. */
+    /* The number of values that would be lost: values of merged vertices that differ from the value
+     * of the vertex they are merged into. */
     uint64_t count;
     he_bracket bracket; /* begun only if there are such values */
 } he_keeping;
 
-/* Moves the values that would be lost, between CHECK and RESERVE of a weld. On failure the mesh is
- * as it was, and the caller must not call he_keep_end.
+/* Moves the vertex values that the weld would lose to corners. An edit calls it after its checks
+ * and before it reserves memory. On failure the mesh is as it was, and the caller must not call
+ * he_keep_end.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,
                                      he_error *err);
-/* Ends the weld with its status, which is returned: a failure undoes what was moved. `moved`, which
- * may be NULL, gets the count if the weld succeeded. */
+/* Ends the weld, whose outcome is `status`, and returns `status`. If the weld failed, the moved
+ * values are put back. If it succeeded, `moved` (which may be NULL) gets the number of values that
+ * were kept. */
 he_status he_keep_end(he_mesh *m, he_keeping *kept, he_status status, uint64_t *moved);
 
 #endif

@@ -25,7 +25,8 @@ static inline he_vec3 he_point_between(he_vec3 a, he_vec3 b, double t)
     return (he_vec3){he_between(a.x, b.x, t), he_between(a.y, b.y, t), he_between(a.z, b.z, t)};
 }
 
-/* Returns the mean of the corners of the loop of h, of a face or a hole. Always finite. */
+/* Returns the mean position of the corners of a loop, which is the face or the hole that half-edge
+ * h belongs to. It is always finite. */
 he_vec3 he_loop_mean(const he_mesh *m, he_halfedge h);
 
 #endif

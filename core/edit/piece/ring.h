@@ -1,19 +1,22 @@
-/* ring.h - maintains the ring of a vertex: its stored half-edge (I8) and the chain of its fans. */
+/* ring.h - maintains the ring of a vertex, which is the cycle of half-edges that leave it: which of
+ * them the vertex stores (invariant I8 of mesh.h), and in which order its fans are chained. */
 #ifndef HE_EDIT_PIECE_RING_H
 #define HE_EDIT_PIECE_RING_H
 
 #include "mesh/write.h"
 
-/* Links that one call writes, for he_need. */
+/* The most links that one call of he_ring_settle writes. Edits add it to the memory they
+ * reserve. */
 enum { HE_SETTLE_LINKS = 1 };
 
-/* Makes halfedge(v) satisfy I8, given `leaving`, any half-edge that leaves v. The stored one stays
- * if it may. Called in COMMIT, once all links, origins and faces at v are final. Walks around v
- * only if the stored half-edge does not satisfy I8 evidently. */
+/* Makes the half-edge that vertex v stores satisfy I8: it must leave v, and be a boundary half-edge
+ * if v has any. `leaving` is any half-edge that leaves v. A stored half-edge that satisfies I8
+ * stays. An edit calls this for each vertex it changed, once all links, origins and faces at v are
+ * final. It walks around v only if one look at the stored half-edge does not suffice. */
 void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving);
 
-/* Returns the boundary half-edge that leaves the target of `in`, a boundary half-edge, and ends the
- * fan that begins there. Costs the fan. */
+/* `in` is a boundary half-edge. One of the fans at its target begins there; returns the boundary
+ * half-edge that leaves the target and ends that fan. Takes time linear in the size of the fan. */
 he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in);
 
 /* Makes `out` follow `in`. They are boundary half-edges that end and begin different fans, or the
@@ -21,7 +24,7 @@ he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in);
  *
  *     Y (from in), Z.., X (to out), W..   --->   X Y next to each other, Z.., W..
  *
- * Writes HE_GAP_LINKS links at most. */
+ * Writes at most HE_GAP_LINKS links. */
 enum { HE_GAP_LINKS = 6 };
 void he_ring_close_gap(he_mesh *m, he_halfedge in, he_halfedge out);
 

@@ -33,7 +33,8 @@ void he_triangles_need(const he_triangles *plan, bool keep, he_need *need)
     need->lineage += n - 3;
 }
 
-/* Cuts a triangle off what is left of the loop by a diagonal along its third side. */
+/* Cuts a triangle off the part of the loop that is not filled yet, by a diagonal along the
+ * triangle's third side. */
 static he_halfedge cut_off(he_mesh *m, he_triangles *plan, const uint32_t *corners, bool keep,
                            he_ids *edges)
 {

@@ -10,17 +10,20 @@ typedef struct he_triangles {
     uint32_t *side; /* for COMMIT: the half-edge that leaves each corner in what is left */
 } he_triangles;
 
-/* CHECK: fails as he_triangulation_make does, avoiding existing edges; `work` is its parameter,
- * NULL for a single loop. he_triangles_clear frees. */
+/* Plans the triangles that fill a loop, before an edit writes. Diagonals avoid existing edges.
+ * Fails as he_triangulation_make does; `work` is passed on to it and may be NULL for a single loop.
+ * he_triangles_clear frees the plan. */
 HE_NODISCARD he_status he_triangles_plan(const he_mesh *m, he_halfedge first,
                                          he_triangulation_work *work, he_triangles *out,
                                          he_error *err);
 void he_triangles_clear(he_triangles *plan);
 
-/* COMMIT. With `keep` the loop is a face: the triangle of its stored half-edge keeps its id, the
- * others descend from it, and corners copy its corners. Without, the loop is a hole and all
- * triangles are new; the caller must call he_ring_settle for its vertices. Half-edge 2e of a new
- * edge runs along the triangle that was cut off. `edges` and `faces` have room, or are NULL. */
+/* he_triangles_need adds the memory that he_triangles_commit needs to `need`; he_triangles_commit
+ * makes the planned triangles and cannot fail. With `keep` the loop is a face: the triangle of its
+ * stored half-edge keeps the face's id, the other triangles descend from it, and corners copy the
+ * values of the face's corners. Without `keep` the loop is a hole and all triangles are new; the
+ * caller must call he_ring_settle for its vertices. Half-edge 2e of a new edge lies in the triangle
+ * that was cut off. `edges` and `faces` must have room, or be NULL. */
 void he_triangles_need(const he_triangles *plan, bool keep, he_need *need);
 void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edges, he_ids *faces);
 

@@ -10,8 +10,8 @@ typedef struct he_line_crossing {
     uint32_t at;  /* its index in the loop */
 } he_line_crossing;
 
-/* The sides on which a part has corners; and, times BESIDE, the sides it must have because a part
- * beside it is on the other side. */
+/* Bits for the sides of the plane on which a part of the face has corners. Multiplied with BESIDE,
+ * a bit is a side that the part must have, because a part beside it is on the other side. */
 enum { ABOVE = 1, BELOW = 2, BOTH = 3, BESIDE = 4 };
 
 static int side_at(const he_mesh *m, const he_sides *sides, const he_chords *c, uint32_t i)
@@ -42,7 +42,8 @@ static void sift(he_line_crossing *heap, size_t count, size_t i)
     heap[i] = moved;
 }
 
-/* Heapsort (J. W. J. Williams, 1964): no memory, and no order of input that is slow. */
+/* Sorts the corners along the line by heapsort (J. W. J. Williams, 1964), which needs no memory and
+ * is not slow for any order of input. */
 static void sort(he_line_crossing *line, size_t count)
 {
     for (size_t i = count / 2; i-- > 0;) {
@@ -62,8 +63,8 @@ static he_vec3 place(const he_mesh *m, const he_sides *sides, const he_chords *c
     return he_vec3_scale(he_position(m, v), sides->scale);
 }
 
-/* Sorts the corners by the direction from the first one to the one farthest away: along the line,
- * if they are on one. */
+/* Sorts the corners that lie in the plane by the direction from the first corner to the one
+ * farthest from it. If the corners are on a line, this is their order along the line. */
 static void order_along_line(const he_mesh *m, const he_sides *sides, he_chords *c, size_t count)
 {
     he_vec3 first = place(m, sides, c, c->line[0].at), axis = {0, 0, 0};
@@ -92,7 +93,8 @@ static void forget_partners(he_chords *c)
     }
 }
 
-/* No corner has more than two partners: its neighbours on the line. */
+/* Makes corners a and b partners, which a chord joins. No corner has more than two partners: its
+ * neighbours on the line. */
 static void join(he_chords *c, uint32_t a, uint32_t b)
 {
     c->partners.ids[2 * (size_t)a + (c->partners.ids[2 * (size_t)a] != HE_NONE)] = b;
@@ -115,7 +117,8 @@ static void join_along_line(const he_mesh *m, const he_sides *sides, he_chords *
     }
 }
 
-/* Cuts off every run of corners on the other side than the first corner outside the plane. */
+/* Cuts off, by a chord, every run of corners that are on the other side of the plane than the first
+ * corner outside the plane. */
 static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     uint32_t first = 0, in_plane = HE_NONE, start = HE_NONE, end = HE_NONE;
@@ -144,8 +147,9 @@ static void join_around_runs(const he_mesh *m, const he_sides *sides, he_chords 
 
 /* --- checking the chords as brackets around the loop --- */
 
-/* `open` starts with the sides of the part outside all chords; then follow, for each chord that has
- * begun and not ended, the indices of its ends and the sides of the part inside it. */
+/* The layout of the list `open`: it starts with the sides of the part outside all chords; then
+ * follow, for each chord that has begun and not ended, the indices of its ends and the sides of the
+ * part inside it. A chord takes CHORD numbers. */
 enum { CHORD = 3 };
 
 static bool is_one_sided(uint32_t part)
@@ -154,8 +158,8 @@ static bool is_one_sided(uint32_t part)
     return (has == ABOVE || has == BELOW) && (has | must) != BOTH;
 }
 
-/* Ends the chords at i from the innermost outwards. Returns false if the part inside one is not on
- * one side. */
+/* Ends the chords that end at corner i, from the innermost outwards. Returns false if the part
+ * inside one has corners on both sides of the plane. */
 static bool close_at(he_chords *c, uint32_t i)
 {
     he_ids *open = &c->open;
@@ -172,7 +176,8 @@ static bool close_at(he_chords *c, uint32_t i)
     return true;
 }
 
-/* Returns false if the chord from i to `end` joins neighbours or crosses one that is open. */
+/* Begins the chord from corner i to corner `end`. Returns false if it joins neighbours or crosses a
+ * chord that has begun and not ended. */
 static bool open_at(he_chords *c, uint32_t i, uint32_t end)
 {
     he_ids *open = &c->open;
@@ -186,8 +191,8 @@ static bool open_at(he_chords *c, uint32_t i, uint32_t end)
     return true;
 }
 
-/* Lists the chords in the order in which they end. Returns false if they are not as chords.h
- * says. */
+/* Lists the chords in the order in which they end. Returns false if they violate what the head of
+ * chords.h promises. */
 static bool list_pairs(const he_mesh *m, const he_sides *sides, he_chords *c)
 {
     c->pairs.count = 0;

@@ -27,23 +27,26 @@
 
 #include "edit/plane/plane.h"
 
-/* Reused from face to face; {0} at first. */
+/* The diagonals of one face and the buffers for finding them, which are reused from face to face;
+ * {0} at first. */
 typedef struct he_chords {
     uint32_t n;
     he_ids corner; /* n half-edges of the face, the stored one last */
-    /* for each chord the indices of two corners, the lower one first. A chord comes after all
-     * chords between its corners */
+    /* For each chord the indices of two corners, the lower one first. A chord comes after all
+     * chords between its corners. */
     he_ids pairs;
     /* used while planning */
     he_ids partners; /* two for each corner */
-    /* Chords begun and not ended, and which sides the part beside each has corners on. */
+    /* The chords that have begun and not ended at the corner being visited, each with the sides of
+     * the plane on which the part beside it has corners. */
     he_ids open;
     struct he_line_crossing *line;
     size_t line_capacity;
 } he_chords;
 
-/* Finds the chords; there are none if the face has not corners on both sides. Linear except for
- * sorting the corners in the plane. he_chords_clear frees.
+/* Finds the chords of face f. There are none if the face does not have corners on both sides of the
+ * plane. Takes linear time, except for sorting the corners that lie in the plane. he_chords_clear
+ * frees.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_chords_plan(const he_mesh *m, he_face f, const he_sides *sides,
                                       he_chords *chords, he_error *err);

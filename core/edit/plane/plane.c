@@ -4,11 +4,12 @@
 
 #include <float.h>
 
-/* Relative to the mesh's size, and to the coordinates along the normal. */
+/* The default TOLERANCE, relative to the size of the mesh, and the NOISE of rounding, relative to
+ * the coordinates along the normal. */
 static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
 
-/* A power of two with a larger exponent is no double; coordinates that would need one are scaled
- * less. */
+/* The largest exponent of the factor that scales coordinates. A power of two with a larger exponent
+ * is no double, so coordinates that would need one are scaled less. */
 enum { MOST_EXPONENT = 1000 };
 
 static he_status check(he_vec3 point, he_vec3 normal, const double *tolerance, he_error *err)
@@ -37,7 +38,8 @@ static he_vec3 unit_of(he_vec3 normal)
     return (he_vec3){n.x / length, n.y / length, n.z / length};
 }
 
-/* Isolated vertices are not cut, so they do not count for the size. */
+/* Returns true if v can be cut, which isolated vertices cannot: they do not count for the size of
+ * the mesh. */
 static bool is_cut(const he_mesh *m, uint32_t v)
 {
     return m->c.vertex_halfedge[v] < HE_DEAD;
@@ -56,14 +58,15 @@ static double find_scale(const he_mesh *m, he_vec3 point)
     return ldexp(1, -exponent < MOST_EXPONENT ? -exponent : MOST_EXPONENT);
 }
 
-/* Returns the sum of the absolute values of a dot product's terms, which bounds its rounding
- * error. */
+/* Returns the sum of the absolute values of the terms of the dot product of n and p, which bounds
+ * the rounding error of the product. */
 static double weigh(he_vec3 n, he_vec3 p)
 {
     return fabs(n.x * p.x) + fabs(n.y * p.y) + fabs(n.z * p.z);
 }
 
-/* Returns the distance of a vertex that may be farther from the plane than those that are cut. */
+/* Returns the distance of a vertex from the plane. The vertex may be isolated and much farther away
+ * than the vertices that determine the scale. */
 static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
 {
     he_vec3 near = he_vec3_scale(p, scale);
@@ -78,7 +81,8 @@ static double distance_of(he_vec3 p, he_vec3 point, he_vec3 n, double scale)
     return fmax(fmin(far, DBL_MAX), -DBL_MAX);
 }
 
-/* Computes the distances, and the default tolerance in their unit. */
+/* Computes the distances of all vertices from the plane, and the default tolerance in the same
+ * unit. */
 static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *sides,
                          double *tolerance, he_error *err)
 {

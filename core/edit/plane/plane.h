@@ -10,19 +10,20 @@
 
 typedef struct he_sides {
     double *distance; /* for each vertex, times `scale`; exactly 0 in the plane and in dead rows */
-    /* vertices issued when they were measured; later ones are in the plane, because only cuts along
-     * it make them */
+    /* The number of vertices that were issued when they were measured. Later vertices count as in
+     * the plane, because only cuts along the plane make them. */
     uint32_t count;
-    /* a power of two that brings the coordinates of the point and of all vertices with edges within
-     * [-1, 1], so that nothing overflows or underflows */
+    /* The factor that coordinates are multiplied with: a power of two that brings the point and all
+     * vertices that have edges within [-1, 1], so that nothing overflows or underflows. */
     double scale;
 } he_sides;
 
 /* Measures the vertices against the plane through `point` with a normal of any length. `tolerance`
  * is a distance; NULL means 1e-9 of the longest side of the box around the vertices that have
  * edges, but no less than 2^-48 of their coordinates along the normal, below which distances are
- * rounding noise. So an isolated vertex, however far away, does not change what is cut. A vertex
- * put where an edge crosses the plane is in the plane when measured again. he_sides_clear frees.
+ * rounding noise. An isolated vertex, however far away, has no influence on the tolerance. A vertex
+ * that was put where an edge crosses the plane is in the plane when measured again. he_sides_clear
+ * frees.
  * Returns HE_NOT_FINITE if the point, normal or tolerance is not finite.
  * Returns HE_BAD_VALUE if the normal is zero or the tolerance is negative.
  * Returns HE_NO_MEMORY if memory is out. */
@@ -30,7 +31,7 @@ HE_NODISCARD he_status he_sides_find(const he_mesh *m, he_vec3 point, he_vec3 no
                                      const double *tolerance, he_sides *out, he_error *err);
 void he_sides_clear(he_sides *sides);
 
-/* Returns 1 above the plane, -1 below, 0 in it. */
+/* Returns 1 if vertex v is above the plane, -1 if it is below, and 0 if it is in the plane. */
 static inline int he_side_of(const he_sides *sides, he_vertex v)
 {
     double d = v.i < sides->count ? sides->distance[v.i] : 0;

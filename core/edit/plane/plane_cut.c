@@ -26,7 +26,8 @@ typedef struct cutter {
     he_cut_parts made;
 } cutter;
 
-/* All corners are on one side of the plane or in it. */
+/* Returns the side of the plane on which face f lies. After the split all its corners are on one
+ * side or in the plane. */
 static int side_of_face(const cutter *c, he_face f)
 {
     he_halfedge first = he_face_halfedge(c->m, f), h = first;
@@ -153,7 +154,8 @@ static he_status erase(cutter *c, he_error *err)
 
 static he_status cut(cutter *c, bool cap, he_error *err)
 {
-    /* Each step reports progress from 0 to 1, so it gets a span of its own. */
+    /* Each step of the edit reports progress from 0 to 1, so each gets its own span of the whole
+     * edit's progress. */
     const struct {
         he_status (*run)(cutter *c, he_error *err);
         const char *phase; /* NULL: the step names its own phases */
@@ -189,7 +191,8 @@ he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal, const double *
     cutter c = {.m = m, .point = point, .normal = normal, .tolerance = tolerance};
     he_bracket bracket;
     c.away = keep == HE_CUT_ABOVE ? -1 : 1;
-    /* Measured before the split, whose new vertices then count as in the plane. */
+    /* The vertices are measured before the split; the vertices that the split makes then count as
+     * in the plane. */
     he_status status = he_sides_find(m, point, normal, tolerance, &c.sides, err);
     if (status == HE_OK) {
         status = he_edit_begin(m, &bracket, err);

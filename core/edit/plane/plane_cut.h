@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.h"
 
-/* The side that stays: above is the one the normal points to. */
+/* The side of the plane that is kept; above is the side that the normal points to. */
 typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
 
 typedef struct he_cut_parts {
@@ -31,7 +31,7 @@ typedef struct he_cut_parts {
  * With `cap` each loop of the cut becomes one polygon, even if the section has several loops, one
  * inside another: their signed areas, and the volume, are then still right.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_cut_parts_clear frees it.
+ * If it is refused, nothing changes. `out` may be NULL; otherwise he_cut_parts_clear frees it.
  * Returns HE_NOT_FINITE, HE_BAD_VALUE or HE_DOUBLED_EDGE as he_plane_split does.
  * Returns HE_LOCKED_ELEMENT if an element that would be deleted is locked (splitting is allowed).
  * Returns HE_OPEN_LOOP with `cap`, naming a vertex, if a loop leaves the plane along an older hole.

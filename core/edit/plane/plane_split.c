@@ -107,8 +107,9 @@ static uint32_t steps_between(const he_mesh *m, he_halfedge from, he_halfedge to
     return n;
 }
 
-/* Cuts the chord from corner a to corner b. Inner chords are cut before it, so the rest between a
- * and b is one part: all chords of a face together visit each of its corners once. */
+/* Splits the face along the chord from corner a to corner b. The chords between a and b are cut
+ * before it, so what remains between a and b is one part: all chords of a face together visit each
+ * of its corners once. */
 static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
 {
     he_mesh *m = s->m;
@@ -178,8 +179,8 @@ he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double
     if (status != HE_OK) {
         goto out;
     }
-    /* Faces are split after edges and in order, so that they have the vertices on their sides and
-     * know the diagonals of the faces before. */
+    /* Faces are split after edges, so that they have the new vertices on their sides, and in order,
+     * so that each split knows the diagonals in the faces before. */
     status = he_watch_phase(m->watch, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);

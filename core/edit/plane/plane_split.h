@@ -27,16 +27,18 @@ typedef struct he_plane_parts {
  * vertex, so that the other face has a corner more.
  *
  * Afterwards no face (of the list) has corners on both sides, and splitting again along the same
- * plane changes nothing. Touching a face at corners or along sides is not crossing it.
+ * plane changes nothing. A plane that only touches a face, at corners or along sides, does not
+ * cross it.
  *
  * Edges are split in the order of their ids, as are faces after them; the diagonals of a face come
  * innermost first, seen from its stored half-edge. An edge keeps its id at the end with the origin
  * of half-edge 2e. A face keeps its id on the part with the stored half-edge's origin and the side
  * that leaves it; the other parts descend from it. Diagonals and vertices have no parents.
  *
- * `tolerance` is a distance, or NULL for the default of plane.h. A NULL list stands for all faces.
+ * `tolerance` is a distance, or NULL for the default of plane.h. A NULL list of faces stands for
+ * all faces.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_plane_parts_clear frees it.
+ * If it is refused, nothing changes. `out` may be NULL; otherwise he_plane_parts_clear frees it.
  * Returns HE_NOT_FINITE or HE_BAD_VALUE as he_sides_find does.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
  * is not live or is listed twice.

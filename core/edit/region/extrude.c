@@ -8,8 +8,9 @@ typedef struct pull {
     double distance;
 } pull;
 
-/* Finds the direction of the sum of vector areas. They are scaled by the largest, so that none
- * overflows; if they nearly cancel out, the rest is rounding noise and there is no direction. */
+/* Finds the normal of a region: the direction of the sum of its faces' vector areas. They are
+ * scaled by the largest, so that nothing overflows. If they nearly cancel out, the rest is rounding
+ * noise and there is no direction, so it returns false. */
 static bool find_direction(const he_mesh *m, const he_region *r, he_vec3 *out)
 {
     const double noise = 1e-12;

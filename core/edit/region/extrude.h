@@ -21,10 +21,10 @@
  * A face or region moves by the vector `by`, or if that is NULL by `distance`, which may be
  * negative, along its normal: for a region the direction of the sum of its faces' vector areas.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_region_parts_clear frees
- * it.
+ * If it is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees it.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
- * Returns HE_NO_NORMAL with a distance, naming a face, if that direction is zero.
+ * Returns HE_NO_NORMAL, naming a face, if a distance is given and the direction of the normal is
+ * zero.
  * Returns HE_NOT_FINITE if a position is not finite.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */

@@ -7,7 +7,7 @@ typedef struct inward {
     double factor, distance;
 } inward;
 
-/* How each rim corner moves, and buffers for the corners of one face. */
+/* How each corner on the rim of a region moves, and buffers for the corners of one face. */
 typedef struct motion {
     he_vec3 *path;   /* the displacement at time 1 */
     he_vec3 *at;     /* corners of the face */
@@ -50,7 +50,7 @@ static uint32_t index_of(const he_mesh *m, const he_region *r, uint32_t h)
 
 /* --- displacements --- */
 
-/* Moves each corner towards the mean of the means of its faces. */
+/* Sets the motion of each corner on the rim: towards the mean of its faces' means. */
 static void aim_at_means(const he_mesh *m, const he_region *r, double factor, motion *p)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -69,7 +69,7 @@ static void aim_at_means(const he_mesh *m, const he_region *r, double factor, mo
     }
 }
 
-/* Returns the displacement of a corner while both sides move inwards by 1. */
+/* Returns the displacement of a corner if both sides at the corner move inwards by 1. */
 static he_vec3 miter(he_vec3 a, he_vec3 b)
 {
     const double sharpest = 0.125;
@@ -80,8 +80,8 @@ static he_vec3 miter(he_vec3 a, he_vec3 b)
     return he_vec3_scale(sum, 1 / fmax(0.5 * he_vec3_dot(sum, sum), sharpest));
 }
 
-/* Returns the unit vector into the face, at a right angle to a rim half-edge; zero if that has no
- * length. */
+/* Returns the unit vector that points into the face at a right angle to a half-edge of the rim;
+ * zero if the half-edge has no length. */
 static he_vec3 inwards(const he_mesh *m, const he_region *r, const motion *p, uint32_t rim)
 {
     he_halfedge h = {rim};
@@ -104,7 +104,8 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
                            "face %u has no area: give a factor", r->faces.ids.ids[index]);
         }
     }
-    /* The half-edge that arrives at a corner is the one that leaves the corner before. */
+    /* For each corner on the rim, the half-edge that arrives there is the one that leaves the
+     * corner before it. */
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
@@ -147,8 +148,8 @@ static corner corner_of(const motion *p, size_t i)
     return (corner){p->at[i], p->moves[i]};
 }
 
-/* Returns twice the area of a, b, c, projected along the normal, at time 0, and the coefficients of
- * its change. */
+/* Returns twice the area of the triangle a, b, c, projected along the normal, at time 0; *c1 and
+ * *c2 are the coefficients with which it changes over time. */
 static double turn(corner a, corner b, corner c, he_vec3 normal, double *c1, double *c2)
 {
     he_vec3 x = he_vec3_sub(b.at, a.at), y = he_vec3_sub(c.at, b.at);
@@ -165,7 +166,8 @@ static void watch_side(motion *p, corner a, corner b)
     happens(p, length / he_vec3_dot(he_vec3_sub(a.moves, b.moves), along));
 }
 
-/* Finds when corner c hits the side a-b from inside, between its ends. */
+/* Finds the time at which corner c hits the side a-b from inside, between its ends, and shortens
+ * the motion accordingly. */
 static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
 {
     double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
@@ -208,7 +210,8 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
             happens(p, first_root(c0, c1, c2));
             continue;
         }
-        /* b is reflex, so it is tested against every side of which it is not an end. */
+        /* The face has a reflex corner at b, which is tested against every side of which it is not
+         * an end. */
         if (p->budget < n) {
             return he_fail(err, HE_LIMIT, HE_FACE, f.i,
                            "face %u has too many reflex corners and sides to be inset", f.i);
@@ -251,9 +254,9 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
 
 /* --- interpolated values --- */
 
-/* Finds the point of the triangle nearest to `way`, up to rounding, in coordinates along `a` and
- * `b` from the corner between them; *x and *y are at least 0 and together at most 1. Returns the
- * squared distance. */
+/* Finds the point of a triangle that is nearest to the point `way`, up to rounding. Coordinates are
+ * along the sides `a` and `b`, from the corner between them; *x and *y are at least 0 and together
+ * at most 1. Returns the squared distance. */
 static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, double *y)
 {
     double aa = he_vec3_dot(a, a), ab = he_vec3_dot(a, b), bb = he_vec3_dot(b, b);
@@ -279,7 +282,8 @@ static double find_in_triangle(he_vec3 way, he_vec3 a, he_vec3 b, double *x, dou
     return he_vec3_dot(missing, missing);
 }
 
-/* Tries the two triangles at the origin of h in its face. */
+/* Tries the two triangles at the origin of h, in the face of h and next to its mean, and keeps the
+ * one nearest to the new position `to` if it is nearer than `*least`. */
 static void mix_in_face(const he_mesh *m, he_halfedge h, he_vec3 mean, he_vec3 to,
                         he_region_mix *out, double *least)
 {

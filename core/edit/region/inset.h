@@ -4,7 +4,8 @@
 
 #include "edit/region/region.h"
 
-/* The most work for finding where an inset must end; a corner against a side counts one. */
+/* The most work for finding how far an inset can go before corners or sides of a face meet. Testing
+ * one corner against one side counts as one. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
 /* face_inset: every listed face, or with `region` every set of them connected across edges, is
@@ -27,20 +28,20 @@ enum { HE_INSET_STEPS = 1 << 22 };
  * and two neighbouring corners: the triangle at the rim corner that is nearest to the position is
  * used.
  *
- * With a `factor` above 0 and below 1 each rim corner goes this part of the way to the mean of its
- * face's corners, or of those means of the region's faces about it. With factor 0 the sides of the
- * rim move in parallel by `distance`, within the planes of their faces; a corner so sharp that it
- * would move more than four times that moves less.
+ * With a `factor` above 0 and below 1, each corner on the rim goes this part of the way to the mean
+ * of its face's corners; in a region, to the mean of those means for the region's faces at the
+ * corner. With factor 0 the sides of the rim move in parallel by `distance`, within the planes of
+ * their faces; a corner so sharp that it would move more than four times that distance moves less.
  *
- * CLAMPED. All corners move in proportion, and at most 99 % of the way to the point at which first,
- * within one face of the region, a side would have no length, a corner would flip, or a reflex
- * corner would hit another side. A face that is not planar is projected along its normal.
+ * CLAMPED. The motion of all corners is scaled down together if necessary: they go at most 99 % of
+ * the way to the first point at which, within one face of the region, a side would have no length,
+ * a corner would flip, or a reflex corner would hit another side. A face that is not planar is
+ * projected along its normal.
  *
- * All or nothing: a refusal changes nothing. `out` may be NULL, else he_region_parts_clear frees
- * it.
+ * If it is refused, nothing changes. `out` may be NULL; otherwise he_region_parts_clear frees it.
  * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF, HE_LOCKED_ELEMENT and others as he_region_draw does.
  * Returns HE_BAD_VALUE unless 0 < factor < 1, or distance > 0.
- * Returns HE_NO_NORMAL with a distance, naming a face, if a face on the rim has no area.
+ * Returns HE_NO_NORMAL, naming a face, if a distance is given and a face on the rim has no area.
  * Returns HE_LIMIT if faces have too many reflex corners and sides.
  * Returns HE_NOT_FINITE if a position is not finite.
  * Returns HE_NO_MEMORY if memory is out.

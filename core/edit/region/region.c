@@ -5,8 +5,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Links written for one rim half-edge: its own, its old neighbours', the face's and the
- * vertex's. */
+/* The number of links that are written for one half-edge of the rim: its own and those of its old
+ * neighbours, of the new face and of the vertex. */
 enum { RIM_LINKS = 11 };
 
 static void region_clear(he_region *r)
@@ -30,7 +30,7 @@ static bool is_inside(const he_region *r, he_face f)
     return f.i != HE_NONE && he_idmap_find(&r->faces, f.i) != HE_NONE;
 }
 
-/* Adds the listed faces that are connected with those in the region. */
+/* Adds to the region all listed faces that are connected with its faces across edges. */
 static he_status spread(const he_mesh *m, he_region *r, const he_idmap *listed, he_error *err)
 {
     for (size_t i = 0; i < r->faces.ids.count; i++) {
@@ -87,7 +87,7 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     return HE_OK;
 }
 
-/* Finds the half-edges that leave a rim corner between its two sides. */
+/* Finds the half-edges that leave a corner of the rim between its two sides, inside the region. */
 static he_status find_inner(const he_mesh *m, he_region *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -124,7 +124,7 @@ static he_status check_locks(const he_mesh *m, const he_region *r, he_error *err
     return status;
 }
 
-/* Lists the corners of the region that are not on the rim. */
+/* Lists the vertices of the region that are not on its rim. */
 static he_status find_inside(const he_mesh *m, const he_region *r, he_idmap *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -177,7 +177,7 @@ static he_status check_places(const he_region *r, const he_vec3 *to, he_error *e
 
 /* --- COMMIT --- */
 
-/* The new rows of rim half-edge i, counted from the first new ones. */
+/* The ids of the elements made for half-edge i of the rim, counted from the first new ids. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -211,8 +211,8 @@ static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const h
     }
 }
 
-/* The new half-edge takes the place of rim half-edge i in its face. Neighbours on the rim are
- * replaced in their own turn, so only links to half-edges that stay are read. */
+/* Lets the new half-edge take the place of half-edge i of the rim in its face. The neighbours of i
+ * on the rim are replaced in their own turn, so only links to half-edges that stay are read. */
 static void replace_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]}, t = above(n, i);
@@ -243,7 +243,8 @@ static void carry_corners(he_mesh *m, const he_region *r, const fresh *n, size_t
     he_carry_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
 }
 
-/* Links the quad: along the rim, up at b, back above, down at a. */
+/* Links the four half-edges of the new quad at half-edge i of the rim: along the rim, up at its
+ * target, back above it, and down at its origin. */
 static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
 {
     he_halfedge h = {r->rim.ids[i]};
@@ -259,8 +260,8 @@ static void build_side(he_mesh *m, const he_region *r, const fresh *n, size_t i)
     he_set_face_halfedge(m, q, h);
 }
 
-/* Computes the values of the new vertices that are mixed from corners of the same face as that of
- * `last`, whose row holds the mean meanwhile. */
+/* Computes the values of the new vertices from `first` to `last`, all mixed from corners of the
+ * same face. The row of `last` holds the mean of these corners meanwhile. */
 static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, size_t first,
                         size_t last, he_ids *corners)
 {
@@ -326,8 +327,8 @@ static void commit(he_mesh *m, const he_region *r, const he_vec3 *to, const he_r
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         he_vertex v = he_origin(m, h);
-        /* A stored boundary half-edge still leaves v; any other may have moved to the new
-         * vertex. */
+        /* A boundary half-edge that the vertex stores still leaves it; any other may have moved to
+         * the new vertex. */
         if (he_origin(m, he_vertex_halfedge(m, v)).i != v.i) {
             he_set_vertex_halfedge(m, v, h);
         }
@@ -365,8 +366,8 @@ static he_status add_parts(const he_mesh *m, const he_region *r, he_region_parts
     return status;
 }
 
-/* Computes how the values of the new vertices are mixed, and makes room for the corners of a face.
- * `*out` stays NULL if nothing is mixed. */
+/* Computes how the values of the new vertices are mixed, and reserves room for the corners of a
+ * face. `*out` stays NULL if no values are mixed. */
 static he_status mix(const he_mesh *m, const he_region *r, he_region_place place, const he_vec3 *to,
                      he_region_mix **out, he_ids *corners, he_error *err)
 {
@@ -386,7 +387,7 @@ static he_status mix(const he_mesh *m, const he_region *r, he_region_place place
     return status == HE_OK ? place.mix(m, r, to, *out, err) : status;
 }
 
-/* `r` has the faces and is cleared. */
+/* Detaches one region. On entry `r` holds its faces; on return it is cleared. */
 static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_region_parts *out,
                           he_error *err)
 {
@@ -444,7 +445,8 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
     return status;
 }
 
-/* Handles the regions one after another, each from the first listed face that is in none yet. */
+/* Detaches the regions one after another. Each is found from the first listed face that is in no
+ * region yet. */
 static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_region_place place,
                           he_region_parts *out, he_error *err)
 {

@@ -1,5 +1,5 @@
-/* region.h - detaches faces from their surroundings by a ring of quads along their rim, for
- * face_extrude and face_inset, which differ in where the new vertices are.
+/* region.h - detaches faces from their surroundings by a ring of quads along their rim. Both
+ * face_extrude and face_inset do this; they differ in where they put the new vertices.
  *
  * A region is a set of faces connected across edges. Its rim are its half-edges beside which are
  * other faces or a hole. Each rim corner gets a new vertex, to which the region's faces move, and
@@ -28,8 +28,8 @@
  * Corner values follow the corners of the region's faces; a quad has copies of those beside it.
  *
  * The fans of a bow-tie at the rim stay as they are: at an old vertex two quads take the place of
- * the region's faces, and at a new one they close the fan. So no edge is doubled and no fan closes
- * beside another.
+ * the region's faces, and at a new vertex they close the fan. So no two edges join the same
+ * vertices, and no vertex gets a closed fan beside another fan.
  *
  * Returns HE_NO_RIM naming a face, if a region is a whole closed component.
  * Returns HE_RIM_MEETS_ITSELF naming a vertex, if the rim of one region passes it twice.
@@ -48,19 +48,21 @@ typedef struct he_region {
     he_ids inner, inner_at; /* other half-edges inside that leave the rim, and their corner */
 } he_region;
 
-/* How the interpolated values of a new vertex are computed: `mean` times the mean of the corners of
- * the face of `in`, which leaves the vertex below it, `side` times the value of `beside`, and the
- * rest from that vertex. */
+/* How the interpolated values of a new vertex are computed. It is a weighted mean: `mean` is the
+ * weight of the mean of the corners of the face of `in`, a half-edge that leaves the old vertex
+ * below the new one; `side` is the weight of vertex `beside`; the rest is the weight of the old
+ * vertex. */
 typedef struct he_region_mix {
     he_halfedge in;
     he_vertex beside;
     double mean, side; /* at least 0, and together at most 1 */
 } he_region_mix;
 
-/* Computes where the new vertices are: fills `to`, one position for each corner of the rim.
- * `*shift` is what the vertices inside the region move by, if `*shifts` is set. May refuse. `mix`,
- * if not NULL, is called after `to` is filled and says how the values of each are computed;
- * otherwise each has the values of the vertex below it. */
+/* The callback that computes where the new vertices are: it fills `to` with one position for each
+ * corner of the rim. `*shift` is the vector by which the vertices inside the region move, if
+ * `*shifts` is set. It may refuse the edit. `mix`, if not NULL, is called after `to` is filled and
+ * says how the values of each new vertex are computed; otherwise each has the values of the old
+ * vertex below it. */
 typedef struct he_region_place {
     he_status (*place)(const he_mesh *m, const he_region *region, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err);
@@ -69,20 +71,22 @@ typedef struct he_region_place {
                      he_region_mix *out, he_error *err);
 } he_region_place;
 
-/* The new elements, in order; {0} at first. */
+/* The new elements, in the order that region.h describes; {0} at first. */
 typedef struct he_region_parts {
     he_ids vertices, edges, faces;
 } he_region_parts;
 
 void he_region_parts_clear(he_region_parts *parts);
 
-/* Detaches the listed faces, each by itself, or with `joined` those that are connected across edges
- * as one region. All or nothing. `out` may be NULL, else he_region_parts_clear frees it. Costs the
- * elements at the corners of the faces.
+/* Detaches the listed faces from their surroundings: each by itself, or with `joined` the faces
+ * that are connected across edges as one region. If it is refused, nothing changes. `out` may be
+ * NULL; otherwise he_region_parts_clear frees it. Takes time linear in the elements at the corners
+ * of the faces.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
- * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF or HE_LOCKED_ELEMENT as said above.
- * Returns the error of `place` if that refuses.
+ * Returns HE_NO_RIM, HE_RIM_MEETS_ITSELF or HE_LOCKED_ELEMENT in the cases that the head of
+ * region.h lists.
+ * Returns the error of `place` if that callback refuses.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_region_draw(he_mesh *m, const uint32_t *faces, size_t count, bool joined,

@@ -3,7 +3,8 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* The column that a column of the other mesh is appended to. */
+/* The column of this mesh to which a column of the other mesh is appended, and how its values are
+ * mapped. */
 typedef struct target {
     size_t slot;
     uint32_t *label; /* the index here of each of its labels; NULL: indices stay */
@@ -54,7 +55,7 @@ static he_status no_memory(const he_column *column, he_error *err)
 
 /* --- materials --- */
 
-/* Materials of the other mesh that are renamed here, and their new rows. */
+/* Materials of the other mesh that get another name in this mesh, and the rows that hold them. */
 typedef struct renames {
     he_labels *from; /* NULL if there are none */
     he_ids slots;    /* for each the row of this mesh */
@@ -87,8 +88,9 @@ static bool is_label(const he_mesh *m, const char *name)
            he_labels_find(column->labels, name, strlen(name), &index);
 }
 
-/* Chooses the name of a row of the other mesh: its own, unless a different row has that; then
- * NAME_2 and so on, the first that is free in both or belongs to an equal row. */
+/* Chooses the name that a material of the other mesh gets in this one: its own, unless a different
+ * material of this mesh has that name; then NAME_2, NAME_3 and so on, the first that is free in
+ * both meshes or belongs to an equal material. */
 static void choose_name(const he_mesh *m, const he_mesh *other, const he_material *row,
                         char name[HE_MATERIAL_NAME + 1])
 {
@@ -131,7 +133,7 @@ static he_status merge_material(he_mesh *m, const he_mesh *other, he_material *r
     return status == HE_OK && !same ? rename_material(r, row, slot, err) : status;
 }
 
-/* Appends the rows that this mesh lacks. */
+/* Appends the other mesh's materials that this mesh lacks. */
 static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, he_error *err)
 {
     const he_materials *theirs = &other->c.materials;
@@ -146,7 +148,7 @@ static he_status merge_materials(he_mesh *m, const he_mesh *other, renames *r, h
 
 /* --- labels --- */
 
-/* Returns the name here of a label of the other mesh. */
+/* Returns the label that stands in this mesh for a label of the other mesh. */
 static const char *name_here(const he_mesh *m, const he_column *theirs, const renames *r,
                              const char *text)
 {
@@ -179,8 +181,8 @@ static he_status add_theirs(const he_mesh *m, he_labels *to, const he_column *th
     return status;
 }
 
-/* Makes the labels of both, those of `own` (may be NULL) first; out->label has the new index of
- * each of theirs. */
+/* Makes the list of labels of both columns, those of `own` (which may be NULL) first. out->label
+ * gets the new index of each label of `theirs`. */
 static he_status make_labels(const he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_labels **labels, he_error *err)
 {
@@ -201,7 +203,7 @@ static he_status make_labels(const he_mesh *m, const he_column *own, const he_co
     return HE_OK;
 }
 
-/* Replaces `own` by a column that has the labels of both, if `own` lacks some. */
+/* Replaces `own` by a column that has the labels of both columns, unless `own` has them all. */
 static he_status join_labels(he_mesh *m, const he_column *own, const he_column *theirs,
                              const renames *r, target *out, he_error *err)
 {
@@ -225,8 +227,8 @@ static he_status join_labels(he_mesh *m, const he_column *own, const he_column *
     return status;
 }
 
-/* Replaces the index of a label by its index in this mesh. Indices without a label, such as -1,
- * stay. */
+/* Replaces the index of a label by the index of that label in this mesh. An index that has no
+ * label, such as -1, stays. */
 static void map_labels(const he_column *theirs, const target *to, unsigned char *value)
 {
     for (uint32_t k = 0; to->label != NULL && k < theirs->components; k++) {
@@ -241,7 +243,8 @@ static void map_labels(const he_column *theirs, const target *to, unsigned char 
 
 /* --- columns --- */
 
-/* Adds a column like it, with defaults everywhere; a column of the mesh itself keeps its value. */
+/* Adds a column like `theirs` to this mesh, with the default in all rows; a column whose domain is
+ * the mesh itself keeps its value. */
 static he_status add_column(he_mesh *m, const he_column *theirs, const renames *r, target *out,
                             he_error *err)
 {

@@ -4,8 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* The new ids of the other mesh's live elements, in the order of their old ones; {0} at first. The
- * ids of each kind are consecutive, and half-edge 2e of an edge stays the first of its new one. */
+/* The new ids of the elements that were appended, in the order of their ids in the other mesh; {0}
+ * at first. The ids of each kind are consecutive, and half-edge 2e of an edge becomes the first
+ * half-edge of the new edge. */
 typedef struct he_appended {
     he_ids vertices, edges, faces;
 } he_appended;
@@ -28,8 +29,8 @@ typedef struct he_appended {
  * MATERIALS. Rows of the other mesh's table that this mesh has too are shared; others are added, as
  * NAME_2 and so on if a different row of this mesh has the name, and the new faces use that name.
  *
- * `other` must not be `m`. `out` may be NULL, else he_appended_clear frees it.
- * Returns HE_LIMIT if there would be more than HE_MATERIALS.
+ * `other` must not be `m`. `out` may be NULL; otherwise he_appended_clear frees it.
+ * Returns HE_LIMIT if there would be more than HE_MATERIALS materials.
  * Returns HE_ATTRIBUTE_CLASH if attributes of one domain and name do not match as above.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left.

@@ -25,11 +25,12 @@ typedef struct flipper {
     size_t from, fold_at; /* records before this call; number of records at the next fold */
 } flipper;
 
-/* Records for each edge that trigger a fold: fewer than it has words. */
+/* The records of repeated flips are folded (all records of one word become one) when there are this
+ * many for each edge. That is fewer than an edge has words. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* Work between two steps of the watch: testing an edge takes as long as a few elements in other
- * loops, and as WORK_OF_EDGE steps around a vertex. */
+/* The amount of work between two steps of the progress watch. Testing an edge takes as long as a
+ * few elements in other loops, and as WORK_OF_EDGE steps around a vertex. */
 enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_WATCH_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
@@ -49,13 +50,13 @@ static he_edge dequeue(flipper *q)
     return (he_edge){e};
 }
 
-/* Returns the i-th edge of the queue, no edge if it is shorter. */
+/* Returns the i-th edge that waits in the queue; no edge if the queue is shorter. */
 static he_edge waiting_at(const flipper *q, size_t i)
 {
     return (he_edge){i < q->waiting ? q->queue[(q->head + i) % q->room] : HE_NONE};
 }
 
-/* Would marks forbid the flip of an interior edge? */
+/* Returns true if marks (marks.h) forbid to flip an interior edge. */
 static bool is_held(const flipper *q, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -64,7 +65,7 @@ static bool is_held(const flipper *q, he_edge e)
                          he_is_locked(&q->marks, HE_FACE, he_face_of(q->m, he_twin(h)).i));
 }
 
-/* Should the edge be flipped, if it can be? */
+/* Returns true if the edge violates the Delaunay criterion and should be flipped if it can be. */
 static bool is_crooked(const flipper *q, he_edge e)
 {
     const he_mesh *m = q->m;
@@ -77,7 +78,8 @@ static bool is_crooked(const flipper *q, he_edge e)
     return alpha + beta > PI + HE_DELAUNAY_EPSILON;
 }
 
-/* Returns the steps that he_edge_flip will take to search an edge between the opposite corners. */
+/* Returns the number of steps that he_edge_flip will take to search for an edge between the
+ * opposite corners. */
 static uint32_t search_steps(const he_mesh *m, he_edge e)
 {
     he_halfedge h = he_edge_halfedge(e, 0);
@@ -91,8 +93,8 @@ static uint32_t search_steps(const he_mesh *m, he_edge e)
     return n;
 }
 
-/* Flips repeat at the same edges: folding makes the records proportional to the mesh, not to the
- * flips. */
+/* Folds the records of repeated flips of one edge into one. This keeps their number proportional to
+ * the size of the mesh, not to the number of flips. */
 static he_status fold(flipper *q, he_error *err)
 {
     he_delta *delta = q->m->delta;
@@ -135,8 +137,8 @@ static he_status flip(flipper *q, he_edge e, he_error *err)
     return fold(q, err);
 }
 
-/* Flips spread, so the total is not known: the ratio of work done to work in the queue is an
- * estimate. */
+/* Reports progress. Flips spread to other edges, so the total work is not known: the ratio of work
+ * done to work in the queue is an estimate. */
 static he_status look(flipper *q, he_error *err)
 {
     q->work += WORK_OF_EDGE;
@@ -169,7 +171,8 @@ static he_status empty_queue(flipper *q, he_error *err)
     return status;
 }
 
-/* Other flips may have made refused ones possible. */
+/* Puts the edges that could not be flipped back into the queue, because flips of other edges may
+ * have made theirs possible. */
 static void try_again(flipper *q)
 {
     if (q->flips.count > q->stuck_at) {

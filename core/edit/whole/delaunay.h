@@ -4,12 +4,13 @@
 
 #include "mesh/mesh.h"
 
-/* An edge is flipped only if the angles opposite to it sum to more than pi by this, in radians:
- * four points on a circle would otherwise be flipped by rounding. */
+/* An edge is flipped only if the two angles opposite to it sum to more than pi plus this, in
+ * radians. Otherwise rounding would flip the edges between four points on a circle back and
+ * forth. */
 #define HE_DELAUNAY_EPSILON 1e-9
 
-/* The most work for each live edge before the request is refused: a tested edge, or a step around a
- * vertex in search of an edge, counts one. */
+/* The most work for each live edge before the request is refused. Testing an edge, and each step
+ * around a vertex in search of an edge, counts as one. */
 enum { HE_DELAUNAY_STEPS = 512 };
 
 /* delaunay: no element is made or deleted. Edges between two triangles are flipped (see edge_flip)
@@ -45,13 +46,13 @@ enum { HE_DELAUNAY_STEPS = 512 };
  * triangulations never repeat (A. I. Bobenko and B. A. Springborn, "A discrete Laplace-Beltrami
  * operator for simplicial surfaces", 2007). Since their number may be quadratic, work is limited.
  *
- * Edges and faces keep their ids; attributes follow as in edge_flip. `flips` gets the edges in the
- * order they were flipped, one that was flipped twice also twice; it may be NULL.
+ * Edges and faces keep their ids; attributes follow the rules of edge_flip. `flips`, which may be
+ * NULL, gets the edges in the order they were flipped, and an edge once for each flip.
  *
  * All or nothing: a refusal changes nothing.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if an element of the list
  * is not live or is listed twice.
- * Returns HE_LIMIT if it takes more than HE_DELAUNAY_STEPS for each edge.
+ * Returns HE_LIMIT if it takes more than HE_DELAUNAY_STEPS steps for each edge.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_delaunay(he_mesh *m, const uint32_t *edges, size_t count, he_ids *flips,
                                    he_error *err);

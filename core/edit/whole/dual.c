@@ -4,7 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* The new row of every old live one: vertex[f], edge[e], face[v]. */
+/* The new element of every live element: vertex[f] of face f, edge[e] of edge e, face[v] of vertex
+ * v. */
 typedef struct rows {
     uint32_t *vertex, *edge, *face;
     uint32_t vertices, edges, faces; /* issued before */
@@ -41,8 +42,8 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Each face marks its neighbours with its own id; a neighbour that is marked already shares a
- * second edge. */
+/* Checks that no two faces share two edges. Each face marks its neighbours with its own id; a
+ * neighbour that has this mark already shares a second edge. */
 static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error *err)
 {
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {
@@ -80,7 +81,7 @@ static he_status check_locks(const he_mesh *m, he_error *err)
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         uint32_t issued = he_mesh_issued(m, kinds[k]);
         for (uint32_t i = 0; i < issued; i++) {
-            /* Dead rows hold the default, which may be true. */
+            /* A deleted element's row holds the default of the attribute, which may mean locked. */
             if (he_is_locked(&marks, kinds[k], i) && he_mesh_is_live(m, kinds[k], i)) {
                 return he_require_unlocked(&marks, kinds[k], i, err);
             }
@@ -128,7 +129,8 @@ static void make_rows(he_mesh *m, rows *r)
     }
 }
 
-/* h* of half-edge h runs from the face right of h to the one left of it, about the origin of h. */
+/* Returns the dual half-edge of h: it runs from the face right of h to the face left of it, along
+ * the border of the new face that stands for the origin of h. */
 static he_halfedge star(const rows *r, he_halfedge h)
 {
     return (he_halfedge){2 * r->edge[h.i >> 1] + (h.i & 1)};

@@ -4,7 +4,7 @@
 #include "edit/whole/attribute.h"
 #include "mesh/write.h"
 
-/* Finds the faces' attribute, NULL if there is none. */
+/* Finds the attribute `material` of the faces; NULL if there is none. */
 static he_status find_column(const he_mesh *m, const he_column **out, he_error *err)
 {
     *out = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
@@ -17,7 +17,8 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
                          (*out)->labels != NULL ? " with labels" : "");
 }
 
-/* Makes a column like `column`, which may be NULL, with these labels. */
+/* Makes a column with these labels and the values of `column`; if that is NULL, with no material
+ * everywhere. */
 static he_status column_with(const he_mesh *m, const he_column *column, he_labels *labels,
                              he_column **out, he_error *err)
 {
@@ -34,9 +35,9 @@ static he_status column_with(const he_mesh *m, const he_column *column, he_label
     return status;
 }
 
-/* Makes labels from those of the column (NULL: none), with `from` replaced by `to`, or with `to`
- * appended if `from` is NULL. If `from` and `to` both exist they become one label. new_index[i] is
- * the new index of i; it may be NULL. */
+/* Makes a list of labels from those of the column (NULL has none), with `from` replaced by `to`, or
+ * with `to` appended if `from` is NULL. If `from` and `to` are both labels, they become one.
+ * new_index[i], unless it is NULL, gets the new index of label i. */
 static he_status make_labels(const he_column *column, const char *from, const char *to,
                              he_labels *out, uint32_t *new_index, he_error *err)
 {
@@ -69,7 +70,8 @@ static void change_indices(he_column *column, const uint32_t *new_index)
     memcpy(column->fallback, &new_index[index], sizeof index);
 }
 
-/* Replaces a column by one with labels as make_labels() makes them. */
+/* Replaces the column by one whose labels are changed as make_labels() says: `from` becomes `to`,
+ * or `to` is appended. */
 static he_status put_labels(he_mesh *m, const he_column *column, const char *from, const char *to,
                             uint32_t *new_index, he_error *err)
 {
@@ -119,7 +121,8 @@ static he_status give(he_mesh *m, const char *name, const he_material_change *ch
     return he_attribute_write(m, column, change->faces, change->face_count, &index, true, err);
 }
 
-/* The new name must be unused, and the old one used. */
+/* Renames a material in the labels of the faces. The new name must be unused, and the old name must
+ * be used. */
 static he_status rename_label(he_mesh *m, const char *name, bool has_row, const char *to,
                               he_error *err)
 {
@@ -186,7 +189,8 @@ static bool only_gives(const he_material_change *change)
            change->emission == NULL && change->two_sided == NULL;
 }
 
-/* Removes the material of faces; without an attribute they have none already. */
+/* Makes the listed faces have no material. If the attribute does not exist, they have none
+ * already. */
 static he_status give_none(he_mesh *m, const he_material_change *change, he_error *err)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);

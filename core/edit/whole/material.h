@@ -1,15 +1,15 @@
 /* material.h - makes, changes and deletes materials, and assigns them to faces.
  *
- * Like every edit these are recorded and undone bit for bit: a row of the table that changes is one
- * record; if the faces' attribute `material` has no label for a name yet, the column is replaced by
- * one that has it. */
+ * These edits are recorded and undone bit for bit: a row of the table of materials that changes is
+ * one record; if the faces' attribute `material` has no label for a name yet, the column is
+ * replaced by one that has it. */
 #ifndef HE_EDIT_WHOLE_MATERIAL_H
 #define HE_EDIT_WHOLE_MATERIAL_H
 
 #include "mesh/mesh.h"
 
-/* The changes of a material; NULL leaves a value as it is, or as in he_plain_look if the material
- * is new. */
+/* The changes to a material. A NULL leaves a value as it is; in a new material it means the value
+ * of he_plain_look. */
 typedef struct he_material_change {
     const char *rename;
     bool replace; /* values that are not given become those of he_plain_look */
@@ -22,9 +22,10 @@ typedef struct he_material_change {
     size_t face_count;
 } he_material_change;
 
-/* material_set: V, E and F stay. Changes the material of this name, or makes it. With `rename` its
- * faces keep it under the new name. Faces get it in their attribute `material`, which is made if
- * missing: uint32 of one component, with labels of which "" means no material.
+/* material_set: V, E and F stay. Changes the material called `name`, or makes it. With `rename` the
+ * faces that have it keep it under the new name. The listed faces get the material in their
+ * attribute `material`, which is made if missing: uint32 of one component, with labels of which ""
+ * means no material.
  *
  * The name "" means no material: it is allowed with faces only, which then have no material.
  *
@@ -33,7 +34,7 @@ typedef struct he_material_change {
  * Returns HE_LIMIT if there would be more than HE_MATERIALS.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT or HE_REPEATED_ELEMENT if a face is not live or
  * is listed twice.
- * Returns HE_ATTRIBUTE_CLASH if faces have another kind of attribute `material`.
+ * Returns HE_ATTRIBUTE_CLASH if faces have an attribute `material` of another type.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_material_set(he_mesh *m, const char *name,
                                        const he_material_change *change, he_error *err);
@@ -42,8 +43,9 @@ HE_NODISCARD he_status he_material_set(he_mesh *m, const char *name,
  * its name from the labels of the faces' attribute. Faces that had it get the material `to`, or
  * none if that is NULL.
  *
- * Returns HE_BAD_VALUE if there is no material of this name, or none called `to`, or both are one.
- * Returns HE_ATTRIBUTE_CLASH if faces have another kind of attribute `material`.
+ * Returns HE_BAD_VALUE if there is no material of this name, or none called `to`, or if both names
+ * are equal.
+ * Returns HE_ATTRIBUTE_CLASH if faces have an attribute `material` of another type.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_material_delete(he_mesh *m, const char *name, const char *to,
                                           he_error *err);

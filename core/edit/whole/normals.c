@@ -10,8 +10,8 @@ static bool is_normal(const he_column *column)
            he_is_normal_column(column);
 }
 
-/* Computes the cofactors of the linear part, with the sign of the inverse transpose; its scale does
- * not matter, so entries are scaled to at most 1 and nothing overflows. */
+/* Computes the cofactors of the map's linear part, with the sign of its inverse transpose. Their
+ * scale does not matter, so the entries are scaled to at most 1, and nothing overflows. */
 static bool find_cofactors(const double matrix[16], double k[9])
 {
     double a[9], largest = 0, off = 0;
@@ -56,8 +56,8 @@ static void turn_row(const he_normals *n, size_t slot, uint32_t row)
         const double *k = n->k + 3 * i;
         w[i] = k[0] * (v[0] / largest) + k[1] * (v[1] / largest) + k[2] * (v[2] / largest);
     }
-    /* Scaled to a largest component of 1 first, because squares of the result of a very flat map
-     * would underflow. */
+    /* The result is scaled to a largest component of 1 before its length is computed, because
+     * squares of the result of a very flat map would underflow. */
     largest = fmax(fabs(w[0]), fmax(fabs(w[1]), fabs(w[2])));
     if (!(largest > 0)) {
         return;
@@ -85,7 +85,8 @@ static bool is_mapped(const he_normals *n, he_face f)
     return true;
 }
 
-/* Counts the rows of one column that are transformed, and transforms them if `commit`. */
+/* Counts the rows of one column of normals that are transformed, and transforms them if `commit` is
+ * set. */
 static size_t each_row(const he_normals *n, size_t slot, bool commit)
 {
     const he_mesh *m = n->m;
@@ -112,7 +113,8 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
         }
         while (h.i != HE_NONE) {
             he_face f = he_face_of(m, h);
-            /* A face is transformed with the corner of its stored half-edge. */
+            /* The row of a face is transformed once, when the loop over corners reaches the
+             * half-edge that the face stores. */
             bool turns = domain == HE_HALFEDGE ||
                          (f.i != HE_NONE && he_face_halfedge(m, f).i == h.i && is_mapped(n, f));
             rows += turns;

@@ -4,9 +4,9 @@
 
 #include "mesh/mesh.h"
 
-/* Transforms every column `normal` of three floats or doubles on vertices, half-edges or faces, for
- * a map of some vertices or all: rows of mapped vertices, of half-edges that leave them, and of
- * faces whose corners are all mapped.
+/* Transforms every column `normal` of three floats or doubles on vertices, half-edges or faces when
+ * some or all vertices are mapped: the rows of mapped vertices, of half-edges that leave them, and
+ * of faces whose corners are all mapped.
  *
  * A normal becomes the inverse transpose of the map's linear part times itself, at length 1 (J. D.
  * Foley, A. van Dam, S. K. Feiner and J. F. Hughes, "Computer Graphics: Principles and Practice",
@@ -22,8 +22,8 @@ typedef struct he_normals {
     bool turns;
 } he_normals;
 
-/* Finds the columns. `words` is the most records that writing makes. he_normals_clear frees.
- * Returns HE_NO_MEMORY if memory is out. */
+/* Finds the columns of normals and computes how they are transformed. `words` is set to the most
+ * records that writing will make. he_normals_clear frees. */
 HE_NODISCARD he_status he_normals_init(he_normals *n, he_mesh *m, const double matrix[16],
                                        const uint32_t *vertices, size_t count, size_t *words,
                                        he_error *err);

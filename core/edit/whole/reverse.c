@@ -15,7 +15,7 @@ static void part_clear(part *p)
     he_ids_clear(&p->faces);
 }
 
-/* Takes all live elements that have a face: isolated vertices have nothing to reverse. */
+/* Takes all live elements that have a face; isolated vertices have nothing to reverse. */
 static he_status take_all(const he_mesh *m, part *out, he_error *err)
 {
     he_status status = HE_OK;
@@ -38,7 +38,7 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
     return status;
 }
 
-/* Takes the faces with their corners and sides, each once. */
+/* Takes the listed faces with their corners and edges, each only once. */
 static he_status take_listed(const he_mesh *m, const uint32_t *faces, size_t count, part *out,
                              he_error *err)
 {
@@ -112,8 +112,9 @@ static he_status check_whole(const he_mesh *m, const part *p, he_error *err)
     return status;
 }
 
-/* The corner left by h in face(h) is left by turn_ccw(h) afterwards: values around a vertex shift
- * by one place. Holes take part, so that a second call restores the values. */
+/* Moves the corner values around vertex v. The corner that h leaves in face(h) is left by
+ * turn_ccw(h) afterwards, so values shift by one place. Those of holes take part, so that a second
+ * call restores all values. */
 static void shift_corners(he_mesh *m, size_t slot, he_vertex v)
 {
     const he_column *column = m->c.columns[slot];
@@ -165,8 +166,8 @@ static void turn_values(he_mesh *m, const part *p)
     }
 }
 
-/* Exchanges the half-edges of an edge: each takes the face and, reversed, the neighbours of the
- * other. What it writes depends on this edge alone. */
+/* Exchanges the two half-edges of an edge: each takes the face of the other and, reversed, its
+ * neighbours. What this writes depends on this edge alone, so edges may be handled in any order. */
 static void turn_edge(he_mesh *m, he_edge e)
 {
     he_halfedge next[2], prev[2];

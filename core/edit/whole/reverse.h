@@ -18,13 +18,13 @@
  *
  * Corner values stay in their corner: the value of a half-edge moves to the one that now leaves
  * that vertex in that face. Attributes `normal` of three floats or doubles, on the vertices and
- * corners of these faces and on the faces, change their sign. Its own inverse, bit for bit.
+ * corners of these faces and on the faces, change their sign. Reversing twice restores every bit.
  *
  * Only whole components can be reversed: neighbours across an edge would run along it in one
  * direction, and the fans at a bow-tie chain their holes in one direction too.
  *
- * All or nothing: a refusal changes nothing. Locked elements keep their corners and ends, so they
- * do not matter.
+ * If it is refused, nothing changes. Locks do not matter, because locked elements keep their
+ * corners and ends.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_ORIENTATION naming an edge, if its other face is not listed.

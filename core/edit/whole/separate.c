@@ -4,8 +4,8 @@
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
-/* Checks that the half-edges of a fan and its faces are unlocked. `h` becomes the one that ends
- * it. */
+/* Checks that no half-edge or face of a fan is locked. `h` begins the fan, and is set to the
+ * half-edge that ends it. */
 static he_status check_fan(const he_mesh *m, const he_marks *marks, he_halfedge *h, he_error *err)
 {
     he_status status = he_require_unlocked(marks, HE_EDGE, he_edge_of(*h).i, err);
@@ -27,7 +27,8 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
         return HE_OK;
     }
     he_halfedge stored = he_vertex_halfedge(m, v), h = he_turn_ccw(m, stored);
-    /* The last fan, which ends with the stored half-edge, keeps the vertex. */
+    /* The last fan, which ends with the half-edge that v stores, keeps the vertex, so its locks do
+     * not matter. */
     for (uint32_t fans = he_vertex_fans(m, v); status == HE_OK && fans > 1; fans--) {
         status = check_fan(m, &marks, &h, err);
         h = he_turn_ccw(m, h);
@@ -35,7 +36,7 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     return status;
 }
 
-/* CHECK: adds what separating v writes to `need`, and v to `ties` if it is a bow-tie. */
+/* Adds what separating the fans of v will write to `need`, and v to `ties` if it is a bow-tie. */
 static he_status plan(const he_mesh *m, he_vertex v, he_need *need, he_ids *ties, he_error *err)
 {
     if (!he_is_boundary_vertex(m, v)) {
@@ -86,7 +87,7 @@ static void commit(he_mesh *m, he_vertex v, he_ids *made)
     }
 }
 
-/* Separates the vertices of `ties`, which it takes. */
+/* Separates the fans of the vertices in `ties`, and frees the list. */
 static he_status take_apart(he_mesh *m, he_ids *ties, he_need need, he_ids *made, he_status status,
                             he_error *err)
 {

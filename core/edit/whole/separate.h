@@ -16,8 +16,8 @@
  * around v. A vertex with one fan or none is not changed. Corners keep their values, and the new
  * vertices have those of v.
  *
- * vertex_weld is the inverse. The new ids are appended to `made`, which may be NULL. All or
- * nothing: a refusal changes nothing.
+ * vertex_weld is the inverse. The ids of the new vertices are appended to `made`, which may be
+ * NULL. If it is refused, nothing changes.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_LOCKED_ELEMENT if an edge or face of a fan that would get a new vertex is locked.
@@ -26,7 +26,7 @@
 HE_NODISCARD he_status he_vertex_separate(he_mesh *m, const uint32_t *vertices, size_t count,
                                           he_ids *made, he_error *err);
 
-/* separate_bowties: vertex_separate for every vertex. */
+/* separate_bowties: runs vertex_separate for every bow-tie of the mesh. */
 HE_NODISCARD he_status he_separate_bowties(he_mesh *m, he_ids *made, he_error *err);
 
 #endif

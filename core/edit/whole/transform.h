@@ -19,7 +19,7 @@
  * Returns HE_REPEATED_ELEMENT if an element is listed twice.
  * Returns HE_NOT_FINITE if a result is not finite.
  * Returns HE_LOCKED_ELEMENT if a vertex is locked, even if its position would not change.
- * Returns HE_BAD_VALUE if the last row is another.
+ * Returns HE_BAD_VALUE if the last row of the matrix is not 0 0 0 1.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vertices,
                                     size_t count, he_error *err);

@@ -19,9 +19,9 @@
  * triangle of the stored half-edge keeps the id of its face, the others descend from it; a face
  * that is a triangle is not changed.
  *
- * New ids are appended to `edges` and `faces`, and to `degenerate` the faces in whose plane some
- * triangle has no area or is flipped, as in faces that have no area or intersect themselves; they
- * are triangulated too. All three may be NULL.
+ * The ids of new elements are appended to `edges` and `faces`. A face that has no area or
+ * intersects itself is triangulated too, but in its plane some triangle has no area or is flipped;
+ * the ids of such faces are appended to `degenerate`. All three may be NULL.
  *
  * All or nothing: a refusal changes nothing.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
@@ -34,8 +34,8 @@ HE_NODISCARD he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids,
                                            he_ids *edges, he_ids *faces, he_ids *degenerate,
                                            he_error *err);
 
-/* triangulate: face_triangulate of every face of more than three corners, in the order of ids. The
- * only refusal is HE_DOUBLED_EDGE. */
+/* triangulate: runs face_triangulate for every face of more than three corners, in the order of
+ * ids. The only refusal is HE_DOUBLED_EDGE. */
 HE_NODISCARD he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degenerate,
                                       he_error *err);
 
