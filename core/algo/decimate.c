@@ -65,8 +65,8 @@ static void count_feature(const he_decimation *d, he_edge e, uint32_t vertex)
     }
 }
 
-/* Adds the plane through the edge of h that is perpendicular to the face on its left, whose normal
- * is given. */
+/* Adds a plane to the quadrics of the ends of h: the plane through the edge of h that is
+ * perpendicular to the face on its left, whose normal is given. */
 static void add_wall(const he_decimation *d, he_halfedge h, he_vec3 normal)
 {
     he_node *a = &d->nodes[he_origin(d->mesh, h).i], *b = &d->nodes[he_target(d->mesh, h).i];
@@ -136,7 +136,8 @@ static he_status weigh(he_decimation *d, he_error *err)
         d->feature = marks.feature;
         heed_locks(d, &marks);
     }
-    /* The first write to fresh pages takes long, so vertices without an edge are skipped. */
+    /* Vertices without an edge are skipped, because the first write to a fresh page of memory takes
+     * long. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_watch_at(m->watch, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
@@ -174,7 +175,7 @@ static he_status fill_queue(he_decimation *d, he_error *err)
     return status;
 }
 
-/* Handles edge e, which was first in the queue, in a bucket. */
+/* Tries to collapse edge e, which was first in the queue, in the bucket `bucket`. */
 static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_error *err)
 {
     he_candidate what;
@@ -193,7 +194,7 @@ static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_e
     return HE_OK;
 }
 
-/* Prefetches the ends of edges, and their positions. */
+/* Prefetches the end vertices of the edges, and their positions. */
 static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -214,7 +215,8 @@ static void ask_for_ends(const he_decimation *d, uint32_t edge)
 
 enum { AHEAD = 4 };
 
-/* Handles edges that were first in the queue. Stops when there are only `faces` faces. */
+/* Tries to collapse edges that were first in the queue. Stops when the mesh has only `faces`
+ * faces. */
 static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t count,
                                uint32_t bucket, uint32_t faces, he_error *err)
 {
@@ -235,7 +237,8 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
     return status;
 }
 
-/* The watch is stepped after so many takes from the queue, or after so much work. */
+/* The progress watch is stepped after TAKES_PER_LOOK takes from the queue, or after WORK_PER_LOOK
+ * units of work. */
 enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_WATCH_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
@@ -275,7 +278,8 @@ static he_decimate_stop find_stop(const he_decimation *d, uint32_t faces)
     return HE_STOP_EXHAUSTED;
 }
 
-/* Returns the first aligned node in memory that has room for one node more. */
+/* Returns the first aligned address for nodes in memory that was allocated with room for one more
+ * node. */
 static he_node *align(void *memory)
 {
     uintptr_t over = (uintptr_t)memory % HE_CACHE_LINE;
@@ -360,7 +364,8 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
             he_mesh_watch(copy, m->watch);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
-        /* Each collapse deletes a vertex: with equally many nothing has changed. */
+        /* Each collapse deletes a vertex, so an equal number of vertices means that nothing has
+         * changed. */
         if (status == HE_OK && he_mesh_vertices(copy) < he_mesh_vertices(m)) {
             status = finish(m, &copy, &merges, replace, err);
         }

@@ -47,9 +47,10 @@
 
 enum { HE_DECIMATE_DEGREE = 256 };
 
-/* The default of boundary_weight. */
+/* The default weight of boundary and feature edges relative to faces. */
 #define HE_BOUNDARY_WEIGHT 100.0
-/* Costs with a larger weight would not fit into the queue. */
+/* The largest allowed weight of boundary edges. With a larger one the costs of edges would not fit
+ * into the priority queue. */
 #define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
@@ -65,7 +66,7 @@ typedef enum he_decimate_stop {
     HE_STOP_COUNT
 } he_decimate_stop;
 
-/* "faces", "max_error", "exhausted" */
+/* The names of the reasons why a decimation stopped: "faces", "max_error", "exhausted". */
 extern const char *const he_decimate_stop_names[HE_STOP_COUNT + 1];
 
 typedef struct he_decimated {
@@ -73,8 +74,8 @@ typedef struct he_decimated {
     double error; /* the largest error of a collapse */
 } he_decimated;
 
-/* decimate: V - n, and n or 2n faces less (n and 2n of boundary and interior edges), E accordingly.
- *
+/* decimate: V - n for n collapses. A collapse deletes one face at a boundary edge, two at an
+ * interior edge, and the edges accordingly.
  * The work is done in a copy, and then each word that differs is written once. If more than
  * HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded as
  * one replacement that keeps ids and the old arrays; the sets of changes are then empty. That takes
@@ -82,7 +83,7 @@ typedef struct he_decimated {
  *
  * `out` may be NULL.
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.
- * Returns HE_BAD_VALUE unless the options are in the ranges above.
+ * Returns HE_BAD_VALUE if an option is outside its range, which struct he_decimate_options states.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch gave up. */
 enum { HE_DECIMATE_RECORDED = 20000 };

@@ -1,20 +1,25 @@
-/* Computes what an edge costs, and where its vertex would move. */
+/* decimate_cost.c - computes what the collapse of an edge costs, and where the vertex that stays
+ * would move. */
 #include "algo/decimation.h"
 
-/* How strongly the new point is pulled to the middle of the edge, relative to the sum of weights:
- * enough to find a point in a plane accurately, too little to matter on curved surfaces. */
+/* How strongly the new point is pulled to the middle of the edge, relative to the sum of the
+ * planes' weights: enough to find a point in a flat region accurately, too little to matter on
+ * curved surfaces. */
 static const double PULL = 1e-6;
-/* An end is better if it costs less by more than rounding. */
+/* An end of the edge is preferred to another point if it costs less by more than this, which allows
+ * for rounding. */
 static const double ROUNDING = 1e-14;
-/* Edges that cost nothing are ordered by length, the shortest first. */
+/* Makes the shortest of the edges whose collapse costs nothing come first: a small multiple of the
+ * length is added to the cost. */
 static const double LENGTH = 1e-9;
 /* Bounds the priorities, so that small meshes inside large ones have priorities that fit a
  * float. */
 static const double WITHIN = 0x1p40;
-/* Smaller errors are rounding noise. */
+/* Errors below this, relative to the size of the mesh, are rounding noise and count as zero. */
 static const double NOTHING = 1e-12;
 
-/* May the vertex move along an edge, which is a feature if `along`? */
+/* Returns true if decimation may move the vertex along an edge. `along` says that the edge is a
+ * feature. */
 static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 {
     const he_node *node = &d->nodes[vertex];
@@ -38,7 +43,7 @@ static void take(const ends *e, he_vec3 x, bool a_goes, bool moves, he_candidate
     out->cost = he_quadric_at(&e->sum, x);
 }
 
-/* Takes the best point; any is allowed. */
+/* Takes the best point for the vertex that stays, when neither end restricts where it may be. */
 static bool take_best(const ends *e, he_candidate *out)
 {
     bool a_goes = e->a_goes && e->b_moves, b_goes = e->b_goes && e->a_moves;

@@ -1,10 +1,11 @@
-/* Performs one collapse of a decimation. */
+/* decimate_step.c - performs one collapse of a decimation. */
 #include "algo/decimation.h"
 
 #include "edit/local/collapse.h"
 #include "edit/piece/point.h"
 
-/* The largest angle by which a face may turn: the squared cosine of 60 degrees. */
+/* The largest angle by which one collapse may turn a face, as a squared cosine: that of 60
+ * degrees. */
 static const double TURN = 0.25;
 /* A face counts as having area if its squared doubled area, relative to the fourth power of its
  * longest side, is above this. */
@@ -15,9 +16,9 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Lists the half-edges that leave the ends of h, from h and its twin on: of the first end, or of
- * both, which are then walked in alternation, since each step waits for memory. Returns false if
- * there are too many. */
+/* Lists the half-edges that leave the ends of h, starting with h and its twin: those of the first
+ * end, or of both. Both ends are walked around in alternation, since each step waits for memory.
+ * Returns false if there are too many. */
 static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
     const he_halfedge first[2] = {h, he_twin(h)};
@@ -44,7 +45,7 @@ static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out
     return true;
 }
 
-/* Would the triangle p, q, r keep its direction and area with its first corner at `to`? */
+/* Returns true if the triangle p, q, r keeps its direction and its area when p moves to `to`. */
 static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
 {
     he_vec3 side = he_vec3_sub(r, q), left = he_vec3_sub(q, to), right = he_vec3_sub(r, to);
@@ -60,7 +61,9 @@ static bool stays_upright(he_vec3 p, he_vec3 q, he_vec3 r, he_vec3 to)
     return old_square == 0 || (along > 0 && along * along >= TURN * old_square * new_square);
 }
 
-/* Tests the faces around the vertex of `spokes`, except those of its first edge. */
+/* Tests whether the faces around a vertex keep their direction and area when it moves from `from`;
+ * `spokes` are its edges. The faces beside the first edge are skipped, because the collapse deletes
+ * them. */
 static bool stay_upright(const he_decimation *d, const he_spokes *spokes, he_vec3 from, he_vec3 to)
 {
     const he_mesh *m = d->mesh;
@@ -123,7 +126,8 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* May the vertex wait? Only if it can be remembered. */
+/* Returns true if the edges of the vertex need not return to the queue yet. That is possible only
+ * if the vertex can be remembered as late. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -133,8 +137,8 @@ static bool is_late(he_decimation *d, uint32_t vertex)
     return (d->flags[vertex] & HE_NODE_LATE) != 0 || he_ids_add(&d->late, vertex, NULL) == HE_OK;
 }
 
-/* Returns the ASIDE edges of a vertex to the queue, and the DEAR ones too if another vertex was
- * merged into it. */
+/* Returns the edges of a vertex that were put ASIDE to the queue; if another vertex was merged into
+ * it (`grown`), also those that were too expensive (DEAR). */
 static void bring_back(he_decimation *d, uint32_t vertex, bool grown)
 {
     uint8_t flags = grown ? HE_NODE_ASIDE | HE_NODE_DEAR : HE_NODE_ASIDE;
@@ -163,7 +167,7 @@ bool he_decimation_catch_up(he_decimation *d)
     return any;
 }
 
-/* Returns the position of the point between the ends, from 0 to 1. */
+/* Returns where `place` lies between the ends `from` and `to`: from 0 to 1. */
 static double between(he_vec3 from, he_vec3 to, he_vec3 place)
 {
     he_vec3 across = he_vec3_sub(to, from);
@@ -172,7 +176,8 @@ static double between(he_vec3 from, he_vec3 to, he_vec3 place)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
-/* Converts a point to outside coordinates; never beyond the range of a double. */
+/* Converts a point from the coordinates of the decimation, which are scaled, to those of the mesh.
+ * The result is never beyond the range of a double. */
 static he_vec3 outside(const he_decimation *d, he_vec3 place)
 {
     return (he_vec3){d->middle.x + ldexp(place.x, d->exponent),
@@ -180,7 +185,7 @@ static he_vec3 outside(const he_decimation *d, he_vec3 place)
                      d->middle.z + ldexp(place.z, d->exponent)};
 }
 
-/* Makes room for one more split and the faces around one vertex. */
+/* Makes room in the log for one more split and the faces around one vertex. */
 static he_status make_room(he_progressive *log)
 {
     if (log->count == log->capacity) {
@@ -195,7 +200,8 @@ static he_status make_room(he_progressive *log)
     return he_ids_reserve(&log->moved, HE_DECIMATE_DEGREE, NULL);
 }
 
-/* Records how to undo the collapse of the first edge of `about`, before it is done. */
+/* Records in the log how to undo the collapse of the first edge of `about`. Must be called before
+ * the collapse. */
 static void remember(const he_decimation *d, const he_spokes *about)
 {
     const he_mesh *m = d->mesh;
@@ -231,7 +237,7 @@ static void remember(const he_decimation *d, const he_spokes *about)
     }
 }
 
-/* Notes what the collapse of h will merge, before it is done. */
+/* Records which elements the collapse of h will merge. Must be called before the collapse. */
 static he_status note_merges(const he_decimation *d, he_halfedge h)
 {
     const he_mesh *m = d->mesh;
@@ -262,7 +268,8 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     }
 }
 
-/* Collapses the first edge of `about`, and records what is required. */
+/* Collapses the first edge of `about`, and records the collapse where the caller of the decimation
+ * asked for it. */
 static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
 {
     he_halfedge h = {about->out[0]};

@@ -1,4 +1,5 @@
-/* Writes the result of a decimation from the copy into the mesh: each word that differs, once. */
+/* decimate_write.c - writes the result of a decimation from the copy into the mesh: each word that
+ * differs, once. */
 #include "algo/decimation.h"
 
 #include "mesh/write.h"
@@ -64,7 +65,7 @@ static void count_words(const he_mesh *m, const he_mesh *made, he_need *need)
     }
 }
 
-/* Counts the words of two rows that differ. */
+/* Counts the words in which two rows of an attribute differ. */
 static size_t words_between(const unsigned char *a, const unsigned char *b, size_t bytes)
 {
     size_t count = 0;
@@ -74,8 +75,8 @@ static size_t words_between(const unsigned char *a, const unsigned char *b, size
     return count;
 }
 
-/* Handles the words of a column that differ: writes them if `to` is not NULL, else only counts
- * them. */
+/* Handles the words in which a column differs between the two meshes: writes them if `to` is not
+ * NULL, otherwise only counts them. */
 static size_t each_value(const he_mesh *m, const he_mesh *made, size_t slot, he_mesh *to)
 {
     const he_column *from = m->c.columns[slot], *column = made->c.columns[slot];
@@ -161,7 +162,8 @@ he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *
 {
     he_need need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
-    /* need.attributes would count rows of every column. */
+    /* The member need.attributes would reserve for rows of every column, so the words are counted
+     * as links. */
     need.links += each_column(m, made, NULL);
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {

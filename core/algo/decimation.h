@@ -11,8 +11,9 @@
  * ASIDE is an edge that was refused. It is in no queue, and returns when the faces around one of
  * its ends have changed.
  *
- * DEAR is an edge with an error above the maximum. It is in no queue either, and is tried again
- * when another vertex was merged into one of its ends: an error is a mean, and may fall. */
+ * DEAR (too expensive) is an edge with an error above the maximum. It is in no queue either, and is
+ * tried again when another vertex was merged into one of its ends: an error is a mean, and may
+ * fall. */
 #ifndef HE_ALGO_DECIMATION_H
 #define HE_ALGO_DECIMATION_H
 
@@ -25,8 +26,8 @@
 
 #include <stdalign.h>
 
-/* Flags of a vertex, which never change: edges and vertices with them would be refused by
- * edge_collapse, so they stay. */
+/* Flags of a vertex, which never change. edge_collapse would refuse to delete or to move such a
+ * vertex, so it stays. */
 enum {
     HE_NODE_LOCKED = 1, /* stays where it is */
     HE_NODE_HELD = 2,   /* an edge or face at it is locked: it stays, but may move */
@@ -36,9 +37,9 @@ enum {
     HE_NODE_GREW = 32   /* a vertex was merged into it meanwhile */
 };
 
-/* At a vertex of more edges than this, edges return to the queue only after as many changes as half
- * of its degree, and when the queue is empty: a change concerns few of them, but all would be tried
- * again. */
+/* At a vertex of more edges than HE_DECIMATE_PATIENT, refused edges are not tried again after every
+ * change nearby, but only after a number of changes that is 1 / HE_DECIMATE_PART of its degree, and
+ * when the queue is empty. A change concerns few of its edges, but all would be tried again. */
 enum { HE_DECIMATE_PATIENT = 32, HE_DECIMATE_PART = 2 };
 
 /* Where an edge is stored. */
@@ -54,7 +55,7 @@ typedef struct he_node {
     uint32_t changes;  /* changes since its edges returned to the queue, if HE_NODE_LATE */
 } he_node;
 
-/* Merged elements, in pairs of the deleted one and the one that stays. */
+/* The elements that were merged, as pairs of a deleted element and the one that stays. */
 typedef struct he_merges {
     he_ids vertices, edges;
 } he_merges;
@@ -74,8 +75,9 @@ typedef struct he_decimation {
     int exponent;  /* inside = (outside - middle) / 2^exponent */
     double inward; /* 2^-exponent */
     double error;  /* the largest so far, inside */
-    /* The work done: edges judged, and every eighth half-edge visited around their ends. Both take
-     * about as long, and there may be 256 of them for each collapse at a vertex of large degree. */
+    /* The work done so far: the number of edges judged, plus an eighth of the number of half-edges
+     * visited around their ends. Both take about the same time, and there may be 256 of them for
+     * each collapse at a vertex of large degree. */
     uint64_t work;
     he_ids late; /* vertices that were HE_NODE_LATE, and perhaps still are */
 } he_decimation;
@@ -90,7 +92,8 @@ typedef struct he_candidate {
     float priority; /* its priority in the queue */
 } he_candidate;
 
-/* Faces around vertices: `count` of `vertices`, the targets of the half-edges `out`. */
+/* The `count` half-edges that leave a vertex (`out`), and their targets, which are the corners of
+ * the faces around it. */
 typedef struct he_spokes {
     uint32_t count;
     uint32_t out[HE_DECIMATE_DEGREE], target[HE_DECIMATE_DEGREE];
@@ -101,12 +104,13 @@ static inline bool he_node_is_hub(const he_node *node)
     return node->degree > HE_DECIMATE_DEGREE;
 }
 
-/* he_decimate in place, without rolling back; records collapses in `log` unless it is NULL. */
+/* Runs a decimation in the mesh itself, without rolling back if it fails. Records the collapses in
+ * `log` unless that is NULL. */
 HE_NODISCARD he_status he_decimation_run(he_mesh *m, const he_decimate_options *options,
                                          he_progressive *log, he_decimated *out, he_error *err);
 
-/* The parts of it: `d` has its mesh and the options; the caller calls he_decimation_end in any
- * case. */
+/* The steps of he_decimation_run. `d` must have its mesh and options; the caller calls
+ * he_decimation_end in any case. */
 HE_NODISCARD he_status he_decimation_begin(he_decimation *d, const he_decimate_options *options,
                                            he_error *err);
 HE_NODISCARD he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err);
@@ -115,21 +119,19 @@ void he_decimation_end(he_decimation *d);
 he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
 /* Computes the cheapest collapse of an edge. Returns false if neither end may be deleted. */
 bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
-/* Makes `m` equal to a copy that was decimated.
- * Returns HE_NO_MEMORY if memory is out. */
+/* Makes mesh `m` equal to `made`, a copy of it that was decimated. */
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
-/* Decides where an edge belongs, and computes its collapse unless it is ASIDE. */
+/* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
+ * computes its collapse unless it is ASIDE. */
 he_edge_place he_decimation_judge(const he_decimation *d, he_edge e, he_candidate *what);
-/* Stores an edge there; it must not be in the queue. */
+/* Records that an edge is in the queue, ASIDE or DEAR, as `place` says. It must not be in the queue
+ * already. */
 void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const he_candidate *what);
-/* Returns the edges of vertices that are HE_NODE_LATE to the queue. Returns false if there are
- * none. */
+/* Returns the edges of vertices that have the flag HE_NODE_LATE to the queue: vertices of many
+ * edges that were not tried again after changes. Returns false if there are none. */
 bool he_decimation_catch_up(he_decimation *d);
-/* Collapses an edge and updates nodes and queue.
- * Returns HE_LIMIT if a face would flip.
- * Returns HE_NO_MEMORY if memory is out.
- * Returns the error of he_edge_collapse if that refuses. */
+/* Collapses an edge and updates the vertices' quadrics and the queue. */
 HE_NODISCARD he_status he_decimation_collapse(he_decimation *d, const he_candidate *what);
 
 #endif

@@ -1,10 +1,10 @@
 /* edge_queue.h - an inline priority queue of edges, the least priority first.
  *
- * A bucket holds the edges whose priorities agree in exponent and two binary digits: those that
- * differ by less than a quarter may come in either order. Within a bucket edges are in order of
- * arrival, mostly by id, so that neighbours are near in memory; that gains more than a finer order,
- * which gives no better mesh. They are stored in chunks of 64 bytes, and a chunk is taken as a
- * whole, so that the data of its edges can be prefetched. */
+ * A bucket holds the edges whose priorities agree in exponent and two binary digits: edges whose
+ * priorities differ by less than a quarter may come in either order. Within a bucket edges are in
+ * order of arrival, mostly by id, so that neighbours are near in memory; that gains more than a
+ * finer order, which gives no better mesh. They are stored in chunks of 64 bytes, and a chunk is
+ * taken as a whole, so that the data of its edges can be prefetched. */
 #ifndef HE_ALGO_EDGE_QUEUE_H
 #define HE_ALGO_EDGE_QUEUE_H
 
@@ -33,8 +33,7 @@ typedef struct he_edge_queue {
     size_t word; /* no word before it has a bucket with edges */
 } he_edge_queue;
 
-/* Makes a queue with room for `edges` edges. The caller clears it also after a failure.
- * Returns HE_NO_MEMORY if memory is out. */
+/* Makes a queue with room for `edges` edges. The caller must clear it, even after a failure. */
 HE_NODISCARD static inline he_status he_queue_init(he_edge_queue *queue, uint32_t edges,
                                                    he_error *err)
 {
@@ -56,8 +55,8 @@ static inline void he_queue_clear(he_edge_queue *queue)
     he_mem_free(queue->first);
 }
 
-/* Returns the bucket of a priority, which is not negative; a lower priority never has a higher
- * bucket. */
+/* Returns the bucket of a priority, which must not be negative. A lower priority never has a higher
+ * bucket than a higher one. */
 static inline uint32_t he_queue_bucket(float priority)
 {
     uint32_t bits;
@@ -85,8 +84,8 @@ static inline void he_queue_put(he_edge_queue *queue, uint32_t edge, float prior
     queue->word = word < queue->word ? word : queue->word;
 }
 
-/* Takes some of the first edges out, all of one bucket. Returns their number, 0 if the queue is
- * empty. */
+/* Takes some of the edges of least priority out of the queue, all of one bucket. Returns their
+ * number; 0 if the queue is empty. */
 static inline uint32_t he_queue_take(he_edge_queue *queue, uint32_t edges[HE_QUEUE_CHUNK],
                                      uint32_t *bucket)
 {

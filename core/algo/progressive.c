@@ -10,7 +10,7 @@ void he_progressive_clear(he_progressive *progressive)
     *progressive = (he_progressive){0};
 }
 
-/* The part of the time that copying the mesh takes. */
+/* The share of the whole progress that copying the mesh takes. */
 static const double COPIED = 0.05;
 
 he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options, he_watch *watch,

@@ -1,18 +1,5 @@
-/* progressive.h - a mesh as a coarse mesh and the splits that lead back to it.
- *
- * H. Hoppe, "Progressive meshes", 1996: a decimation is recorded collapse by collapse, and each
- * collapse is undone by a vertex split. Undone in reverse order, they lead through all levels of
- * detail to the original mesh, with equal ids, ends of edges, corners of faces and positions.
- *
- *              c                               c
- *              o                               o
- *            /   \                           / | \
- *       m1 /       \                    m1 / f | g \       `moved` faces have `vertex` where
- *        o     o     o      --->         o u o-->o v o     they had `from`; `left_face` is
- *          \   v   /                       \   h   /       u, v, c and `right_face` v, u, d
- *       m2   \   /                      m2   \ | /
- *              o                               o
- *              d                               d */
+/* progressive.h - a progressive mesh: a coarse mesh and the vertex splits that lead back to the
+ * original. */
 #ifndef HE_ALGO_PROGRESSIVE_H
 #define HE_ALGO_PROGRESSIVE_H
 
@@ -20,7 +7,8 @@
 #include "mesh/column.h"
 #include "mesh/mesh.h"
 
-/* The data to undo one collapse. If a side has no face, its fields are HE_NONE. */
+/* The data needed to undo one collapse. If a side of the collapsed edge has no face, the fields of
+ * that side are HE_NONE. */
 typedef struct he_progressive_split {
     uint32_t vertex, from;   /* u, which is made, and v, beside which it is */
     uint32_t left, right;    /* the third corners, c and d */
@@ -33,7 +21,8 @@ typedef struct he_progressive_split {
     he_vec3 at, from_at; /* positions of u and v after the split */
 } he_progressive_split;
 
-/* Anyone may read the fields; the decimation writes them. {0} is empty. */
+/* A progressive mesh. All code may read the fields, but only the decimation writes them. {0} is
+ * empty. */
 typedef struct he_progressive {
     he_mesh *base;
     he_progressive_split *splits; /* the first one is the last to be applied */
@@ -41,9 +30,9 @@ typedef struct he_progressive {
     he_ids moved;
 } he_progressive;
 
-/* Decimates a copy and records the collapses; the base is what he_decimate makes with these
- * options. `watch`, which may be NULL, is not the mesh's: other threads may read the mesh
- * meanwhile. Fails as he_decimate does.
+/* Decimates a copy of `m` and records the collapses; the coarsest level is what he_decimate makes
+ * with these options. `watch`, which may be NULL, need not be the watch of the mesh: other threads
+ * may read the mesh meanwhile. Returns the errors of he_decimate, too.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,

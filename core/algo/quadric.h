@@ -40,7 +40,8 @@ static inline he_vec3 he_quadric_times(const he_quadric *q, he_vec3 x)
                      q->xz * x.x + q->yz * x.y + q->zz * x.z};
 }
 
-/* Returns the value, never negative: a negative one is rounding noise. */
+/* Returns the value of the quadric at x; never negative, because a negative value is rounding
+ * noise. */
 static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
 {
     double value = he_vec3_dot(x, he_vec3_add(he_quadric_times(q, x), he_vec3_scale(q->b, 2)));
@@ -48,14 +49,14 @@ static inline double he_quadric_at(const he_quadric *q, he_vec3 x)
     return value > 0 ? value : 0;
 }
 
-/* Makes the quadric relative to a point that is `by` away from the present one. */
+/* Makes the quadric relative to another point, which lies `by` away from the present one. */
 static inline void he_quadric_shift(he_quadric *q, he_vec3 by)
 {
     q->c = he_quadric_at(q, by);
     q->b = he_vec3_add(q->b, he_quadric_times(q, by));
 }
 
-/* Adds a quadric; both are relative to one point. */
+/* Adds another quadric; both must be relative to the same point. */
 static inline void he_quadric_add(he_quadric *q, const he_quadric *more)
 {
     q->xx += more->xx;

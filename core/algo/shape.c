@@ -9,8 +9,8 @@
 
 static const double QUARTER_TURN = 1.57079632679489661923;
 
-/* Computes point i of n on the unit circle. The quarter turns are done first, so that points on the
- * axes are exact and the circle is as symmetric as n allows. */
+/* Computes point i of n on the unit circle. Whole quarter turns are separated first, so that points
+ * on the axes are exact and the circle is as symmetric as n allows. */
 static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
 {
     uint64_t quarters = 4 * (uint64_t)i;
@@ -36,7 +36,7 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
     }
 }
 
-/* Adds n vertices around the z axis, counter-clockwise seen from above. */
+/* Adds a circle of n vertices around the z axis, counter-clockwise as seen from above. */
 static void circle(he_soup *soup, uint32_t n, double radius, double z)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -57,8 +57,8 @@ static void cap(he_soup *soup, uint32_t first, uint32_t n, bool up)
     }
 }
 
-/* Adds triangles from the circle of n vertices at `first` to `tip`, from which the circle is
- * counter-clockwise if `up`. */
+/* Adds triangles from the circle of n vertices at `first` to the vertex `tip`. If `up` is set, the
+ * circle is counter-clockwise as seen from `tip`. */
 static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -67,8 +67,8 @@ static void fan(he_soup *soup, uint32_t first, uint32_t n, uint32_t tip, bool up
     }
 }
 
-/* Adds quads between two circles of n vertices, with normals away from the axis if `above` is
- * above. */
+/* Adds quads between two circles of n vertices each. Their normals point away from the axis if the
+ * circle `above` is above the circle `below`. */
 static void band(he_soup *soup, uint32_t below, uint32_t above, uint32_t n)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -149,7 +149,8 @@ static he_shape_size uv_sphere_size(const double *args)
     return (he_shape_size){n * (bands - 1) + 2, n * bands, 4 * n * (bands - 2) + 6 * n};
 }
 
-/* The south pole, then circles of latitude from south to north, then the north pole. */
+/* Vertices of the sphere are numbered thus: the south pole, then circles of latitude from south to
+ * north, then the north pole. */
 static void uv_sphere_fill(const double *args, he_soup *soup)
 {
     uint32_t n = (uint32_t)args[0], bands = (uint32_t)args[1];
@@ -199,7 +200,8 @@ static he_shape_size torus_size(const double *args)
     return (he_shape_size){quads, quads, 4 * quads};
 }
 
-/* Vertices run around the tube first; the tube's circles around the axis. */
+/* Vertices of the torus are numbered first around the tube, then from tube circle to tube circle
+ * around the axis. */
 static void torus_fill(const double *args, he_soup *soup)
 {
     uint32_t major = (uint32_t)args[0], minor = (uint32_t)args[1];
@@ -284,9 +286,11 @@ static void polygon_fill(const double *args, he_soup *soup)
     cap(soup, 0, n, true);
 }
 
-/* Larger lengths have no use, and their squares would overflow. */
+/* The largest length a shape may have. Larger lengths have no use, and their squares would
+ * overflow. */
 #define LONGEST 1e100
-/* More than any side of a mesh that fits; the limits refuse products that are too large. */
+/* The largest number of segments along a side. It is more than fits into a mesh; products that are
+ * too large are refused by the limits. */
 #define MOST 16777216
 
 #define LENGTH(name, fallback, doc)                            \
@@ -412,7 +416,7 @@ void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS])
     }
 }
 
-/* A number in a message, formatted equally in every locale. */
+/* A number as text for a message. It has the same form in every locale. */
 typedef struct shown {
     char text[HE_NUMBER_TEXT + 1];
 } shown;

@@ -36,9 +36,11 @@ typedef struct he_shape {
     const char *name;
     const char *doc;
     he_shape_param params[HE_SHAPE_PARAMS]; /* ends at the first one without a name */
-    /* Called by the functions below only, with arguments at the index of their parameter. */
+    /* Computes how many vertices, faces and corners the shape has. Only the functions declared
+     * below call it, with each argument at the index of its parameter. */
     he_shape_size (*size)(const double *args);
-    /* Returns early, with an incomplete soup, if the soup's watch gave up. */
+    /* Fills the soup with the shape. If the soup's watch cancels the work, it returns early with an
+     * incomplete soup. */
     void (*fill)(const double *args, he_soup *soup);
 } he_shape;
 
@@ -48,15 +50,14 @@ const he_shape *he_shape_find(const char *name, size_t length); /* NULL if there
 size_t he_shape_params(const he_shape *shape);
 void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS]);
 
-/* Checks arguments. `*param` (which may be NULL) is the index of the one at fault.
- * Returns HE_NOT_FINITE if one is not finite.
- * Returns HE_BAD_VALUE if one is outside its range, or has a fraction where it must be whole. */
+/* Checks the arguments of a shape. On failure `*param` (which may be NULL) is the index of the bad
+ * argument. */
 HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                       size_t *param, he_error *err);
-/* Makes a soup, which the caller clears; he_build accepts all of them. Fails as he_shape_check
- * does, too.
- * Returns HE_LIMIT if it would have more vertices, faces, corners or bytes than `limits` allow
- * (NULL: the structure's own).
+/* Makes a soup of the shape, which the caller clears; he_build accepts every such soup. Returns the
+ * errors of he_shape_check, too.
+ * Returns HE_LIMIT if the soup would have more vertices, faces, corners or bytes than `limits`
+ * allow. If `limits` is NULL, only the limits of meshes apply.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS],

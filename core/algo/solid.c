@@ -70,7 +70,8 @@ void he_solid_octahedron(he_soup *soup, double radius)
     he_solid_vertex(soup, 0, -radius, 0);
     he_solid_vertex(soup, 0, 0, radius);
     he_solid_vertex(soup, 0, 0, -radius);
-    /* One triangle for each octant; each reflection reverses it. */
+    /* Each octant of space gets one triangle; every reflection at a coordinate plane reverses its
+     * orientation. */
     for (uint32_t i = 0; i < 8; i++) {
         uint32_t x = i & 1u, y = i >> 1 & 1u, z = i >> 2;
         if ((x ^ y ^ z) == 0) {
@@ -81,9 +82,9 @@ void he_solid_octahedron(he_soup *soup, double radius)
     }
 }
 
-/* The icosahedron's vertices are the corners of three golden rectangles, one in each coordinate
- * plane; its edges join those at the least distance, and its faces are the triples joined pairwise,
- * oriented outwards. */
+/* The icosahedron: its vertices are the corners of three golden rectangles, one in each coordinate
+ * plane; its edges join vertices at the least distance; its faces are the triples of vertices
+ * joined pairwise, oriented outwards. */
 typedef struct icosahedron {
     he_vec3 vertex[12];
     uint32_t face[20][3];
@@ -104,7 +105,8 @@ static icosahedron icosahedron_make(void)
     uint32_t edges = 0, faces = 0;
     for (uint32_t a = 0; a < 12; a++) {
         for (uint32_t b = 0; b < 12; b++) {
-            /* Cosines between vertices are 1, 1/sqrt 5, -1/sqrt 5 and -1. */
+            /* The cosines of the angles between two vertices are 1, 1/sqrt 5, -1/sqrt 5 and -1;
+             * neighbours have 1/sqrt 5. */
             double cosine = he_vec3_dot(ico.vertex[a], ico.vertex[b]);
             joined[a][b] = cosine > 0 && cosine < 0.9;
             if (a < b && joined[a][b]) {
@@ -136,7 +138,8 @@ void he_solid_icosahedron(he_soup *soup, double radius)
     he_solid_icosphere(soup, 0, radius);
 }
 
-/* Finds the face of the icosahedron that runs from `at` to `b`, and its corner after those. */
+/* Finds the face of the icosahedron in which corner `b` follows corner `at`. Returns it; `*after`
+ * is set to the corner that follows `b`. */
 static uint32_t face_from(const icosahedron *ico, uint32_t at, uint32_t b, uint32_t *after)
 {
     for (uint32_t f = 0; f < 20; f++) {
@@ -176,21 +179,23 @@ void he_solid_dodecahedron(he_soup *soup, double radius)
     }
 }
 
-/* One triangle of the icosahedron as a grid with `n` steps a side: the point (i, j) is i steps from
- * corner 0 to corner 1 and j steps towards corner 2. */
+/* One triangle of the icosahedron as a grid with `n` steps along each side: the point (i, j) is i
+ * steps from corner 0 towards corner 1, and j steps towards corner 2. */
 typedef struct patch {
     const icosahedron *ico;
     uint32_t n, face;
 } patch;
 
-/* Returns vertex t of n along an edge; both triangles beside it must get the same vertex. */
+/* Returns vertex t of n along the edge from `from` to `to`. Both triangles beside an edge must get
+ * the same vertex, so it is numbered from the lower end. */
 static uint32_t on_edge(const patch *p, uint32_t from, uint32_t to, uint32_t t)
 {
     uint32_t step = from < to ? t : p->n - t;
     return 12 + p->ico->edge[from][to] * (p->n - 1) + step - 1;
 }
 
-/* Numbers of vertices: 12 corners, then the inner points of 30 edges, then those of 20 faces. */
+/* Returns the number of the vertex at a grid point. Numbered first are the 12 corners, then the
+ * inner points of the 30 edges, then those of the 20 faces. */
 static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
 {
     const uint32_t *corner = p->ico->face[p->face];
@@ -207,7 +212,8 @@ static uint32_t grid_vertex(const patch *p, uint32_t i, uint32_t j)
     if (i + j == n) {
         return on_edge(p, corner[1], corner[2], j);
     }
-    /* Row j has n - 1 - j inner points; below it are those of the rows 1 to j - 1. */
+    /* Row j of the grid has n - 1 - j inner points; below it are the inner points of rows 1 to j -
+     * 1. */
     uint32_t inner = (uint32_t)((uint64_t)(n - 1) * (n - 2) / 2);
     uint32_t below = (uint32_t)((uint64_t)(j - 1) * (n - 1) - (uint64_t)(j - 1) * j / 2);
     return 12 + 30 * (n - 1) + p->face * inner + below + i - 1;
@@ -219,7 +225,8 @@ static void halve(he_vec3 *at, uint32_t a, uint32_t b, uint32_t middle)
     at[middle] = he_vec3_scale(sum, 1 / he_vec3_length(sum));
 }
 
-/* Every edge of one level is a side of exactly one triangle that is oriented as the patch. */
+/* Computes the points of one level of subdivision. Every edge of a level is a side of exactly one
+ * triangle that is oriented like the whole patch, so each is halved once. */
 static void place_level(const patch *p, uint32_t step, he_vec3 *at)
 {
     uint32_t half = step / 2;

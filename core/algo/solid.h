@@ -1,12 +1,12 @@
-/* solid.h - fills soups, whose arrays are large enough, with the five regular solids and the
- * icosphere. `radius` is that of the sphere through the vertices. For shape.c. */
+/* solid.h - fills soups, whose arrays are large enough already, with the five regular solids and
+ * the icosphere. `radius` is that of the sphere through the vertices. Only shape.c uses it. */
 #ifndef HE_ALGO_SOLID_H
 #define HE_ALGO_SOLID_H
 
 #include "build/build.h"
 
-/* Reports to the soup's watch how full the soup is; returns false if it gave up. Called for each
- * row of a shape. */
+/* Reports to the soup's watch how full the soup is, once for each row of a shape. Returns false if
+ * the work was cancelled. */
 bool he_solid_goes_on(const he_soup *soup);
 /* Appends a vertex to a soup that has room. */
 void he_solid_vertex(he_soup *soup, double x, double y, double z);

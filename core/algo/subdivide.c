@@ -8,7 +8,7 @@
 
 /* --- sizes --- */
 
-/* Facts about the mesh that all steps need. */
+/* Facts about the coarse mesh that all steps need. */
 typedef struct start {
     he_sizes sizes;
     uint64_t *feature; /* one bit for each edge, NULL if there are no features */
@@ -20,7 +20,8 @@ static he_status no_memory(const he_mesh *m, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to subdivide %u faces", m->c.faces.live);
 }
 
-/* Has a vertex of the boundary only one face? Then its two boundary edges are all it has. */
+/* Returns true if a vertex on the boundary has only one face: then its two boundary edges are all
+ * its edges. */
 static bool has_one_face(const he_content *c, uint32_t v)
 {
     uint32_t h = c->vertex_halfedge[v];
@@ -133,7 +134,7 @@ static void add(he_sizes *sizes, uint64_t vertices, uint64_t edges, uint64_t fac
     sizes->live_faces += faces;
 }
 
-/* Every second step of sqrt3 cuts sharp edges in three. */
+/* Returns true if this step cuts sharp edges in three: every second step of sqrt3 does. */
 static bool cuts_in_three(he_scheme scheme, unsigned step)
 {
     return scheme == HE_SQRT3 && step % 2 == 1;
@@ -178,8 +179,8 @@ static uint64_t rows_of(const he_sizes *s)
     return s->vertices + s->edges + s->faces;
 }
 
-/* Computes the sizes after each step, unless they are too large. A step multiplies them by at most
- * seven, so 64 bits are enough; and sizes within the limit have ids. */
+/* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
+ * most seven, so 64 bits are enough, and sizes within the limit have ids. */
 _Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "a limit within the ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
@@ -245,8 +246,8 @@ static void clear_step(he_subdivide_step *s)
     he_mem_free(s->corner_from);
 }
 
-/* Returns the ranks of live rows; NULL if all rows live. *failed says that memory is out. A row has
- * `stride` links. */
+/* Returns for each live row its index among the live rows; NULL if all rows are live. *failed is
+ * set if memory is out. A row has `stride` links. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -312,7 +313,7 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
     return HE_OK;
 }
 
-/* Makes room for all rows, without writing them. */
+/* Makes room for all rows of the finer mesh, without writing them. */
 static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 {
     he_need need = {.vertices = (uint32_t)sizes->vertices,
@@ -333,7 +334,7 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
     return HE_OK;
 }
 
-/* The step's progress goes from `done` to `to` of the whole. */
+/* Runs one step of a subdivision, whose progress goes from `done` to `to` of the whole. */
 static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *sizes, double done,
                           double to, he_error *err)
 {
@@ -364,7 +365,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *
     return status == HE_OK ? he_subdivide_carry(s, err) : status;
 }
 
-/* Makes the finer mesh of `c`, and finds its features. */
+/* Makes the finer mesh of content `c`, and finds which of its edges are features. */
 static he_status step(const he_mesh *m, const he_content *c, he_scheme scheme, bool thirds,
                       start *at, const he_sizes *sizes, const double share[2], he_mesh **out,
                       he_error *err)

@@ -67,28 +67,30 @@ enum { HE_SUBDIVIDE_STEPS = 12 };
  * links. */
 #define HE_SUBDIVIDE_ROWS (UINT64_C(1) << 27)
 
-/* Live elements after each step. */
+/* The numbers of live elements after each step of a subdivision. */
 typedef struct he_subdivide_counts {
     uint32_t vertices, edges, faces;
 } he_subdivide_counts;
 
-/* `steps` of a scheme, 1 to HE_SUBDIVIDE_STEPS, as one replacement that keeps ids (write.h).
- * `counts` (which may be NULL) has room for `steps` of them.
+/* Refines the mesh by `steps` steps of a scheme, 1 to HE_SUBDIVIDE_STEPS. Recorded as one
+ * replacement that keeps ids (write.h). `counts`, which may be NULL, must have room for the counts
+ * after each of the `steps`.
  *
  * Returns HE_LIMIT if there would be more than HE_SUBDIVIDE_ROWS, before memory is allocated.
  * Returns HE_NOT_TRIANGLE naming a face, if loop or sqrt3 meets one that is no triangle.
  * Returns HE_DOUBLED_EDGE naming an edge, if it has two triangles with the same three corners and
  * the scheme is not catmull_clark.
- * Returns HE_LOCKED_ELEMENT naming it, if an edge that sqrt3 would flip, or a face beside one, is
- * locked.
+ * Returns HE_LOCKED_ELEMENT, naming an element, if an edge that sqrt3 would flip, or a face beside
+ * one, is locked.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch gave up. */
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
                                     he_subdivide_counts *counts, he_error *err);
 
-/* Finds out from the mesh's counts alone, in constant time, whether he_subdivide must refuse for
- * its limit. HE_OK is no promise: linear makes more of polygons, and sqrt3 of sharp edges.
- * Returns HE_LIMIT if it must. */
+/* Decides from the mesh's counts alone, in constant time, whether he_subdivide will certainly
+ * refuse because of its limit. HE_OK is no promise, because `linear` makes more elements of
+ * polygons, and `sqrt3` of sharp edges, than is assumed.
+ * Returns HE_LIMIT if it will certainly refuse. */
 HE_NODISCARD he_status he_subdivide_fits(const he_mesh *m, he_scheme scheme, unsigned steps,
                                          he_error *err);
 

@@ -1,4 +1,4 @@
-/* Computes the attributes of a finer mesh, as subdivide.h says. */
+/* subdivide_carry.c - computes the attributes of a subdivided mesh by the rules in subdivide.h. */
 #include "algo/subdivide_step.h"
 
 #include "mesh/marks.h"
@@ -16,7 +16,8 @@ static bool has_columns(const he_content *c, he_kind domain)
     return false;
 }
 
-/* Makes an array of `count` ids that are all HE_NONE, if there are columns. */
+/* Makes an array of `count` ids that are all HE_NONE, if the mesh has attribute columns of this
+ * domain. */
 static bool reserve(const he_content *c, he_kind domain, uint32_t count, uint32_t **out)
 {
     if (!has_columns(c, domain)) {
@@ -44,7 +45,7 @@ he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err)
                 : he_fail_plain(err, HE_NO_MEMORY, "no memory to carry the attributes along");
 }
 
-/* --- numbers of any type --- */
+/* --- attribute values of any numeric type, as doubles --- */
 
 static double get(const he_column *column, size_t row, uint32_t component)
 {
@@ -75,7 +76,7 @@ static double get(const he_column *column, size_t row, uint32_t component)
     return 0;
 }
 
-/* Integers and booleans round to nearest. */
+/* Writes a number as the type of the column. Integers and booleans are rounded to nearest. */
 static void put(he_column *column, size_t row, uint32_t component, double value)
 {
     unsigned char *at = he_column_row(column, row) + component * he_type_bytes(column->type);
@@ -108,7 +109,7 @@ static void put(he_column *column, size_t row, uint32_t component, double value)
 
 /* --- vertices --- */
 
-/* Three components at a time are computed like positions. */
+/* Computes a column of vertices with the rules for positions, three components at a time. */
 static he_status smooth_column(const he_subdivide_step *s, const he_column *from, he_column *to,
                                he_error *err)
 {
@@ -127,7 +128,7 @@ static he_status smooth_column(const he_subdivide_step *s, const he_column *from
         }
         status = he_subdivide_place(s, before, after, err);
         for (uint32_t v = 0; v < fine && status == HE_OK; v++) {
-            /* Dead rows have the default. */
+            /* The rows of deleted elements keep the default. */
             if (s->to->vertex_halfedge[v] == HE_DEAD) {
                 continue;
             }
@@ -204,8 +205,8 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
                                he_error *err)
 {
     he_status status = HE_OK;
-    /* A corner that copies another one comes after it, because the first edge inside a face is the
-     * lowest. */
+    /* A corner that copies another corner has a higher id, because the first edge inside a face is
+     * the lowest, so one pass in the order of ids suffices. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
         status = he_watch_at(s->watch, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);
@@ -220,8 +221,8 @@ static bool is_feature(const he_column *column)
     return column->domain == HE_EDGE && he_is_mark(column, "feature");
 }
 
-/* Old rows keep their value; rows with a parent have the parent's unless the rule is default.
- * `parents` NULL: none has one. */
+/* Copies a column: old rows keep their value, and new rows with a parent get the parent's value
+ * unless the attribute's rule is default. If `parents` is NULL, no row has a parent. */
 static void carry_rows(const he_column *from, he_column *to, size_t issued, const uint32_t *parents)
 {
     for (size_t row = 0; row < to->rows; row++) {
@@ -294,7 +295,8 @@ he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err)
     if (to->columns == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the attributes");
     }
-    /* Slots stay, because records of other revisions name them. */
+    /* Each column keeps its slot, because the records of other revisions refer to columns by
+     * slot. */
     to->column_count = to->column_capacity = from->column_count;
     he_status status = HE_OK;
     for (size_t i = 0; i < from->column_count && status == HE_OK; i++) {

@@ -1,9 +1,10 @@
-/* Computes the positions of vertices. The weights are those of the papers in subdivide.h; none is
- * negative, so a refined mesh stays in the box of the old one.
+/* subdivide_rules.c - computes the positions of vertices of a subdivided mesh. The weights are
+ * those of the papers in subdivide.h; none is negative, so a refined mesh stays in the bounding box
+ * of the old one.
  *
- * For each old vertex `to` first gets the sum that its rule needs: of its neighbours (for
- * catmull_clark also of the means of its faces) or, on a curve, of its two neighbours there; then
- * the vertex is moved. */
+ * Two passes: for each old vertex the array `to` first gets the sum that its rule needs, which is
+ * that of its neighbours (for catmull_clark also of the means of its faces) or, on a curve, of its
+ * two neighbours there. Then the vertex is moved. */
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
@@ -23,7 +24,8 @@ static inline void gather(he_vec3 *to, he_vec3 what)
     *to = he_vec3_add(*to, what);
 }
 
-/* A rule: the weights of a smooth vertex itself and of its sum. */
+/* A subdivision rule: the weight of a smooth vertex itself, and that of the sum over its
+ * neighbours. */
 typedef struct weights {
     double own, sum;
 } weights;
@@ -52,7 +54,7 @@ static uint8_t sharpness(const he_subdivide_step *s, uint32_t v)
     return s->sharp == NULL ? 0 : s->sharp[v];
 }
 
-/* Adds edge e, from a to b, to the sums of its ends. */
+/* Adds each end of edge e to the sum of the other end, if the rule of that vertex needs it. */
 static inline void gather_ends(const he_subdivide_step *s, uint32_t e, const he_vec3 *from,
                                he_vec3 *to)
 {
@@ -83,7 +85,7 @@ static uint32_t middle(const he_subdivide_step *s, uint32_t e)
     return s->from->vertices.issued + he_subdivide_edge_rank(s, e);
 }
 
-/* --- edges, by scheme: the vertices on them, and their share in the sums of both ends --- */
+/* --- points on edges, by scheme, and what an edge adds to the sums of its ends --- */
 
 static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *from, he_vec3 *to)
 {
@@ -98,13 +100,13 @@ static void loop_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *fro
     to[middle(s, e)] = mix(0.375, ends, 0.125, he_vec3_add(from[left], from[right]));
 }
 
-/* Returns the mean of face f, from `to`. */
+/* Returns the mean of the corners of face f, which was stored in `to` before. */
 static he_vec3 face_point(const he_subdivide_step *s, uint32_t f, const he_vec3 *to)
 {
     return to[s->from->vertices.issued + s->from->edges.live + he_subdivide_face_rank(s, f)];
 }
 
-/* Returns the means of the faces beside edge e; zero if there is none. */
+/* Returns the means of the two faces beside edge e; zero where there is no face. */
 static void find_sides(const he_subdivide_step *s, uint32_t e, const he_vec3 *to, he_vec3 sides[2])
 {
     const he_content *c = s->from;
@@ -147,15 +149,16 @@ static void linear_edge(const he_subdivide_step *s, uint32_t e, const he_vec3 *f
     to[middle(s, e)] = mix(0.5, a, 0.5, b);
 }
 
-/* Returns the point on a sharp edge at a third from a to b; all sums must be complete. At the end
- * of a curve the edge is extended straight beyond a. */
+/* Returns the point on a sharp edge at a third of the way from a to b; the sums of all vertices
+ * must be complete. At the end of a curve the edge is extended straight beyond a. */
 static he_vec3 third_from(const he_subdivide_step *s, uint32_t a, uint32_t b, const he_vec3 *from,
                           const he_vec3 *to)
 {
     if (sharpness(s, a) != CURVE) {
         return mix(2.0 / 3, from[a], 1.0 / 3, from[b]);
     }
-    /* The sum contains b once already. */
+    /* The sum of the neighbours of a contains b once already, so b has the weight 9/27, not
+     * 10/27. */
     return he_vec3_add(mix(16.0 / 27, from[a], 9.0 / 27, from[b]), he_vec3_scale(to[a], 1.0 / 27));
 }
 
@@ -172,7 +175,7 @@ static void cut_in_thirds(const he_subdivide_step *s, const he_vec3 *from, he_ve
     }
 }
 
-/* The data for computing positions. */
+/* The data that the parallel loops need for computing positions. */
 typedef struct placing {
     const he_subdivide_step *s;
     const he_vec3 *from;
@@ -192,7 +195,7 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     for (uint32_t n = 1; n < TABLE; n++) {
         table[n] = weights_of(s->scheme, n);
     }
-    /* Vertices of a curve that is not cut do not move. */
+    /* The vertices of a curve whose edges are not cut in this step do not move. */
     weights curve = s->scheme != HE_SQRT3 ? (weights){0.75, 0.125}
                     : s->thirds           ? (weights){19.0 / 27, 4.0 / 27}
                                           : (weights){1, 0};
@@ -209,7 +212,8 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* catmull_clark and sqrt3: a face's number, or a table, says which vertex is in it. */
+/* Computes the vertices inside faces for catmull_clark and sqrt3. The number of a face, or a table,
+ * says which vertex is inside it. */
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -232,7 +236,7 @@ static he_status place_centres(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* linear: only faces that are no triangles have a vertex in them. */
+/* Computes the vertices inside faces for the scheme linear, where triangles have none. */
 static he_status place_some_centres(const placing *p, he_error *err)
 {
     const he_content *c = p->s->from;
@@ -275,7 +279,8 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* One thread does this alone, because a floating-point sum depends on the order of its terms. */
+/* Adds up the sums of all vertices. One thread does this alone, because a floating-point sum
+ * depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -331,7 +336,7 @@ static he_status smooth(const he_subdivide_step *s, const he_vec3 *from, he_vec3
 
 /* --- large coordinates --- */
 
-/* Sums of coordinates up to this do not overflow. */
+/* If no coordinate is larger than this, sums of coordinates do not overflow. */
 static const double LARGE = 1e290;
 
 static bool is_large(const he_vec3 *p, uint32_t count)

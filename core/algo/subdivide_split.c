@@ -1,4 +1,5 @@
-/* Writes the links for schemes that cut every edge in halves: loop, catmull_clark, linear. */
+/* subdivide_split.c - writes the links for the schemes that cut every edge in halves: loop,
+ * catmull_clark and linear. */
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
@@ -23,7 +24,7 @@ static uint32_t second(const he_subdivide_step *s, uint32_t h)
     return (h & 1) == 0 ? other_half(s, h) : h;
 }
 
-/* Ids of the new elements of the present face. */
+/* The ids that the next new elements of the face being cut will get. */
 typedef struct fresh {
     uint32_t vertex, edge, face;
 } fresh;
@@ -35,7 +36,7 @@ static void note_faces(const he_subdivide_step *s, uint32_t f, uint32_t first_fa
     }
 }
 
-/* Notes how to compute the corner at the origin of h, the two at its middle and those inside. */
+/* Records how to compute the values of the new corners along h: at its origin and at its middle. */
 static void note_corner(const he_subdivide_step *s, uint32_t h, uint32_t next)
 {
     s->corner_from[first(s, h)] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
@@ -73,8 +74,8 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
     at->face += 3;
 }
 
-/* Makes quads between the corners and a vertex inside, to which edge i runs from the middle of
- * half-edge i. */
+/* Cuts face f into quads between its corners and a new vertex inside, to which edge i runs from the
+ * middle of the i-th half-edge. */
 static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_halfedge, fresh *at)
 {
     const he_content *from = s->from;
@@ -143,7 +144,7 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     return HE_OK;
 }
 
-/* Counts the new elements of face f, which is live. */
+/* Counts the new elements of face f, which must be live. */
 static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
 {
     const he_content *from = s->from;
@@ -161,7 +162,8 @@ static void count_face(const he_subdivide_step *s, uint32_t f, fresh *at)
     at->face += count - 1;
 }
 
-/* Faces are cut in lanes, each of which must know how many elements those before it make. */
+/* The data for cutting faces in lanes: consecutive ranges of faces that threads handle in parallel.
+ * Each lane must know how many elements the lanes before it make. */
 typedef struct cutting {
     const he_subdivide_step *s;
     fresh at[HE_MOST_LANES];
@@ -219,7 +221,8 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
     if (status == HE_OK) {
         status = he_run_lanes(s->watch, lanes, from->faces.issued, cut_lane, &c, err);
     }
-    /* A later lane may have found a later face first; one lane finds the first. */
+    /* With several lanes, a later lane may have found an error in a later face first. Running again
+     * in one lane finds the first, so the error does not depend on the number of threads. */
     return lanes > 1 && status != HE_OK && status != HE_CANCELLED ? cut_faces(s, 1, err) : status;
 }
 
@@ -291,7 +294,8 @@ he_status he_subdivide_split(he_subdivide_step *s, he_error *err)
     const he_content *from = s->from;
     he_status status = cut_faces(s, he_lanes(s->watch, from->faces.issued), err);
     if (status == HE_OK) {
-        /* Features are bits: neighbours share words, which two threads must not write. */
+        /* Feature flags are bits: neighbouring edges share a word, which two threads must not
+         * write, so this runs in one lane. */
         status = s->feature != NULL
                      ? he_run_lanes(s->watch, 1, from->edges.issued, cut_edges, s, err)
                      : he_run_ranges(s->watch, from->edges.issued, cut_edges, s, err);

@@ -1,7 +1,8 @@
-/* Writes the links for sqrt3, which puts a vertex into every triangle and flips the old edges.
+/* subdivide_sqrt3.c - writes the links for the scheme sqrt3, which puts a vertex into every
+ * triangle and flips the old edges.
  *
- * Of every old half-edge h there is one new triangle, before any edge is flipped the one between h
- * and the `apex` of h in its face. Two legs join them, edges inside the old face:
+ * Each old half-edge h makes one new triangle: before edges are flipped, it is the one between h
+ * and the `apex` of h, the vertex in its face. Two `legs`, edges inside the old face, join them:
  *
  *               apex(h)                   A sharp edge that is cut in three has a point p and a
  *                  o                      point q on it, and its face no vertex inside:
@@ -18,7 +19,7 @@
  * origin. */
 #include "algo/subdivide_step.h"
 
-/* A face of the old content. */
+/* A face of the coarse mesh and its three half-edges. */
 typedef struct triangle {
     uint32_t f, h[3];
     unsigned cut; /* the half-edge of the edge cut in three; 3 if there is none */
@@ -45,8 +46,8 @@ static unsigned place_of(const triangle *t, uint32_t h)
     return h == t->h[0] ? 0 : h == t->h[1] ? 1 : 2;
 }
 
-/* Returns the j-th of the three half-edges that h is cut into, and the vertex where it ends (j <
- * 2). */
+/* Returns the j-th of the three half-edges that h is cut into, and the vertex where that one ends
+ * (j < 2). */
 static uint32_t segment(const he_subdivide_step *s, uint32_t h, unsigned j)
 {
     uint32_t e = h >> 1, side = h & 1, more = s->from->edges.issued + 2 * s->third[e];
@@ -88,7 +89,8 @@ static uint32_t in_leg(const he_subdivide_step *s, uint32_t h)
     return i == (t.cut + 1) % 3 ? segment(s, t.h[t.cut], 2) : 2 * s->spoke[t.f];
 }
 
-/* Returns how to compute the corner at the apex of h. */
+/* Returns how to compute the values of the corner at the apex of h, the new vertex in the face of
+ * h. */
 static he_corner_source at_apex(const he_subdivide_step *s, uint32_t h)
 {
     triangle t = triangle_of(s, s->from->face[h]);
@@ -105,7 +107,8 @@ static he_corner_source at_row(uint32_t h)
     return (he_corner_source){h, HE_NONE, HE_FROM_ROW};
 }
 
-/* The three half-edges of a new triangle, where they start, and how to compute their corners. */
+/* One corner of a new triangle: its half-edge, the vertex that leaves, and how to compute its
+ * values. */
 typedef struct corner {
     uint32_t h, origin;
     he_corner_source source;
@@ -122,7 +125,7 @@ static void put(const he_subdivide_step *s, uint32_t face, const corner c[3])
     s->to->face_halfedge[face] = c[0].h;
 }
 
-/* Writes the triangle of the i-th half-edge. */
+/* Writes the triangle between the i-th half-edge of an old face and its apex. */
 static void put_part(const he_subdivide_step *s, const triangle *t, unsigned i, uint32_t face)
 {
     const he_content *from = s->from;
@@ -170,7 +173,7 @@ static void put_face(const he_subdivide_step *s, uint32_t f)
     }
 }
 
-/* A boundary half-edge stays, or is cut in three. */
+/* Writes a boundary half-edge, which stays or is cut in three. */
 static void put_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;

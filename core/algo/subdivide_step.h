@@ -1,19 +1,13 @@
-/* subdivide_step.h - one step of subdivide: makes a finer content from a content.
- *
- *     subdivide.c         sizes, room, steps, and the replace
- *     subdivide_split.c   links where edges are cut in halves (loop, catmull_clark, linear)
- *     subdivide_sqrt3.c   links where edges are flipped
- *     subdivide_rules.c   positions of vertices
- *     subdivide_carry.c   attributes
- *
- * Ids of new elements count from the rows issued in `from`, in the order of subdivide.h. */
+/* subdivide_step.h - one step of subdivide: makes the content of the finer mesh from that of the
+ * coarser one. */
 #ifndef HE_ALGO_SUBDIVIDE_STEP_H
 #define HE_ALGO_SUBDIVIDE_STEP_H
 
 #include "algo/subdivide.h"
 #include "mesh/layout.h"
 
-/* The sizes of a content after a step. 64 bits, because estimates exceed what fits. */
+/* The sizes of a mesh's content after a step. They have 64 bits because an estimate may exceed what
+ * fits into a mesh. */
 typedef struct he_sizes {
     uint64_t vertices, edges, faces; /* rows */
     uint64_t live_vertices, live_edges, live_faces;
@@ -44,7 +38,7 @@ typedef struct he_subdivide_step {
     he_scheme scheme;
     bool thirds;    /* sqrt3: sharp edges are cut in three */
     bool polygonal; /* there are faces that are no triangles */
-    /* The rank of a live row among the live ones; NULL if all rows live. */
+    /* Each live row's index among the live rows; NULL if all rows are live. */
     uint32_t *edge_rank, *face_rank;
     uint64_t *feature;      /* one bit for each edge, NULL if there are no features */
     uint64_t *feature_next; /* features of the finer content */
@@ -52,10 +46,12 @@ typedef struct he_subdivide_step {
     uint32_t fixed_count;
     uint8_t *sharp; /* sharp edges of each vertex, at most 3; 3 if fixed. NULL: all are smooth */
     uint32_t *degree;
-    /* sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp edge) and the first
-     * edge inside; for each edge cut in three its number among those, else HE_NONE. */
+    /* Only for the scheme sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp
+     * edge) and the first edge inside; for each edge that is cut in three its index among those
+     * edges, else HE_NONE. */
     uint32_t *centre, *spoke, *third;
-    /* Parents of new rows, indexed from the first new row; only if there are columns. */
+    /* The parents of new rows, starting with the first new row. They are made only if the mesh has
+     * attribute columns. */
     uint32_t *vertex_from, *edge_from, *face_from; /* an edge inside a face has HE_NONE */
     he_corner_source *corner_from;                 /* for every half-edge of `to` */
 } he_subdivide_step;
@@ -79,8 +75,8 @@ static inline bool he_subdivide_is_sharp(const he_subdivide_step *s, uint32_t e)
            (s->feature != NULL && he_bits_get(s->feature, e));
 }
 
-/* Has the face of h the same three vertices as the one of its twin, whose next half-edge is
- * `after`? Both are triangles. */
+/* Returns true if the face of h has the same three vertices as the face of twin(h). Both are
+ * triangles; `after` is the half-edge after twin(h). */
 static inline bool he_subdivide_is_doubled(const he_content *from, uint32_t h, uint32_t after)
 {
     uint32_t f = from->face[h];
@@ -95,16 +91,18 @@ static inline void he_subdivide_set(he_content *to, uint32_t h, uint32_t next, u
     to->face[h] = face;
 }
 
-/* Writes the links of `to`, with the vertices' half-edges, features and parents. */
+/* Writes the links of the finer content `to`, with the vertices' stored half-edges, the features
+ * and the parents. */
 HE_NODISCARD he_status he_subdivide_split(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err);
 
-/* Computes vectors of `to` from those of `from`, by the scheme's rules: positions, or three
- * components of a column. Finite if `from` is, however large. */
+/* Computes vectors of the finer content from those of the coarser one by the scheme's rules:
+ * positions, or three components of an attribute. They are finite if those in `from` are, however
+ * large. */
 HE_NODISCARD he_status he_subdivide_place(const he_subdivide_step *s, const he_vec3 *from,
                                           he_vec3 *to, he_error *err);
 
-/* Makes the arrays of parents that the columns need. */
+/* Makes the arrays of parents, if attribute columns need them. */
 HE_NODISCARD he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err);
 

@@ -32,7 +32,7 @@
 typedef struct he_chords {
     uint32_t n;
     he_ids corner; /* n half-edges of the face, the stored one last */
-    /* For each chord the indices of two corners, the lower one first. A chord comes after all
+    /* The two corners of each chord, by their indices, the lower one first. A chord comes after all
      * chords between its corners. */
     he_ids pairs;
     /* used while planning */

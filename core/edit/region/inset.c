@@ -104,8 +104,8 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
                            "face %u has no area: give a factor", r->faces.ids.ids[index]);
         }
     }
-    /* For each corner on the rim, the half-edge that arrives there is the one that leaves the
-     * corner before it. */
+    /* The half-edge that arrives at a corner of the rim is the one that leaves the corner before
+     * it. */
     for (size_t i = 0; i < r->rim.count; i++) {
         he_halfedge h = {r->rim.ids[i]};
         uint32_t after = he_idmap_find(&r->corners, he_target(m, h).i);
