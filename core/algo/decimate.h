@@ -76,6 +76,7 @@ typedef struct he_decimated {
 
 /* decimate: V - n for n collapses. A collapse deletes one face at a boundary edge, two at an
  * interior edge, and the edges accordingly.
+ *
  * The work is done in a copy, and then each word that differs is written once. If more than
  * HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded as
  * one replacement that keeps ids and the old arrays; the sets of changes are then empty. That takes
@@ -85,7 +86,7 @@ typedef struct he_decimated {
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.
  * Returns HE_BAD_VALUE if an option is outside its range, which struct he_decimate_options states.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 enum { HE_DECIMATE_RECORDED = 20000 };
 HE_NODISCARD he_status he_decimate(he_mesh *m, const he_decimate_options *options,
                                    he_decimated *out, he_error *err);

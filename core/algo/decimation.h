@@ -119,7 +119,8 @@ void he_decimation_end(he_decimation *d);
 he_vec3 he_decimation_inside(const he_decimation *d, he_vec3 outside);
 /* Computes the cheapest collapse of an edge. Returns false if neither end may be deleted. */
 bool he_decimation_cost(const he_decimation *d, he_edge e, he_candidate *out);
-/* Makes mesh `m` equal to `made`, a copy of it that was decimated. */
+/* Makes mesh `m` equal to `made`, a copy of it that was decimated.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                                            he_error *err);
 /* Decides whether an edge belongs in the queue, ASIDE or DEAR (see the head of decimation.h), and
@@ -131,7 +132,10 @@ void he_decimation_put(he_decimation *d, he_edge e, he_edge_place place, const h
 /* Returns the edges of vertices that have the flag HE_NODE_LATE to the queue: vertices of many
  * edges that were not tried again after changes. Returns false if there are none. */
 bool he_decimation_catch_up(he_decimation *d);
-/* Collapses an edge and updates the vertices' quadrics and the queue. */
+/* Collapses an edge and updates the vertices' quadrics and the queue.
+ * Returns HE_LIMIT if a face would flip.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns the error of he_edge_collapse if that refuses. */
 HE_NODISCARD he_status he_decimation_collapse(he_decimation *d, const he_candidate *what);
 
 #endif

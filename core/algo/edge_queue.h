@@ -33,7 +33,8 @@ typedef struct he_edge_queue {
     size_t word; /* no word before it has a bucket with edges */
 } he_edge_queue;
 
-/* Makes a queue with room for `edges` edges. The caller must clear it, even after a failure. */
+/* Makes a queue with room for `edges` edges. The caller must clear it, even after a failure.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD static inline he_status he_queue_init(he_edge_queue *queue, uint32_t edges,
                                                    he_error *err)
 {

@@ -1,5 +1,19 @@
 /* progressive.h - a progressive mesh: a coarse mesh and the vertex splits that lead back to the
- * original. */
+ * original.
+ *
+ * H. Hoppe, "Progressive meshes", 1996: a decimation is recorded collapse by collapse, and each
+ * collapse is undone by a vertex split. Undone in reverse order, they lead through all levels of
+ * detail to the original mesh, with equal ids, ends of edges, corners of faces and positions.
+ *
+ *              c                               c
+ *              o                               o
+ *            /   \                           / | \
+ *       m1 /       \                    m1 / f | g \       `moved` faces have `vertex` where
+ *        o     o     o      --->         o u o-->o v o     they had `from`; `left_face` is
+ *          \   v   /                       \   h   /       u, v, c and `right_face` v, u, d
+ *       m2   \   /                      m2   \ | /
+ *              o                               o
+ *              d                               d */
 #ifndef HE_ALGO_PROGRESSIVE_H
 #define HE_ALGO_PROGRESSIVE_H
 
@@ -34,7 +48,7 @@ typedef struct he_progressive {
  * with these options. `watch`, which may be NULL, need not be the watch of the mesh: other threads
  * may read the mesh meanwhile. Returns the errors of he_decimate, too.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
                                           he_watch *watch, he_progressive *out, he_error *err);
 void he_progressive_clear(he_progressive *progressive);

@@ -51,7 +51,10 @@ size_t he_shape_params(const he_shape *shape);
 void he_shape_defaults(const he_shape *shape, double args[HE_SHAPE_PARAMS]);
 
 /* Checks the arguments of a shape. On failure `*param` (which may be NULL) is the index of the bad
- * argument. */
+ * argument.
+ * Returns HE_NOT_FINITE if an argument is not finite.
+ * Returns HE_BAD_VALUE if an argument is outside its range, or has a fraction where it must be
+ * whole. */
 HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                       size_t *param, he_error *err);
 /* Makes a soup of the shape, which the caller clears; he_build accepts every such soup. Returns the
@@ -59,7 +62,7 @@ HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[H
  * Returns HE_LIMIT if the soup would have more vertices, faces, corners or bytes than `limits`
  * allow. If `limits` is NULL, only the limits of meshes apply.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                      const he_limits *limits, he_soup *out, he_error *err);
 

@@ -1,5 +1,13 @@
 /* subdivide_step.h - one step of subdivide: makes the content of the finer mesh from that of the
- * coarser one. */
+ * coarser one.
+ *
+ *     subdivide.c         sizes, room, steps, and the replace
+ *     subdivide_split.c   links where edges are cut in halves (loop, catmull_clark, linear)
+ *     subdivide_sqrt3.c   links where edges are flipped
+ *     subdivide_rules.c   positions of vertices
+ *     subdivide_carry.c   attributes
+ *
+ * Ids of new elements count from the rows issued in `from`, in the order of subdivide.h. */
 #ifndef HE_ALGO_SUBDIVIDE_STEP_H
 #define HE_ALGO_SUBDIVIDE_STEP_H
 

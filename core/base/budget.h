@@ -26,7 +26,7 @@ HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 
 /* Charges `steps` of work that the caller is about to do.
  * Returns HE_LIMIT if fewer steps are left; the budget is then empty.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD static inline he_status he_budget_take(he_budget *budget, uint64_t steps,
                                                     he_error *err)
 {

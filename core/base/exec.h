@@ -45,7 +45,7 @@ typedef he_status (*he_range)(void *context, uint32_t which, size_t from, size_t
 /* Returns into how many ranges he_run_ranges cuts `count` rows. */
 size_t he_ranges(size_t count);
 /* Calls `work` once for each range, in any order.
- * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns the error of `work` if it fails. */
 HE_NODISCARD he_status he_run_ranges(he_watch *watch, size_t count, he_range work, void *context,
                                      he_error *err);

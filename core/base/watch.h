@@ -44,10 +44,10 @@ void he_watch_init(he_watch *watch, bool (*tell)(void *context, const char *phas
 /* Begins a span: the work that follows, until the next span, ends at fraction `to` of the whole. */
 void he_watch_span(he_watch *watch, double to);
 /* Begins the next phase, which ends at fraction `to` of its span.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_watch_phase(he_watch *watch, const char *name, double to, he_error *err);
 /* Reports that step `i` of `count` of the phase is reached.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_watch_step(he_watch *watch, uint64_t i, uint64_t count, he_error *err);
 
 /* he_watch_step that reports only every HE_WATCH_STRIDE steps, for cheap steps in a loop. */

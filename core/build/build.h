@@ -83,7 +83,7 @@ he_status he_report_fail(const he_report *report, he_error *err);
 
 /* Counts the defects that he_build would find in a soup; 0 means that it would make a mesh.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
 /* Makes a mesh, which the caller owns. A soup with defects fails with the reason and element of the
@@ -92,7 +92,7 @@ HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_e
  * success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 enum { HE_BUILD_TAKE = 1 };
 HE_NODISCARD he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report,
                                 he_error *err);

@@ -13,7 +13,7 @@
  * that differ.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_soup_keep_values(he_soup *soup, const uint32_t *into,
                                            const uint32_t *from, uint64_t *moved, he_error *err);
 /* Turns the vertex attribute of this name, if there is one, into one of corners: each corner gets

@@ -10,7 +10,7 @@
  * of the vertices, which exist already. Edges are numbered as build.h says. turns->turn becomes the
  * half-edge of each corner; turns->first is read.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_build_links(const he_corners *corners, he_turns *turns, he_content *c,
                                       he_error *err);
 

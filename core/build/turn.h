@@ -30,7 +30,7 @@ typedef struct he_turns {
  * *total get them and `out` is as it was. If some faces are not valid, only those are reported:
  * rest.h checks the others.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report,
                                     uint64_t *total, he_error *err);
 void he_turns_clear(he_turns *turns);

@@ -38,7 +38,7 @@ bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
  * NaN for edges where he_edge_dihedral returns false, and in dead rows. Each face is measured once,
  * so the time is linear in the half-edges however many corners a face has.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up; the array is then half written. */
+ * Returns HE_CANCELLED if the watch cancelled the work; the array is then half written. */
 HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out,
                                          he_error *err);
 
@@ -76,7 +76,7 @@ bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *
 /* Find the normals of the whole mesh, into an array of one entry for each issued row, in linear
  * time. Dead and degenerate rows are zero. `watch`, which may be NULL, can cancel the work and
  * lends threads to he_face_normals. On failure the array is half written.
- * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_CORRUPT if links do not close. */
 HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out,
                                        he_error *err);
@@ -93,7 +93,7 @@ HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_
  * array of one entry for each issued half-edge in linear time, with the threads of `watch`. On
  * failure the array is half written.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_CORRUPT if links do not close. */
 HE_NODISCARD he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease,
                                         he_vec3 *out, he_error *err);

@@ -31,7 +31,7 @@ typedef struct he_near {
 /* Makes room for `most` kept points. `seed` and the address of the table keep a file from choosing
  * points that all fall into one slot. `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_near_make(he_near *out, const he_vec3 *points, size_t most,
                                     double tolerance, uint64_t seed, he_watch *watch,
                                     he_error *err);

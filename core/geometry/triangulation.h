@@ -60,7 +60,7 @@ enum { HE_AVOID_EDGES = 1, HE_ANY_DIAGONALS = 2 };
  * frees.
  * Returns HE_DOUBLED_EDGE if no triangulation was found that avoids the existing edges.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
                                              he_triangulation_work *work, he_triangulation *out,
                                              he_error *err);
@@ -73,7 +73,7 @@ void he_triangulation_work_clear(he_triangulation_work *work);
 bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
 /* To be called between two cuts.
- * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_NO_MEMORY if memory for the index of edges is out. */
 HE_NODISCARD he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work,
                                              he_error *err);

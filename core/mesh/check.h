@@ -23,7 +23,7 @@ typedef struct he_problem {
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);
 /* he_check with a watch, which is stepped between the passes.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
                                         size_t capacity, size_t *total, he_error *err);
 

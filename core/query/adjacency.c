@@ -42,9 +42,9 @@ static void turn_clockwise(he_ids *ids, size_t from)
     }
 }
 
-/* What each half-edge of a walk contributes. */
+/* What each half-edge of a walk contributes to the list of neighbours. */
 typedef enum reading { ITSELF, TWIN, EDGE, ORIGIN, TARGET, FACE } reading;
-/* How a walk goes on from a half-edge. */
+/* How a walk goes on from a half-edge: about its origin, or around its face. */
 typedef enum way { TURN, NEXT } way;
 
 static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
@@ -66,7 +66,8 @@ static ALWAYS_INLINE uint32_t read(const he_mesh *m, uint32_t h, reading what)
     return HE_NONE;
 }
 
-/* Returns the half-edge from which a walk of this kind starts; HE_NONE at an isolated vertex. */
+/* Returns the half-edge from which the walk for an element of this kind starts; HE_NONE at an
+ * isolated vertex. */
 static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t id)
 {
     if (kind == HE_VERTEX) {
@@ -75,9 +76,9 @@ static ALWAYS_INLINE uint32_t start_of(const he_mesh *m, he_kind kind, uint32_t 
     return kind == HE_FACE ? m->c.face_halfedge[id] : id;
 }
 
-/* The one loop of all relations that walk. It is inlined into each with `kind`, `path` and `what`
- * known, so that a dense query of a million vertices runs without a branch on them. Dead and absent
- * links lead past the end of a row table; that is tested before the row is read. */
+/* The loop that all relations use. It is inlined into each of them with `kind`, `path` and `what`
+ * known, so that a query for a million vertices runs without a branch on them. Dead and absent
+ * links point past the end of a table, which is tested before a row is read. */
 static ALWAYS_INLINE he_status walk(const he_mesh *m, he_gather *g, he_kind kind, way path,
                                     reading what, he_error *err)
 {
@@ -187,10 +188,12 @@ static he_status halfedge_ring(const he_mesh *m, he_gather *g, he_error *err)
     return walk(m, g, HE_HALFEDGE, TURN, ITSELF, err);
 }
 
-/* Up to this many neighbours are compared one by one to find repeats; more are put into `seen`. */
+/* Up to this many neighbours are compared one by one to find repeats; more are put into the set
+ * `seen`. */
 enum { FEW = 16 };
 
-/* Appends `face` to the run that began at `from`, unless the run contains it. */
+/* Appends `face` to the neighbours of an element, which begin at index `from`, unless it is among
+ * them already. */
 static he_status add_once(he_ids *ids, size_t from, he_idmap *seen, uint32_t face, he_error *err)
 {
     uint32_t index;
@@ -258,8 +261,8 @@ static he_status face_faces(const he_mesh *m, he_gather *g, he_error *err)
     return HE_OK;
 }
 
-/* Appends what both half-edges of each edge contribute. Two elements are in one order in both
- * directions. */
+/* Appends what the two half-edges of each edge contribute. The order of two elements is equal
+ * clockwise and counter-clockwise. */
 static ALWAYS_INLINE he_status sides(const he_mesh *m, he_gather *g, reading what, he_error *err)
 {
     for (size_t i = 0; i < g->count; i++) {
@@ -361,8 +364,9 @@ he_status he_relation_append(const he_mesh *m, const he_relation *relation, uint
     return status;
 }
 
-/* Returns an upper bound of the answer for all elements, which is exact for most relations; 0 if
- * the mesh's size gives none (each half-edge of a big face has the whole loop). */
+/* Returns an upper bound of the number of neighbours of all elements, which is exact for most
+ * relations; 0 if the mesh's size gives no bound (each half-edge of a big face has the whole
+ * loop). */
 static uint64_t bound(const he_mesh *m, const he_relation *relation)
 {
     return relation->of == HE_HALFEDGE ? 0 : 2u * (uint64_t)m->c.edges.live;

@@ -22,8 +22,8 @@
  * (a face that shares several edges) is listed only once, the first time. With HE_CLOCKWISE the
  * first element stays first and the others follow backwards.
  *
- * No walk is longer than the number of half-edges: links that do not close give HE_CORRUPT. Costs
- * are proportional to what is visited. */
+ * No walk is longer than the number of half-edges: links that do not close give HE_CORRUPT. A walk
+ * takes time proportional to what it visits. */
 #ifndef HE_QUERY_ADJACENCY_H
 #define HE_QUERY_ADJACENCY_H
 
@@ -37,13 +37,14 @@ struct he_gather; /* where a relation's function puts its ids; private to adjace
 typedef struct he_relation {
     he_kind of, gives;
     const char *name;
-    /* Called by the functions below only. */
+    /* Appends the neighbours of one element, without checks. Only the functions declared below call
+     * it. */
     he_status (*append)(const he_mesh *m, struct he_gather *out, he_error *err);
 } he_relation;
 
 size_t he_relation_count(void);
 const he_relation *he_relation_at(size_t i);
-/* Returns NULL if this kind has no relation of that name. */
+/* Returns the relation of elements of the kind `of` that has this name, NULL if there is none. */
 const he_relation *he_relation_find(he_kind of, const char *name, size_t length);
 
 /* Appends the neighbours of one element to `out`.
@@ -60,17 +61,18 @@ typedef struct he_dense {
 } he_dense;
 
 /* Finds the neighbours of many elements. `of` lists `count` elements, which may repeat; NULL means
- * all live ones by rising id. `limit` is the most half-edges visited (0: only what 32-bit offsets
- * hold), since a list may name one vertex of a thousand neighbours a thousand times. The caller
- * clears `out`. Fails as he_relation_append does.
+ * all live elements by rising id. `limit` is the most half-edges to visit, since a list may name
+ * one vertex of a thousand neighbours a thousand times; with 0 only the size of 32-bit offsets is a
+ * limit. The caller clears `out`. Returns the errors of he_relation_append, too.
  * Returns HE_LIMIT if more half-edges would be visited. */
 HE_NODISCARD he_status he_relation_dense(const he_mesh *m, const he_relation *relation,
                                          const uint32_t *of, size_t count, unsigned flags,
                                          uint64_t limit, he_dense *out, he_error *err);
 void he_dense_clear(he_dense *dense);
 
-/* Appends the faces that have both vertices as corners, in the order about `a`: up to two if an
- * edge joins them, others if they are corners without a common edge. Costs the sum of the degrees.
+/* Appends the faces that have both vertices as corners, in the order about `a`: up to two beside
+ * the edge between them, and faces in which they are corners without a common edge. Takes time
+ * linear in the sum of the degrees.
  * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if a vertex is not live.
  * Returns HE_CORRUPT if links do not close.
  * Returns HE_NO_MEMORY if memory is out. */

@@ -9,8 +9,8 @@
 
 enum {
     BINS = 16,
-    /* On the way down each level leaves at most two pairs on the stack; a pair is split on either
-     * side. */
+    /* The size of the stack of pairs of nodes: each level on the way down leaves at most two pairs
+     * on it, and a pair may be split on either side. */
     PAIRS = 6 * HE_BOXES_STACK
 };
 
@@ -51,7 +51,7 @@ static double middle(const he_bounds *b, int axis)
 
 /* --- splitting --- */
 
-/* A run of `order` that will become a node. */
+/* A run of `order`, which lists the things, that will become a node of the tree. */
 typedef struct run {
     uint32_t node, first, count, depth;
     uint32_t least, most; /* lowest and highest group of its things */
@@ -68,7 +68,8 @@ static uint32_t group_of(const builder *b, uint32_t thing)
     return b->group == NULL ? 0 : b->group[thing];
 }
 
-/* Returns the box by which a thing of a run is placed: its own or its group's. */
+/* Returns the box by which a thing is placed while its run is divided: its own box, or that of its
+ * group. */
 static const he_bounds *place_of(const builder *b, const run *r, uint32_t i)
 {
     uint32_t thing = b->tree.order[r->first + i];
@@ -82,8 +83,8 @@ static int bin_of(const cut *c, const he_bounds *b)
     return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
 }
 
-/* Finds the cheapest cut along one axis. Returns its cost, DBL_MAX if all things would be on one
- * side. */
+/* Finds the cheapest cut of a run along one axis. Returns its cost; DBL_MAX if all things would be
+ * on one side. */
 static double cut_along(const builder *b, const run *r, cut *c)
 {
     uint32_t counts[BINS] = {0};
@@ -156,7 +157,7 @@ static bool goes_left(const builder *b, const run *r, const cut *c, uint32_t i)
     return bin_of(c, place_of(b, r, i)) < c->bin;
 }
 
-/* Divides the run; returns how many things are on the left. */
+/* Divides the run in two by the cheapest cut; returns how many things are on the left. */
 static uint32_t divide(builder *b, const run *r)
 {
     cut c = {.axis = -1};
@@ -193,7 +194,7 @@ static he_status grow(builder *b, he_error *err)
     return HE_OK;
 }
 
-/* Returns the next float that is not greater, or not less. */
+/* Return the nearest float that is not greater than x, and the nearest that is not less. */
 static float downward(double x)
 {
     float near = (float)x;
@@ -205,7 +206,7 @@ static float upward(double x)
     return -downward(-x);
 }
 
-/* Finds the box of a run, and which groups it contains. */
+/* Finds the box of a run, and whether it contains things of several groups. */
 static he_bounds look(const builder *b, run *r)
 {
     he_bounds bounds = he_bounds_none();
@@ -284,7 +285,8 @@ he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *
                         uint32_t groups, he_budget *budget, he_boxes *out, he_error *err)
 {
     builder b = {.boxes = boxes, .group = group, .budget = budget};
-    /* About the number of nodes if most leaves are full, and one for the first prefetch. */
+    /* This is about the number of nodes of the tree if most leaves are full, and one more, because
+     * a search prefetches a node too far. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);
@@ -336,7 +338,8 @@ static size_t split(const he_box_node *nodes, node_pair p, node_pair out[3])
         out[2] = (node_pair){a->first, a->first + 1};
         return 3;
     }
-    /* Splits the node that is no leaf, or is higher up: nodes are numbered from the root. */
+    /* Splits the node that is no leaf; if neither is, the node higher up in the tree, which has the
+     * lower number. */
     bool first = b->count > 0 || (a->count == 0 && p.a < p.b);
     for (uint32_t side = 0; side < 2; side++) {
         out[side] = first ? (node_pair){a->first + side, p.b} : (node_pair){p.a, b->first + side};

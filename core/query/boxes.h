@@ -1,4 +1,5 @@
-/* boxes.h - a bounding volume hierarchy: a binary tree of boxes over things that have boxes.
+/* boxes.h - a bounding volume hierarchy: a binary tree of boxes over things that have boxes, such
+ * as triangles.
  *
  * The tree is built top-down by binned surface area heuristics (I. Wald, "On fast construction of
  * SAH-based bounding volume hierarchies", 2007), each node down to HE_BOXES_LEAF things; from depth
@@ -27,7 +28,7 @@ typedef struct he_bounds {
     double min[3], max[3];
 } he_bounds;
 
-/* A box of floats, rounded outward. */
+/* A node of the tree, with its box in floats, which are rounded outward. */
 typedef struct he_box_node {
     float min[3], max[3];
     uint32_t first; /* index in the order, or of the first child */
@@ -41,11 +42,11 @@ typedef struct he_boxes {
     he_bounds all;
 } he_boxes;
 
-/* Return a box that contains nothing, and one that contains `b` as well. */
+/* Return a box that contains nothing, and the smallest box that contains both `a` and `b`. */
 he_bounds he_bounds_none(void);
 void he_bounds_include(he_bounds *b, const he_bounds *other);
 
-/* Makes a tree over one thing or more, in n log n time. `group` has a number below `groups` for
+/* Makes a tree over at least one thing, in O(n log n) time. `group` has a number below `groups` for
  * each thing; things of group 0 belong to no group. It is NULL if there are no groups. The caller
  * clears `out`.
  * Returns HE_NO_MEMORY if memory is out.
@@ -57,8 +58,8 @@ void he_boxes_clear(he_boxes *tree);
 
 /* The functions that visit pairs of things whose boxes intersect. */
 typedef struct he_boxes_visit {
-    /* Returns true if nothing below one node needs to be tried with anything below the other. May
-     * be NULL. Boxes that do not intersect are skipped anyhow. */
+    /* Returns true if no thing below one node needs to be tried with any thing below the other. May
+     * be NULL. Nodes whose boxes do not intersect are skipped in any case. */
     bool (*is_needless)(void *context, uint32_t a, uint32_t b);
     /* Tries the things of two leaves, or of one leaf with one another if both are one node. An
      * error ends the visit. */
@@ -66,7 +67,8 @@ typedef struct he_boxes_visit {
                             he_error *err);
 } he_boxes_visit;
 
-/* Visits each pair of leaves whose boxes intersect once, charging a step for each pair of nodes.
+/* Visits each pair of leaves whose boxes intersect once, and charges one step to the budget for
+ * each pair of nodes.
  * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work.
  * Returns the error of try_leaves if that fails. */
 HE_NODISCARD he_status he_boxes_visit_pairs(const he_box_node *nodes, const he_boxes_visit *visit,

@@ -74,8 +74,8 @@ static uint32_t end_of_face(const he_bvh *tree, uint32_t i)
     return i;
 }
 
-/* Numbers the groups of faces with many triangles, which are listed face by face. Returns the
- * number of groups, with group 0. */
+/* Numbers the groups of triangles that belong to a face with many of them. Triangles are listed
+ * face by face. Returns the number of groups, including group 0. */
 static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
 {
     uint32_t groups = 1;
@@ -90,8 +90,8 @@ static uint32_t group_faces(const he_bvh *tree, uint32_t *group)
     return groups;
 }
 
-/* Numbers the groups of hubs. A triangle at several hubs belongs to the one with the most
- * spokes. */
+/* Numbers the groups of triangles that meet at hubs (hubs.h). A triangle at several hubs belongs to
+ * the hub with the most triangles. */
 static uint32_t group_spokes(const he_bvh *tree, uint32_t groups, uint32_t *group)
 {
     const he_hubs *hubs = &tree->hubs;
@@ -118,7 +118,8 @@ static bool has_wide_faces(const he_bvh *tree)
     return false;
 }
 
-/* *group stays NULL if all triangles are of group 0. */
+/* Finds the groups of triangles that boxes cannot separate. *group stays NULL if all triangles are
+ * of group 0, which means no group. */
 static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, uint32_t **group,
                              uint32_t *groups, he_error *err)
 {
@@ -141,7 +142,7 @@ static he_status find_groups(he_bvh *tree, const he_mesh *m, he_budget *budget, 
 
 /* --- the tree --- */
 
-/* Sorts the triangles in the order of leaves. */
+/* Sorts the triangles into the order of the tree's leaves. */
 static bool arrange(he_bvh *tree, he_boxes *boxes)
 {
     he_bvh_triangle *sorted = he_mem_array(NULL, tree->count, sizeof *sorted);
@@ -167,7 +168,7 @@ static bool arrange(he_bvh *tree, he_boxes *boxes)
     if (tree->discs == NULL) {
         return false;
     }
-    /* The array shrinks; if it cannot be moved, the old one is kept. */
+    /* The array of nodes is shrunk to its size; if that fails, the larger array is kept. */
     he_box_node *nodes = he_mem_array(boxes->nodes, boxes->node_count, sizeof *nodes);
     tree->nodes = nodes == NULL ? boxes->nodes : nodes;
     tree->node_count = boxes->node_count;

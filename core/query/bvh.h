@@ -35,7 +35,8 @@ typedef struct he_bvh_triangle {
     uint32_t vertex[3], face;
 } he_bvh_triangle;
 
-/* Anyone may read the fields; only bvh.c writes them. */
+/* The tree of boxes over the triangles of a mesh. All code may read the fields; only bvh.c writes
+ * them. */
 typedef struct he_bvh {
     int exponent;
     double scale;          /* 2^-exponent */
@@ -48,12 +49,12 @@ typedef struct he_bvh {
     he_hubs hubs;
 } he_bvh;
 
-/* Makes a tree, in n log n time for n triangles. `watch`, which may be NULL, is not the mesh's:
- * other threads may read the mesh meanwhile.
+/* Makes a tree, in O(n log n) time for n triangles. `watch`, which may be NULL, need not be the
+ * watch of the mesh: other threads may read the mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if a face's id does not fit a drawing, or there are more than 2^31
- * triangles.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
+ * (drawing.h), or there are more than 2^31 triangles.
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err);
 void he_bvh_free(he_bvh *tree);
 
@@ -66,9 +67,9 @@ typedef struct he_hit {
     double distance; /* at most DBL_MAX */
 } he_hit;
 
-/* Finds the first face that a ray hits, from either side, at a distance from 0 to `max` (in the
- * mesh's lengths; may be HUGE_VAL) of its origin. The direction may have any length but zero
- * (HE_BAD_VALUE).
+/* Finds the first face that a ray hits, from either side, at a distance from 0 to `max` from its
+ * origin. Distances are in the mesh's unit; `max` may be HUGE_VAL. The direction may have any
+ * length but zero (HE_BAD_VALUE).
  *
  * A ray through an edge or a vertex hits at least one of the faces there: there are no cracks (S.
  * Woop, C. Benthin and I. Wald, "Watertight ray/triangle intersection", 2013; boxes are entered as
@@ -79,9 +80,9 @@ HE_NODISCARD he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 
                                   he_vec3 direction, double max, he_budget *budget, he_hit *out,
                                   he_error *err);
 
-/* Finds the point of the faces nearest to `point`, and within `max` of it. Among faces at one
- * distance the one with the least id is taken. C. Ericson, "Real-Time Collision Detection", 2005,
- * 5.1.5; triangles without area count as the segments they look like. */
+/* Finds the point of the faces that is nearest to `point`, if it is no farther away than `max`.
+ * Among faces at one distance the one with the least id is taken. C. Ericson, "Real-Time Collision
+ * Detection", 2005, 5.1.5; triangles without area count as the segments they look like. */
 HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point,
                                       double max, he_budget *budget, he_hit *out, he_error *err);
 
@@ -93,10 +94,11 @@ HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_v
  * orientation predicates", 2003. Triangles without area intersect nothing, and those of one face
  * are not tried against each other.
  *
- * `complete` is false if the budget ran out or `most` pairs were found, faces of many triangles
- * perhaps more than once: then there may be more. `watch` may be NULL.
+ * `complete` is set to false, and there may be more pairs, if the budget ran out or if `most` pairs
+ * were found, in which pairs of faces of many triangles may count several times. `watch` may be
+ * NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most,
                                             he_budget *budget, he_ids *pairs, bool *complete,
                                             he_error *err);

@@ -7,7 +7,7 @@ static double square(he_vec3 a)
     return he_vec3_dot(a, a);
 }
 
-/* Returns where the nearest point is on the way from a to b, from 0 to 1. */
+/* Returns where on the way from a to b the point nearest to p is: from 0 at a to 1 at b. */
 static double along(he_vec3 p, he_vec3 a, he_vec3 b)
 {
     he_vec3 ab = he_vec3_sub(b, a);
@@ -15,8 +15,8 @@ static double along(he_vec3 p, he_vec3 a, he_vec3 b)
     return t > 0 ? (t < 1 ? t : 1) : 0; /* NaN if the ends are equal: then 0 */
 }
 
-/* Finds the nearest point inside the triangle. Returns false if the foot of the perpendicular is
- * outside, or the triangle is too thin to decide. */
+/* Finds the point inside a triangle nearest to p, the foot of the perpendicular. Returns false if
+ * the foot is outside, or if the triangle is too thin to decide. */
 static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     he_vec3 u = he_vec3_sub(c[1], c[0]), v = he_vec3_sub(c[2], c[0]), w = he_vec3_sub(p, c[0]);
@@ -31,7 +31,8 @@ static bool over(he_vec3 p, const he_vec3 c[3], double weight[3])
     return weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0;
 }
 
-/* The best result of a walk so far, and the vector from there to the point. */
+/* The best result of a search for the nearest point so far, and the vector from there back to the
+ * query's point. */
 typedef struct approach {
     he_vec3 p, back;
     he_bvh_found best;
@@ -45,7 +46,7 @@ static he_vec3 from_point(he_vec3 p, const he_vec3 c[3], const double weight[3])
     return he_vec3_sub(p, q);
 }
 
-/* Returns the vector to the point from the nearest point of a triangle. */
+/* Returns the vector to p from the nearest point of a triangle. */
 static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
 {
     if (over(p, c, weight)) {
@@ -70,11 +71,11 @@ static he_vec3 nearest(he_vec3 p, const he_vec3 c[3], double weight[3])
     return back;
 }
 
-/* By this factor rounding may make a box seem farther than a triangle in it. */
+/* Rounding may make a box seem farther than a triangle in it, by at most this factor. */
 static const double SLACK = 1 + 16 * DBL_EPSILON;
 
-/* Is the triangle behind the plane through the best point so far, across the vector? Then it is
- * farther. */
+/* Returns true if a triangle is behind the plane that passes through the best point so far at a
+ * right angle to the vector from there to the query's point. Then it is farther away. */
 static bool is_behind(const approach *a, const he_vec3 c[3])
 {
     double far = a->best.far * SLACK;
@@ -103,8 +104,8 @@ static void try_triangle(approach *a, const he_bvh *tree, const he_mesh *m, uint
     }
 }
 
-/* Returns a lower bound of the squared distance to the triangles below a node; the bound may be
- * smaller than necessary once it is more than `far`. */
+/* Returns a lower bound of the squared distance from p to the triangles below a node. Once the
+ * bound exceeds `far`, it need not be the best one. */
 static double to_node(he_vec3 p, const he_bvh *tree, uint32_t at, double far)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -170,7 +171,8 @@ he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_vec3 point, do
     he_vec3 p = {ldexp(point.x, -tree->exponent), ldexp(point.y, -tree->exponent),
                  ldexp(point.z, -tree->exponent)};
     if (!(he_vec3_extent(p) < HE_BVH_FAR)) {
-        /* So far away, only the direction decides which point is nearest. */
+        /* From so far away, only the direction of the point decides which point of the mesh is
+         * nearest. */
         he_vec3_normalise(point, &p);
         p = he_vec3_scale(p, HE_BVH_FAR);
     }

@@ -2,8 +2,8 @@
 
 #include "query/bvh_walk.h"
 
-/* Discs around up to this many triangles are computed from them, larger ones from the children's
- * discs, which makes them larger with each level. */
+/* Discs around up to this many triangles are computed from the triangles; discs of larger nodes are
+ * computed from the discs of their children, which makes them looser with each level. */
 enum { PATCH = 256 };
 
 /* Twice the rounding error of a normal in floats. */
@@ -21,13 +21,14 @@ static void to_floats(he_vec3 v, float out[3])
     out[2] = (float)v.z;
 }
 
-/* Returns a float that is not less, with a margin for the rounding of the terms. */
+/* Returns a float that is not less than x, with a margin for the rounding of the terms of x. */
 static float upward(double x)
 {
     return nextafterf((float)(x * (1 + 1e-6)), HUGE_VALF);
 }
 
-/* Finds how far a point is from the centre of a disc, along its normal and across. */
+/* Finds how far a point is from the centre of a disc: along the disc's normal (`high`) and across
+ * it (`wide`). */
 static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
 {
     double along = he_vec3_dot(from, normal);
@@ -38,7 +39,7 @@ static void reach(he_vec3 from, he_vec3 normal, double *high, double *wide)
 static void set(he_bvh_disc *disc, const he_box_node *node, he_vec3 normal, double thick,
                 double radius)
 {
-    /* Never more than the box reaches. */
+    /* A disc never needs to reach farther than the box of its node. */
     double half[3], diagonal = 0, support = 0;
     const double along[3] = {fabs(normal.x), fabs(normal.y), fabs(normal.z)};
     for (int k = 0; k < 3; k++) {
@@ -59,7 +60,7 @@ static void center(he_bvh_disc *disc, const he_box_node *node)
     }
 }
 
-/* Computes the disc around a run of triangles. */
+/* Computes the disc around the triangles of a leaf or of a run of leaves. */
 static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, uint32_t begin,
                   uint32_t end, he_vec3 normal, he_bvh_disc *disc)
 {
@@ -93,7 +94,8 @@ static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_box_node *
     about(tree, m, node, node->first, node->first + node->count, normal, disc);
 }
 
-/* Returns the mean of the children's normals. */
+/* Returns the mean of the normals of a node's two children, weighted by the areas of their
+ * discs. */
 static he_vec3 mean_normal(const he_bvh_disc children[2])
 {
     he_vec3 sum = {0, 0, 0}, normal;
@@ -107,7 +109,7 @@ static he_vec3 mean_normal(const he_bvh_disc children[2])
     return normal;
 }
 
-/* Computes the disc around the discs of both children. */
+/* Computes a node's disc around the discs of both its children. */
 static void about_children(const he_box_node *node, const he_bvh_disc children[2], he_vec3 normal,
                            he_bvh_disc *disc)
 {
@@ -117,7 +119,7 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
         double high, wide;
         he_vec3 from = he_vec3_sub(of_floats(children[i].center), of_floats(disc->center));
         double same = fmin(fabs(he_vec3_dot(of_floats(children[i].normal), normal)), 1);
-        /* The margin covers a small angle lost by rounding. */
+        /* The margin covers a small angle between the discs that was lost by rounding. */
         double askew = sqrt(1 - same * same) + 1e-3;
         reach(from, normal, &high, &wide);
         thick = fmax(thick, high + children[i].thick + children[i].radius * askew);
@@ -145,7 +147,7 @@ static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
 he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, he_error *err)
 {
     he_status status = HE_OK;
-    /* Children have greater numbers than their parent, so they are done first. */
+    /* Children have greater numbers than their parent, so counting down handles them first. */
     for (uint32_t i = tree->node_count; i-- > 0 && status == HE_OK;) {
         const he_box_node *node = &tree->nodes[i];
         he_bvh_disc *disc = &tree->discs[i];

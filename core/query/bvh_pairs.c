@@ -11,7 +11,8 @@ typedef struct prism {
     double min[3], max[3];
 } prism;
 
-/* What all triangles below a node have in common: hubs, and a face. Unused entries are HE_NONE. */
+/* What all triangles below a node have in common: their hubs (hubs.h), and their face. Unused
+ * entries are HE_NONE. */
 enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
 typedef struct common {
@@ -25,7 +26,7 @@ typedef struct walk {
     uint32_t leaves; /* leaves that were tried with themselves */
 } walk;
 
-/* After this many leaves the watch gets the progress. */
+/* Progress is reported to the watch after each TOLD leaves. */
 enum { TOLD = 1024 };
 
 /* --- triangles --- */
@@ -156,7 +157,8 @@ static common of_triangle(const he_pair_search *s, uint32_t i)
     return out;
 }
 
-/* Children have greater numbers than their parent, so they are done first. */
+/* Finds what the triangles below each node have in common. Children have greater numbers than their
+ * parent, so counting down handles them first. */
 static void find_commons(walk *w)
 {
     for (uint32_t at = w->search.tree->node_count; at-- > 0;) {
@@ -173,8 +175,8 @@ static void find_commons(walk *w)
     }
 }
 
-/* Is the box outside the slab that a disc bounds? The disc's normal is rounded to floats, by less
- * than the margin here (bvh_disc.c). */
+/* Returns true if the box lies outside the slab between the two planes of a disc. The disc's normal
+ * is rounded to floats, by less than the margin here (bvh_disc.c). */
 static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
 {
     double off = 0, reach = slab->thick, size = 0;
@@ -188,7 +190,8 @@ static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
     return fabs(off) > reach + 1e-6 * size;
 }
 
-/* Used only if there are hubs or wide faces: in other meshes the boxes separate enough. */
+/* Returns true if no triangle below one node needs to be tried with one below the other. It is used
+ * only if there are hubs or faces of many triangles: in other meshes the boxes separate enough. */
 static bool is_needless(void *context, uint32_t a, uint32_t b)
 {
     const walk *w = context;

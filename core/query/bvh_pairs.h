@@ -1,7 +1,11 @@
 /* bvh_pairs.h - state shared by the two searches for intersecting triangles.
  *
- *     bvh_pairs.c      all pairs except those at one hub, down the tree of boxes
- *     bvh_sectors.c    pairs of spokes of one hub, by the directions in which they leave it */
+ * The first finds all pairs except those at one hub (hubs.h: a position at which very many
+ * triangles, its spokes, meet), down the tree of boxes; the second finds pairs of spokes of one
+ * hub, by the directions in which they leave it.
+ *
+ *     bvh_pairs.c      pairs that are not at one hub
+ *     bvh_sectors.c    pairs of spokes of one hub */
 #ifndef HE_QUERY_BVH_PAIRS_H
 #define HE_QUERY_BVH_PAIRS_H
 
@@ -16,18 +20,18 @@ typedef struct he_pair_search {
     uint32_t *hubs_of; /* HE_HUBS_OF numbers for each triangle (hubs.h); NULL without hubs */
 } he_pair_search;
 
-/* Returns the least hub of which both triangles are spokes, or HE_NONE. */
+/* Returns the hub with the lowest number at which both triangles have a corner, or HE_NONE. */
 uint32_t he_pair_hub(const he_pair_search *s, uint32_t i, uint32_t k);
 
-/* Appends the faces of triangles i and k, whose corners are a and b, if those intersect.
+/* Appends the faces of triangles i and k, whose corners are a and b, if the triangles intersect.
  * Returns HE_LIMIT if the list is full, or the budget ran out.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a[3],
                                    const he_vec3 b[3], he_error *err);
 
-/* Tries the spokes of a hub with one another, except pairs that also have a lesser hub. Fails as
- * he_pair_try does. */
+/* Tries the triangles at a hub (its spokes) with one another, except pairs that also have a common
+ * hub of a lower number. Returns the errors of he_pair_try. */
 HE_NODISCARD he_status he_pairs_at_hub(he_pair_search *s, uint32_t hub, he_error *err);
 
 #endif

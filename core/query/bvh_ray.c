@@ -14,7 +14,7 @@ static void as_array(he_vec3 v, double out[3])
     out[2] = v.z;
 }
 
-/* Prepares a ray with a unit direction. */
+/* Prepares a ray, whose direction has length 1, for the tests. */
 static ray prepare(he_vec3 origin, he_vec3 direction)
 {
     ray r = {.z = 0};
@@ -68,8 +68,8 @@ static void meet(const ray *r, const he_bvh *tree, const he_mesh *m, uint32_t tr
         x[k] = p[r->x] - r->origin[r->x] - r->shear_x * z[k];
         y[k] = p[r->y] - r->origin[r->y] - r->shear_y * z[k];
     }
-    /* Both faces of an edge compute exactly these two products, so both decide on one side of the
-     * ray. */
+    /* Both faces beside an edge compute exactly these two products for it, so they agree on which
+     * side of the edge the ray passes: there is no crack between them. */
     double side[3];
     for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -134,9 +134,9 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
     return HE_OK;
 }
 
-/* Moves a ray with a far origin to where it enters the box of all faces. Returns the distance,
- * HUGE_VAL if it misses. On the axis by which it enters, the new origin is exactly that side of the
- * box, however coarse numbers are so far away. */
+/* Moves the origin of a ray that starts far away to where the ray enters the box of all faces.
+ * Returns the distance; HUGE_VAL if the ray misses the box. On the axis by which it enters, the new
+ * origin is exactly on the side of the box, however coarse numbers are so far away. */
 static double approach(ray *r, const he_box_node *root)
 {
     double near = enter(r, root, HUGE_VAL), latest = -HUGE_VAL;

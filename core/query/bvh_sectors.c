@@ -1,5 +1,8 @@
-/* Spokes of one hub share points other than the hub exactly if the SECTORS of directions in which
- * they leave it intersect: a common point is on a ray from the hub that both begin with.
+/* bvh_sectors.c - finds the intersecting pairs among the triangles that meet at one hub (hubs.h).
+ *
+ * Two such triangles, the hub's spokes, share points other than the hub exactly if the SECTORS of
+ * directions in which they leave it intersect: a common point is on a ray from the hub along which
+ * both triangles begin.
  *
  *         .--u           A sector is an arc from u to v of a great circle of the unit sphere around
  *       .'   |           the hub, shorter than half of it. Boxes around arcs separate spokes that
@@ -13,7 +16,8 @@
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 
-/* The error of coordinates of directions, and of values computed from them here, is below this. */
+/* The rounding error of the coordinates of a direction, and of values computed from them here, is
+ * below this. */
 static const double ROUNDING = 1e-14;
 
 typedef struct sectors {
@@ -36,8 +40,8 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* A point of the arc between u and v is a point of the chord, pushed out to length 1: along any
- * axis it moves by no more than the middle of the chord does. */
+/* Returns a box around the arc from u to v. A point of the arc is a point of the chord, pushed out
+ * to length 1: along any axis it moves by no more than the middle of the chord does. */
 static he_bounds about_arc(he_vec3 u, he_vec3 v)
 {
     he_bounds bounds = he_bounds_none();
@@ -47,7 +51,8 @@ static he_bounds about_arc(he_vec3 u, he_vec3 v)
     return bounds;
 }
 
-/* Returns the box of a triangle's arc, from its corners except the one at the hub. */
+/* Returns the box around a triangle's arc of directions, from its two corners that are not at the
+ * hub. */
 static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
 {
     int at = same(corner[0], hub) ? 0 : same(corner[1], hub) ? 1 : 2;
@@ -57,8 +62,8 @@ static he_bounds arc_of(const he_vec3 corner[3], he_vec3 hub)
     return about_arc(u, v);
 }
 
-/* Moves the directions' mean to the origin, so that floats can separate directions that are nearly
- * equal. */
+/* Moves the mean of all directions to the origin, so that the floats of the boxes can separate
+ * directions that are nearly equal. */
 static void center(sectors *s)
 {
     he_bounds all = he_bounds_none();

@@ -1,4 +1,5 @@
-/* bvh_walk.h - functions shared by the walks over a tree of boxes. */
+/* bvh_walk.h - functions shared by the searches that walk over a tree of boxes: rays and nearest
+ * points. */
 #ifndef HE_QUERY_BVH_WALK_H
 #define HE_QUERY_BVH_WALK_H
 
@@ -6,8 +7,8 @@
 #include "mesh/walk.h"
 #include "query/bvh.h"
 
-/* Farther from the origin than this, in coordinates of the tree, products of coordinates might
- * overflow. */
+/* If a point is farther from the origin than this, in coordinates of the tree, products of
+ * coordinates may overflow. */
 #define HE_BVH_FAR 0x1p100
 
 static inline void he_bvh_corners(const he_bvh *tree, const he_mesh *m, uint32_t triangle,
@@ -27,7 +28,8 @@ typedef struct he_bvh_found {
                    visited */
 } he_bvh_found;
 
-/* Returns the hit in the mesh's own lengths, without its distance. */
+/* Converts the best result of a walk into a hit in coordinates of the mesh. Its distance is left to
+ * the caller. */
 static inline he_hit he_bvh_tell(const he_bvh *tree, const he_mesh *m, const he_bvh_found *found)
 {
     const he_bvh_triangle *t = &tree->triangles[found->triangle];

@@ -7,7 +7,8 @@
 
 /* --- chosen elements --- */
 
-/* The chosen elements have one row of sums each: by id if all are chosen, else by rank. */
+/* The elements whose curvature is computed. Each has one row of sums: by its id if all elements are
+ * chosen, else by its rank among the chosen ones. */
 typedef struct chosen {
     bool all;
     he_ids ids;   /* sorted, each once; empty when all */
@@ -20,7 +21,7 @@ static void clear(chosen *c)
     he_ids_clear(&c->faces);
 }
 
-/* Returns HE_NONE if the element is not chosen. */
+/* Returns the row of sums of an element; HE_NONE if the element is not chosen. */
 static uint32_t row_of(const chosen *c, uint32_t id)
 {
     if (c->all) {
@@ -96,7 +97,7 @@ typedef struct triangle {
     bool degenerate;
 } triangle;
 
-/* Sines below this mean parallel sides. */
+/* If the sine of the angle between two sides is below this, they count as parallel. */
 static const double THIN = 16 * DBL_EPSILON;
 
 static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_ROW])
@@ -127,8 +128,8 @@ static void measure(triangle *t, const he_mesh *m, const uint32_t row[HE_DRAWN_R
     }
 }
 
-/* Returns a frame for one face alone. The cut depends on nothing else, so an element has one value,
- * whether it is computed alone or with all others. */
+/* Returns a coordinate frame for cutting one face into triangles. It depends on this face alone, so
+ * an element has one value, whether it is computed alone or with all others. */
 static he_frame frame_of(const he_mesh *m, uint32_t first)
 {
     he_vec3 base = m->c.position[m->c.origin[first]];
@@ -190,7 +191,8 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_w
 
 /* --- curvature --- */
 
-/* In lengths divided by 2^exponent, that of the longest side so far. */
+/* The sums over the triangles at one vertex. They are in lengths divided by 2^exponent, where the
+ * exponent is that of the longest side so far. */
 typedef struct sums {
     double angle, area;
     he_vec3 bend;   /* sum of cotangents times sides towards the vertex */
@@ -218,7 +220,7 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* Returns the part of the triangle nearest to corner i, if no angle is obtuse. */
+/* Returns the part of the triangle's area that is nearest to corner i, if no angle is obtuse. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -250,7 +252,8 @@ static void add_bend(const triangle *t, void *context)
         double behind = ldexp(t->length[k], -s->exponent);
         s->area += share(t, i, ahead, behind);
         s->normal = he_vec3_add(s->normal, he_vec3_scale(t->normal, t->angle[i]));
-        /* The side ahead is opposite to corner k, the one behind to corner j. */
+        /* In the cotangent formula the side ahead of the corner is opposite to corner k, and the
+         * side behind it is opposite to corner j. */
         s->bend = he_vec3_add(
             s->bend, he_vec3_sub(he_vec3_scale(t->along[k], behind * t->cosine[j] / t->sine[j]),
                                  he_vec3_scale(t->along[i], ahead * t->cosine[k] / t->sine[k])));

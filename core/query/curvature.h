@@ -22,12 +22,13 @@
 
 typedef struct he_curvature {
     /* 2 pi minus the angles around the vertex, and minus pi for each open fan: over a mesh without
-     * isolated vertices the sum is 2 pi times its Euler number (Gauss and Bonnet). NaN if
-     * isolated. */
+     * isolated vertices the sum is 2 pi times its Euler number (Gauss and Bonnet). NaN if the
+     * vertex is isolated. */
     double angle_defect;
     double area; /* the mixed area; over a mesh the sum is the area of its triangles */
-    /* Positive where the surface bends away from its normals, as on a sphere seen from outside (1 /
-     * radius). NaN on the boundary, if isolated, and if there is no area. */
+    /* The mean curvature. It is positive where the surface bends away from its normals; on a sphere
+     * seen from outside it is 1 / radius. NaN if the vertex is on the boundary or isolated, or if
+     * there is no area around it. */
     double mean;
     double gaussian; /* the angle defect divided by the area; NaN as `mean` */
 } he_curvature;
@@ -37,14 +38,16 @@ typedef struct he_curvature {
  * Returns HE_LIMIT if the sum of the squared degrees of neighbouring faces of more than four
  * corners, which cutting those may cost, is above `most`.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if a face's id does not fit a drawing.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
+ * (drawing.h).
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count,
                                      uint64_t most, he_watch *watch, he_curvature *out,
                                      he_error *err);
 
-/* Computes half the sum of the cotangents of the angles opposite to each edge, one angle on the
- * boundary; NaN beside a degenerate triangle. Parameters and errors as for he_curvatures. */
+/* Computes half the sum of the cotangents of the angles opposite to each edge; on the boundary
+ * there is only one such angle. NaN beside a degenerate triangle. Parameters and errors are those
+ * of he_curvatures. */
 HE_NODISCARD he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
                                           uint64_t most, he_watch *watch, double *out,
                                           he_error *err);

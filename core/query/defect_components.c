@@ -1,4 +1,4 @@
-/* Finds components that are small, or closed and inside out. */
+/* defect_components.c - finds components that are small, or closed and inside out. */
 #include "query/defects.h"
 
 #include "geometry/geometry.h"
@@ -23,7 +23,7 @@ typedef struct survey {
     shell *shells;
 } survey;
 
-/* A volume below this share of `reach` may be rounding noise. */
+/* A volume below this share of `reach`, the sum of the absolute terms, may be rounding noise. */
 static const double NOISE = 1e-10;
 
 static he_vec3 corner(const survey *s, uint32_t h)
@@ -56,7 +56,8 @@ static void add_face(survey *s, uint32_t f)
         own->open |= s->m->c.face[h ^ 1u] == HE_NONE;
         h = next;
     } while (h != first);
-    /* Measured from a point near the component, because from far away the volume would cancel. */
+    /* The volume is summed from a point near the component, because from far away the terms would
+     * cancel out. */
     he_vec3 from = he_vec3_sub(apex, corner(s, s->m->c.face_halfedge[own->face]));
     own->volume += he_vec3_dot(from, vector);
     own->reach += he_vec3_length(from) * he_vec3_length(vector);

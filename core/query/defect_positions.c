@@ -1,4 +1,4 @@
-/* Finds vertices at one position. */
+/* defect_positions.c - finds vertices that lie at one position, or closer than the threshold. */
 #include "query/defects.h"
 
 #include "geometry/near.h"

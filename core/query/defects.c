@@ -57,7 +57,7 @@ static he_status of_vertices(const he_mesh *m, he_watch *watch, he_defects *out,
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
         } else if (h != HE_DEAD && m->c.face[h] == HE_NONE) {
-            /* Only a vertex with open fans can have several. */
+            /* Only vertices on the boundary can have several fans, so others are skipped. */
             uint32_t fans = he_vertex_fans(m, (he_vertex){v});
             if (fans > 1) {
                 he_defects_add(out, HE_DEFECT_BOWTIE, v, HE_NONE, fans);
@@ -89,7 +89,8 @@ static he_status of_edges(const he_mesh *m, double merge, he_watch *watch, he_de
 
 /* --- faces --- */
 
-/* Lengths are multiplied by a power of two that brings the mesh near the unit cube. */
+/* What is needed to measure faces. Lengths are multiplied by `scale`, a power of two that brings
+ * the mesh near the unit cube. */
 typedef struct measure {
     const he_mesh *m;
     int exponent;
@@ -101,7 +102,7 @@ static he_vec3 corner(const measure *s, uint32_t h)
     return he_vec3_scale(s->m->c.position[s->m->c.origin[h]], s->scale);
 }
 
-/* Returns twice the area divided by the longest edge. */
+/* Returns twice the area of a face divided by its longest edge, which is its width. */
 static double width_of(const measure *s, uint32_t first, double area)
 {
     double longest = 0;
@@ -115,7 +116,7 @@ static double width_of(const measure *s, uint32_t first, double area)
     return longest > 0 ? 2 * area / longest : 0;
 }
 
-/* Returns the largest distance of a corner from the plane through `about`. */
+/* Returns the largest distance of a corner of a face from the plane through the point `about`. */
 static double bulge_of(const measure *s, uint32_t first, he_vec3 about, he_vec3 normal)
 {
     double most = 0;

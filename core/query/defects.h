@@ -42,7 +42,7 @@ typedef enum he_defect_code {
 const char *he_defect_name(he_defect_code code);
 he_kind he_defect_kind(he_defect_code code);
 
-/* Lengths at which an element becomes a defect. */
+/* The lengths below or above which an element counts as a defect. */
 typedef struct he_thresholds {
     double merge, flat, small;
     /* Seed for hashing positions. A client that makes the mesh must not know it, or it could make
@@ -51,10 +51,10 @@ typedef struct he_thresholds {
 } he_thresholds;
 
 /* Returns default thresholds: 1e-9, 1e-4 and 1e-2 of the diagonal of the box around the vertices
- * that have edges, or around all vertices if none has. The seed is 0. */
+ * that have edges, or around all vertices if none has an edge. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
-/* The first defects of each code, by rising id, and how many there are. */
+/* The defects that are listed of each code: the first ones by rising id. All are counted. */
 enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
@@ -78,13 +78,13 @@ void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint3
                     double value);
 
 /* Finds all defects except self-intersections in a mesh that passed he_check. `watch`, which may be
- * NULL, is not the mesh's: other threads may read the mesh meanwhile.
+ * NULL, need not be the watch of the mesh: other threads may read the mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds,
                                        he_watch *watch, he_defects *out, he_error *err);
 
-/* --- the parts of he_defects_find, which add to `out` --- */
+/* --- the parts of he_defects_find, which add what they find to `out` --- */
 HE_NODISCARD he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed,
                                                he_watch *watch, he_defects *out, he_error *err);
 HE_NODISCARD he_status he_defects_of_components(const he_mesh *m, double small, he_watch *watch,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A vertex that may be at a hub. */
+/* A vertex at whose position a hub may be. */
 typedef struct candidate {
     he_vec3 place;
     uint32_t vertex, corners;
@@ -60,9 +60,10 @@ static he_status count_corners(const search *s, he_error *err)
     return status;
 }
 
-/* Vertices are counted by the hash of their position in a small table, where positions may collide.
- * A slot with few corners contains no hub; vertices in other slots, few unless a file was made for
- * it, are compared exactly. */
+/* Lists the vertices at which hubs may be. All vertices are counted by the hash of their position
+ * in a small table, where positions may collide. A slot with few corners contains no hub; the
+ * vertices in other slots, which are few unless a file was made to fill them, are compared
+ * exactly. */
 static he_status list_candidates(const search *s, candidate **out, size_t *count, he_error *err)
 {
     uint32_t vertices = s->m->c.vertices.issued;
@@ -118,8 +119,8 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
     return HE_OK;
 }
 
-/* Numbers the hubs among sorted candidates, and writes the number of each vertex, or HE_NONE, in
- * place of its corners. Returns the number of hubs. */
+/* Numbers the hubs among the sorted candidates, and overwrites the number of corners of each vertex
+ * with the number of its hub, or HE_NONE. Returns the number of hubs. */
 static uint32_t number_hubs(const search *s, const candidate *list, size_t count, he_vec3 *places)
 {
     uint32_t hubs = 0;
@@ -140,7 +141,7 @@ static uint32_t number_hubs(const search *s, const candidate *list, size_t count
     return hubs;
 }
 
-/* Finds the hubs of a triangle, each once. */
+/* Finds the hubs at which a triangle has corners, each only once. Returns how many there are. */
 static int hubs_at(const search *s, uint32_t triangle, uint32_t out[3])
 {
     const uint32_t *t = triangle_of(s, triangle);
@@ -181,8 +182,8 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the triangles at %u hubs",
                              hubs->count);
     }
-    /* Each count becomes the end of its hub's run; filling from the last entry lowers it to the
-     * beginning. */
+    /* Each count first becomes the end of its hub's run of entries; filling the run from its last
+     * entry lowers it to the beginning. */
     uint32_t sum = 0;
     for (uint32_t h = 0; h < hubs->count; h++) {
         sum += hubs->first[h];

@@ -15,7 +15,7 @@ typedef struct he_idmap {
     unsigned log2;   /* logarithm of the number of slots, 0 while there are none */
 } he_idmap;
 
-/* Returns the index of an id, HE_NONE if it was never added. */
+/* Returns the index of an id, HE_NONE if the id was never added. */
 uint32_t he_idmap_find(const he_idmap *map, uint32_t id);
 /* Finds the index of an id, which is added at the end if it is new; `*added` says whether it was.
  * Expected constant time.

@@ -3,7 +3,8 @@
 #include "geometry/point_hash.h"
 #include "mesh/walk.h"
 
-/* Half-edges for which none that runs the other way was found yet. */
+/* An entry of the hash table: boundary half-edges between two positions for which no half-edge that
+ * runs the other way was found yet. */
 typedef struct slot {
     uint32_t halfedge; /* the first one + 1; 0: free */
     uint32_t waiting;
@@ -19,7 +20,8 @@ static bool same(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Returns the slot of half-edges from `from` to `to`, or the free one where they belong. */
+/* Returns the entry of the half-edges that run from position `from` to `to`, or the free entry
+ * where they belong. */
 static slot *find(const table *t, const he_mesh *m, he_vec3 from, he_vec3 to)
 {
     uint64_t seed = (uint64_t)(uintptr_t)t->slots;

@@ -13,7 +13,7 @@ static he_status corrupt(he_kind kind, uint32_t id, he_error *err)
                    he_kind_name(kind), id);
 }
 
-/* A vertex that the search has reached; its index is that of the idmap. */
+/* A vertex that the search has reached; its index is the one that the idmap gave it. */
 typedef struct node {
     double distance;
     uint32_t via;   /* the half-edge by which the best path arrives; HE_NONE at the start */
@@ -36,7 +36,8 @@ static void search_clear(search *s)
     he_mem_free(s->heap);
 }
 
-/* Equal distances are in the order of arrival, so the answer is equal everywhere. */
+/* Returns true if node a comes before node b in the heap. Equal distances are in the order of
+ * arrival, so the answer is equal on every machine. */
 static bool nearer(const search *s, uint32_t a, uint32_t b)
 {
     double x = s->nodes[a].distance, y = s->nodes[b].distance;
@@ -110,7 +111,8 @@ static he_status search_grow(search *s, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for a search over %zu vertices", capacity);
 }
 
-/* Updates `vertex` with a path of length `distance` that arrives by `via`. */
+/* Updates `vertex` if the path of length `distance`, which arrives by half-edge `via`, is the
+ * shortest so far. */
 static he_status reach(search *s, uint32_t vertex, double distance, uint32_t via, he_error *err)
 {
     if (s->met.ids.count >= s->capacity) {
@@ -142,7 +144,8 @@ static bool has_ends(const he_mesh *m, uint32_t h)
     return m->c.origin[h] < m->c.vertices.issued && m->c.origin[h ^ 1u] < m->c.vertices.issued;
 }
 
-/* Settles vertices until `to` is settled: `*goal` is its node, HE_NONE if it cannot be reached. */
+/* Settles vertices by Dijkstra's algorithm until `to` is settled. `*goal` is the node of `to`;
+ * HE_NONE if it cannot be reached. */
 static he_status dijkstra(const he_mesh *m, uint32_t from, uint32_t to, he_measure by, search *s,
                           uint32_t *goal, he_error *err)
 {
@@ -188,7 +191,7 @@ static he_status trace_back(const he_mesh *m, const search *s, uint32_t goal, he
             break;
         }
         n = he_idmap_find(&s->met, m->c.origin[via]);
-        /* A path that is longer than the settled vertices comes from broken links. */
+        /* A path that has more edges than vertices were settled comes from broken links. */
         if (n == HE_NONE || out->edges.count >= s->met.ids.count) {
             return corrupt(HE_HALFEDGE, via, err);
         }

@@ -21,8 +21,9 @@ static he_status broken(he_kind kind, uint32_t id, he_error *err)
 
 /* --- components: union-find in one array --- */
 
-/* Union-find with path halving (van Leeuwen and van der Weide 1977), with the lowest member as the
- * root: elements of one component have close ids, so paths stay short without ranks. */
+/* Returns the root of the tree of element i, by union-find with path halving (van Leeuwen and van
+ * der Weide 1977). The root is the lowest member: elements of one component have close ids, so
+ * paths stay short without ranks. */
 static uint32_t root_of(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i) {
@@ -32,7 +33,7 @@ static uint32_t root_of(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* Joins two trees; returns whether they were separate. */
+/* Joins the trees of elements a and b; returns true if they were separate. */
 static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
     a = root_of(parent, a);
@@ -45,8 +46,8 @@ static bool unite(uint32_t *parent, uint32_t a, uint32_t b)
     return a != b;
 }
 
-/* Makes a forest in which every edge has joined its ends (HE_VERTEX) or its faces (HE_FACE), and
- * counts how often two trees were joined. */
+/* Makes a union-find forest of the vertices, joined along edges (HE_VERTEX), or of the faces,
+ * joined across edges (HE_FACE). Counts how often two trees were joined. */
 static he_status join_all(const he_mesh *m, he_kind kind, uint32_t **out, uint32_t *joins,
                           he_error *err)
 {
@@ -110,13 +111,13 @@ static he_status add_component(he_components *list, he_component component, he_e
     return HE_OK;
 }
 
-/* Returns the root of the tree that contains a face. */
+/* Returns the root of the union-find tree that contains face f. */
 static uint32_t tree_of(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t f)
 {
     return root_of(parent, by == HE_JOINED_BY_EDGE ? f : m->c.origin[m->c.face_halfedge[f]]);
 }
 
-/* Numbers the trees by their lowest face in `label`, and counts their faces. */
+/* Numbers the trees of the forest by their lowest face in `label`, and counts their faces. */
 static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *parent, uint32_t *label,
                              he_components *list, he_error *err)
 {
@@ -142,8 +143,9 @@ static he_status count_faces(const he_mesh *m, he_connection by, uint32_t *paren
 }
 
 /* Counts each vertex once in every component that has a face at it. With HE_JOINED_BY_VERTEX, and
- * at a single closed fan, the vertex has one component; otherwise `last`, which has for each
- * component the vertex it counted last, prevents counting a component twice for two fans. */
+ * at a single closed fan, the vertex has one component; otherwise `last`, which holds for each
+ * component the vertex that it counted last, prevents a component from counting a vertex twice for
+ * two fans. */
 static he_status count_vertices(const he_mesh *m, he_connection by, uint32_t *parent,
                                 const uint32_t *label, uint32_t *last, he_components *list,
                                 he_error *err)
@@ -243,7 +245,7 @@ he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *cou
     if (status != HE_OK) {
         return status;
     }
-    /* A parent has a lower number than its child, so it has its label already. */
+    /* The root of a face's tree has a lower id than the face, so it has its label already. */
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             label[f] = HE_NONE;
@@ -273,7 +275,8 @@ static he_status add_loop(he_boundaries *list, he_boundary loop, he_error *err)
     return HE_OK;
 }
 
-/* Every boundary half-edge is visited once, so loops that run into one another are noticed. */
+/* Follows the boundary loop of half-edge `first` and measures its length. Each boundary half-edge
+ * may be visited only once, so loops that run into one another are noticed. */
 static he_status follow_hole(const he_mesh *m, uint32_t first, uint64_t *seen, uint32_t *length,
                              he_error *err)
 {
@@ -333,8 +336,8 @@ void he_boundaries_clear(he_boundaries *boundaries)
 
 /* --- bow-ties --- */
 
-/* Each open fan has one boundary half-edge that leaves the vertex, so a vertex that two boundary
- * half-edges leave has two fans. */
+/* Finds the bow-ties: each open fan has one boundary half-edge that leaves the vertex, so a vertex
+ * that two boundary half-edges leave has two fans. */
 static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice, uint32_t *count,
                               he_error *err)
 {
@@ -358,7 +361,7 @@ static he_status mark_bowties(const he_mesh *m, uint64_t *once, uint64_t *twice,
     return HE_OK;
 }
 
-/* `list` may be NULL if only the number is needed. */
+/* Finds and counts the bow-ties. `list` may be NULL if only the number is needed. */
 static he_status find_bowties(const he_mesh *m, he_ids *list, uint32_t *count, he_error *err)
 {
     *count = 0;
@@ -388,10 +391,10 @@ he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err)
     return find_bowties(m, out, &count, err);
 }
 
-/* --- everything at once --- */
+/* --- the whole topology in one call --- */
 
-/* faces_of[d] counts faces of degree d. It grows to the largest degree, which is at most the number
- * of half-edges. */
+/* Counts the faces of each degree: faces_of[d] counts those of degree d. The array grows to the
+ * largest degree, which is at most the number of half-edges. */
 static he_status tally(const he_mesh *m, uint32_t **faces_of, size_t *size, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
@@ -486,7 +489,7 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
     if (status == HE_OK) {
         status = count_components(m, HE_FACE, t.faces, &t.components_by_edge, err);
     }
-    /* Without bow-ties components by vertex and by edge are equal. */
+    /* Components by vertex differ from components by edge only if there are bow-ties. */
     if (status == HE_OK && t.bowties > 0) {
         status = count_components(m, HE_VERTEX, used, &t.components, err);
     } else {

@@ -35,11 +35,12 @@ typedef struct he_topology {
     size_t degree_count;
 } he_topology;
 
-/* Computes all of this in one call. */
+/* Computes the whole topology of a mesh in one call: counts, components, boundary loops and
+ * handles. */
 HE_NODISCARD he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err);
 void he_topology_clear(he_topology *topology);
 
-/* BOUNDARY LOOPS. Each boundary half-edge is in exactly one. */
+/* BOUNDARY LOOPS. Each boundary half-edge belongs to exactly one loop. */
 typedef struct he_boundary {
     uint32_t halfedge; /* the lowest id of the loop; he_traverse_loop gives the others */
     uint32_t length;
@@ -71,12 +72,13 @@ HE_NODISCARD he_status he_components_find(const he_mesh *m, he_connection by, he
                                           he_error *err);
 void he_components_clear(he_components *components);
 
-/* Finds the component by edge of each face ever issued, HE_NONE if it is dead, and the number of
- * components: they are numbered from 0 by rising lowest face. The caller frees the array. */
+/* Finds for each face that was ever issued the number of its component by edge, HE_NONE if the face
+ * was deleted, and the number of components. They are numbered from 0 by their lowest face. The
+ * caller frees the array. */
 HE_NODISCARD he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *count,
                                            he_error *err);
 
-/* Appends the vertices of two fans or more, by rising id. */
+/* Appends the bow-ties, which are the vertices of two fans or more, by rising id. */
 HE_NODISCARD he_status he_bowties_find(const he_mesh *m, he_ids *out, he_error *err);
 
 #endif

@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-/* Ids at or past this are absent, dead or never issued. */
+/* Returns the end of the valid ids of half-edges. Links at or past it are absent, to dead rows or
+ * to rows that were never issued. */
 static uint32_t halfedge_end(const he_mesh *m)
 {
     return 2u * m->c.edges.issued;
@@ -53,7 +54,8 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *st
             return corrupt(HE_HALFEDGE, from.i, err);
         }
         for (size_t i = 0; i < count && status == HE_OK; i++) {
-            /* The length of the path is not known, so only cancellation is tested. */
+            /* The length of the path is not known, so there is no progress to report; the watch is
+             * only asked whether to go on. */
             status = he_watch_at(watch, taken, UINT64_MAX, err);
             if (status != HE_OK) {
                 return status;
@@ -146,7 +148,8 @@ static he_status meet(flood *f, uint32_t id, uint32_t depth, he_error *err)
     return status;
 }
 
-/* All steps together visit each half-edge at most once, which bounds the walk on any links. */
+/* Visits elements breadth first from `from`. All steps together visit each half-edge at most once,
+ * which bounds the walk even if links are broken. */
 static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
                             size_t limit, flood *f, he_error *err)
 {
@@ -207,10 +210,12 @@ he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t fro
     return status;
 }
 
-/* Returns the half-edge that continues `h`; HE_NONE if the walk ends, HE_DEAD on broken links. */
+/* A function that continues an edge loop or an edge ring. Returns the half-edge after `h`; HE_NONE
+ * if the walk ends there, HE_DEAD if links are broken. */
 typedef uint32_t (*onward)(const he_mesh *m, uint32_t h);
 
-/* Goes straight on through the target of `h`, if that is interior and has four edges. */
+/* Continues an edge loop: goes straight on through the target of `h`, if that is interior and has
+ * four edges. */
 static uint32_t straight_on(const he_mesh *m, uint32_t h)
 {
     uint32_t around[5] = {h ^ 1u};
@@ -229,7 +234,8 @@ static uint32_t straight_on(const he_mesh *m, uint32_t h)
     return around[4] == around[0] ? around[2] : HE_NONE;
 }
 
-/* Goes into the face of `h` and out of its opposite side, if it has four. */
+/* Continues an edge ring: goes into the face of `h` and out of its opposite side, if the face has
+ * four sides. */
 static uint32_t across(const he_mesh *m, uint32_t h)
 {
     if (m->c.face[h] == HE_NONE) {
@@ -248,7 +254,8 @@ static uint32_t across(const he_mesh *m, uint32_t h)
     return around[4] == h ? around[2] ^ 1u : HE_NONE;
 }
 
-/* Appends the edges after `first` until the walk ends or comes back to it. */
+/* Appends the edges of an edge loop or ring after `first`, until the walk ends or comes back to
+ * `first`. */
 static he_status follow(const he_mesh *m, uint32_t first, onward step, he_ids *out, bool *closed,
                         he_error *err)
 {

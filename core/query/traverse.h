@@ -1,40 +1,41 @@
-/* traverse.h - walks over a mesh.
+/* traverse.h - walks over a mesh from one of its elements.
  *
- * A walk costs time and memory proportional to what it touches: a mesh of millions of elements may
+ * A walk takes time and memory proportional to what it touches: a mesh of millions of elements may
  * be walked a thousand times a second. Every walk is bounded by the number of half-edges; links
  * that lead nowhere or do not close give HE_CORRUPT. Elements named by the caller are refused with
- * HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT. Lists are appended to, and on failure are as they were;
- * every function may return HE_NO_MEMORY. */
+ * HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT. Results are appended to lists, which on failure are as
+ * they were; every function may return HE_NO_MEMORY. */
 #ifndef HE_QUERY_TRAVERSE_H
 #define HE_QUERY_TRAVERSE_H
 
 #include "mesh/mesh.h"
 
-/* PATH. Takes the steps of a list in turn, the whole list `repeat` times. */
+/* A PATH is made by steps: the list of steps is taken from its beginning, `repeat` times as a
+ * whole. */
 typedef enum he_step { HE_STEP_NEXT, HE_STEP_PREV, HE_STEP_TWIN } he_step;
 typedef enum he_until {
     HE_UNTIL_COUNT, /* only `repeat` ends it */
     HE_UNTIL_START, /* ends also at the first return to `from` */
-    /* ends also at the first half-edge without a face, or when the whole list was taken and led
-     * back to `from` */
+    /* The path also ends at the first half-edge without a face, or when the whole list of steps was
+     * taken and led back to `from`. */
     HE_UNTIL_BOUNDARY
 } he_until;
 
 /* Appends the half-edges of the path, `from` first and the last one at the end: one more than the
- * steps taken. `until` is tested after each step, not before the first. `repeat` 0 takes no step;
- * UINT64_MAX is for paths that `until` ends. Those always end: a list of steps maps half-edges one
- * to one, so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT).
- * `limit` bounds the steps (0: no bound). `watch` may be NULL.
+ * steps taken. `until` is tested after each step, not before the first. `repeat` = 0 takes no step;
+ * UINT64_MAX is for paths that end by `until`. These always end: a list of steps maps half-edges
+ * one to one, so after as many rounds as there are half-edges the path has come back (else
+ * HE_CORRUPT). `limit` bounds the steps (0: no bound). `watch` may be NULL.
  * Returns HE_LIMIT if the path would take more steps.
- * Returns HE_CANCELLED if the watch gave up.
+ * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_BAD_VALUE if the list of steps is empty. */
 HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps,
                                         size_t count, uint64_t repeat, he_until until,
                                         uint64_t limit, he_watch *watch, he_ids *out,
                                         he_error *err);
 
-/* LOOP. Appends the half-edges of the face or hole of `from`, starting with it, by next. Their
- * origins are the vertices of the loop. */
+/* LOOP. Appends the half-edges of the face or hole of `from`, in the order of next, beginning with
+ * `from`. Their origins are the vertices of the loop. */
 HE_NODISCARD he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out,
                                         he_error *err);
 
@@ -47,7 +48,7 @@ HE_NODISCARD he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind,
                                                  uint32_t depth, size_t limit, he_ids *ids,
                                                  he_ids *depths, he_error *err);
 
-/* SHORTEST PATH along edges. */
+/* SHORTEST PATH along edges: how the length of a path is measured. */
 typedef enum he_measure {
     HE_BY_EDGES, /* each edge counts 1 */
     HE_BY_LENGTH /* each edge counts its length */
@@ -61,9 +62,9 @@ typedef struct he_path {
     uint64_t visited; /* half-edges visited, also if no path was found: the cost of the search */
 } he_path;
 
-/* Dijkstra (1959) on a heap of four children a node, until `to` is settled; HE_BY_EDGES makes it
- * breadth first. Of several shortest paths the order of the links decides, equally on every
- * machine. The caller clears `out`. */
+/* Finds the shortest path by Dijkstra's algorithm (1959), with a heap of four children a node,
+ * until `to` is settled; HE_BY_EDGES makes it a breadth-first search. Among several shortest paths
+ * the order of the links decides, equally on every machine. The caller clears `out`. */
 HE_NODISCARD he_status he_traverse_shortest_path(const he_mesh *m, he_vertex from, he_vertex to,
                                                  he_measure by, he_path *out, he_error *err);
 void he_path_clear(he_path *path);

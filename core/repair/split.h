@@ -43,7 +43,7 @@ static inline uint32_t he_corner_before(const he_splitting *s, uint32_t c)
 /* Exchanges partners of mates until no two edges would join the same two vertices. `to` has the
  * fans of the mates before; if *exchanged is true, the caller must find the fans again.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_splitting_exchange(he_splitting *s, bool *exchanged, he_error *err);
 
 #endif

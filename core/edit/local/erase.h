@@ -24,7 +24,9 @@
 typedef enum he_leftover { HE_DROP_ISOLATED, HE_KEEP_ISOLATED } he_leftover;
 
 /* face_delete: deletes `count` faces, with the edges that are left without a face. All other
- * elements keep their ids. If it is refused, nothing changes. */
+ * elements keep their ids. If it is refused, nothing changes.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice. */
 HE_NODISCARD he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count,
                                       he_leftover leftover, he_error *err);
 

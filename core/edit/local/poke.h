@@ -40,7 +40,8 @@ typedef struct he_poke {
 } he_poke;
 
 /* Plans the edit and adds what he_poke_commit writes to `need`; the caller reserves it.
- * he_poke_clear frees the plan. */
+ * he_poke_clear frees the plan.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
                                     he_need *need, he_error *err);
 void he_poke_clear(he_poke *poke);

@@ -1,4 +1,8 @@
-/* vertex.h - adds single vertices, and moves vertices. */
+/* vertex.h - adds single vertices, and moves vertices.
+ *
+ * The functions take ids because lists come from clients; every function checks them and returns
+ * HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live. Each may return
+ * HE_NO_MEMORY. */
 #ifndef HE_EDIT_LOCAL_VERTEX_H
 #define HE_EDIT_LOCAL_VERTEX_H
 
@@ -12,8 +16,14 @@ HE_NODISCARD he_status he_vertex_add(he_mesh *m, he_vec3 position, he_vertex *ou
 typedef enum he_move { HE_MOVE_TO, HE_MOVE_BY } he_move;
 
 /* vertex_move: no element is made or deleted. Each of `count` vertices moves to its point, or by it
- * if the points are offsets; `points` holds one for each vertex, or a single one for all of
- * them. */
+ * if the points are offsets; `points` holds one for each vertex, or a single one for all of them.
+ *
+ * All or nothing: a refusal changes nothing.
+ * Returns HE_REPEATED_ELEMENT if an element is listed twice.
+ * Returns HE_BAD_VALUE if the number of points is neither `count` nor one.
+ * Returns HE_NOT_FINITE if a point, or a sum, is not finite.
+ * Returns HE_LOCKED_ELEMENT if a vertex is locked (marks.h), even if its position would not
+ * change. */
 HE_NODISCARD he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count,
                                       he_move how, const he_vec3 *points, size_t point_count,
                                       he_error *err);

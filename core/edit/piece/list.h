@@ -10,7 +10,10 @@
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_list_repeat(const uint32_t *ids, size_t count, size_t *at, he_error *err);
 
-/* Checks a list of element ids; an error names the first bad id. */
+/* Checks a list of element ids; an error names the first bad id.
+ * Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT if an element is not live.
+ * Returns the status that the caller passes as `repeated` if an element is listed twice.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_list_require(const he_mesh *m, he_kind kind, const uint32_t *ids,
                                        size_t count, he_status repeated, he_error *err);
 

@@ -4,7 +4,31 @@
 
 #include "mesh/mesh.h"
 
-/* dual: in a closed mesh, V becomes F, E stays E, F becomes V. Every face becomes a */
+/* dual: in a closed mesh, V becomes F, E stays E, F becomes V. Every face becomes a
+ *
+ *         o-------o-------o                o-------o-------o
+ *         |       |       |                | .-----|-----. |
+ *         |   f   |   g   |                | |f*   |   g*| |
+ *         |       ^       |                | |     |     | |
+ *         o-------o-------o      --->      o-|-----o-----|-o
+ *         |       v       |                | |     v*    | |
+ *         |   i   |   h   |                | |i*   |   h*| |
+ *         |       |       |                | '-----|-----' |
+ *         o-------o-------o                o-------o-------o
+ *
+ * All ids are new, in the order of the elements they stand for, and the old elements are deleted.
+ * Half-edge 2e of a new edge runs to the face that was left of half-edge 2e of the old edge, which
+ * is its parent. The values of edges follow the rules of their attributes; all other attributes
+ * have their defaults. The dual of the dual has the links of the original mesh.
+ *
+ * Returns HE_BOUNDARY_EDGE unless the mesh is closed.
+ * Returns HE_ISOLATED_VERTEX if a vertex is isolated.
+ * Returns HE_TOO_FEW_CORNERS if a vertex has degree 2.
+ * Returns HE_DOUBLED_EDGE naming an edge, if two faces share a second edge.
+ * Returns HE_LOCKED_ELEMENT if any element is locked.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_IDS_EXHAUSTED if no ids are left.
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_dual(he_mesh *m, he_error *err);
 
 #endif

@@ -23,7 +23,8 @@ typedef struct he_normals {
 } he_normals;
 
 /* Finds the columns of normals and computes how they are transformed. `words` is set to the most
- * records that writing will make. he_normals_clear frees. */
+ * records that writing will make. he_normals_clear frees.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_normals_init(he_normals *n, he_mesh *m, const double matrix[16],
                                        const uint32_t *vertices, size_t count, size_t *words,
                                        he_error *err);

@@ -57,7 +57,7 @@ typedef struct he_glb_parts {
 
 /* Computes all but the JSON, and all but the streams if it `packs`. `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch,
                                          he_notes *notes, he_glb_parts *out, he_error *err);
 void he_glb_parts_clear(he_glb_parts *parts);

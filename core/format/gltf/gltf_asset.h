@@ -58,7 +58,7 @@ typedef struct he_gltf_bin {
  * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if it is not valid.
  * Returns HE_LIMIT if it is too large.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text,
                                     size_t length, uint64_t offset, const he_gltf_bin *bin,
                                     he_error *err);
@@ -72,7 +72,7 @@ HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *b
  * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if it is not valid.
  * Returns HE_LIMIT if the asset would decompress to too much.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t extension,
                                       const he_gltf_buffer **out, he_error *err);
 /* Finds the bytes that `object` names by buffer, byteOffset and byteLength.

@@ -17,7 +17,7 @@ enum { HE_GLTF_NAME = 1024 };
  * HE_MATERIALS there are names without rows, with a note.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_read_materials(he_gltf *asset, he_labels **names, he_error *err);
 
 #endif

@@ -58,7 +58,7 @@ typedef struct polygons {
 } polygons;
 
 /* Are the triangles of each polygon at its corners, degree - 2 of them, and its corners different?
- * `marks` has a word for each vertex. Fails if the watch gave up. */
+ * `marks` has a word for each vertex. Fails if the watch cancelled the work. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -440,7 +440,7 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Is each copy at the position of its vertex? Fails if the watch gave up. */
+/* Is each copy at the position of its vertex? Fails if the watch cancelled the work. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

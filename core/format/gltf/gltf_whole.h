@@ -23,7 +23,7 @@ HE_NODISCARD he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scen
  * them as they are, with a note.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct he_cuts {
 
 /* Cuts all faces. Borrows the mesh, which must not change meanwhile. `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_cuts_make(const he_mesh *mesh, he_watch *watch, he_cuts *out,
                                     he_error *err);
 void he_cuts_clear(he_cuts *cuts);

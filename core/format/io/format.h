@@ -119,7 +119,7 @@ bool he_reader_reads_at_end(const he_reader *reader);
 void he_reader_watch(he_reader *reader, he_watch *watch);
 /* Ends the input. The caller clears the import; the reader can then only be freed. Fails as
  * he_reader_feed does.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err);
 
 typedef struct he_writer he_writer;
@@ -128,7 +128,7 @@ typedef struct he_writer he_writer;
  * costs as much as the mesh, steps `watch` (NULL: none).
  * Returns HE_UNSUPPORTED if the format cannot be written.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
                                      he_watch *watch, he_writer **out, he_error *err);
 void he_writer_free(he_writer *writer);

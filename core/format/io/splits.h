@@ -21,7 +21,7 @@ typedef struct he_splits {
 
 /* Splits the vertices. `numbers` are those of he_export_numbers; `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_splits_make(const he_mesh *mesh, const uint32_t *numbers,
                                       const he_column *const *columns, size_t count,
                                       he_watch *watch, he_splits *out, he_error *err);

@@ -39,7 +39,7 @@ typedef struct he_json {
  * Returns HE_NOT_FINITE if a number is beyond the range of doubles.
  * Returns HE_LIMIT if it has too many values or is too long.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch gave up. */
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_json_parse(he_json *json, const char *text, size_t length,
                                      uint64_t offset, he_watch *watch, he_error *err);
 void he_json_clear(he_json *json);
