@@ -84,7 +84,7 @@ static bool sync_fails(void)
 
 typedef struct disk_file {
     sqlite3_file base;
-    bool writes; /* it is the database itself, open for writing */
+    bool writes; /* the file is the database itself, and open for writing */
     sqlite3_file *real;
 } disk_file;
 

@@ -1,19 +1,20 @@
-/* disk.h - a disk that a test can make full, slow or failing. From disk_install on it is SQLite's
- * default; other programs and other files of the store do not use it. */
+/* disk.h - a disk that a test can make full, slow or failing. After disk_install, SQLite uses it by
+ * default; other programs and the other files of the store do not. */
 #ifndef TESTS_DISK_H
 #define TESTS_DISK_H
 
 #include <stdbool.h>
 
-/* Call it before the first store of the process is opened. */
+/* Installs the disk; must be called before the process opens its first store. */
 void disk_install(void);
-/* From now on writes fail for lack of space, or no longer do. */
+/* Makes all further writes fail for lack of space, or lets them succeed again. */
 void disk_fill(bool full);
-/* The N-th write from now on and all later ones fail for lack of space; 0: none does. */
+/* Makes the N-th write from now on and all later ones fail for lack of space; 0: lets all
+ * succeed. */
 void disk_fill_at(long write);
-/* The N-th sync from now on fails; 0: none does. */
+/* Makes the N-th sync from now on fail; 0: lets all succeed. */
 void disk_fail_at(long sync);
-/* Holds syncs until they are released. */
+/* Makes syncs wait until this is called with false. */
 void disk_hold(bool held);
 /* Returns the number of syncs since the last disk_fill_at or disk_fail_at. */
 long disk_syncs(void);

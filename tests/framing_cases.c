@@ -13,7 +13,7 @@
 #define LAST   "0\r\n\r\n"
 
 #define BYTES(text) text, sizeof(text) - 1
-/* A case that a handler answers. */
+/* A case whose bytes are a correct request, so that a handler answers it. */
 #define TAKEN(name, bytes, status)                               \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, NULL, 0, 0 \
@@ -22,7 +22,7 @@
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 0, 0 \
     }
-/* A case with a fault in the bytes. */
+/* A case whose bytes have a fault, which the daemon must find. */
 #define FAULT(name, bytes, status, code)                         \
     {                                                            \
         name, BYTES(bytes), "", 0, BYTES(""), status, code, 1, 1 \

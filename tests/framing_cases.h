@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The bytes are `head`, then `unit` repeated `times` times, then `tail`. */
+/* A case: its bytes are `head`, then `unit` repeated `times` times, then `tail`. */
 typedef struct framing_case {
     const char *name;
     const char *head;
@@ -19,14 +19,14 @@ typedef struct framing_case {
     const char *tail;
     size_t tail_length;
     int status;
-    const char *code; /* of the problem; NULL: the answer is no problem */
+    const char *code; /* of the expected problem; NULL: the answer is no problem */
     bool fault;       /* the fault is found in the bytes; otherwise the handler answers */
     bool closes;      /* the connection closes, as after every fault */
 } framing_case;
 
 size_t framing_case_count(void);
 const framing_case *framing_case_at(size_t i);
-/* The caller frees the bytes. */
+/* Returns the bytes of a case, which the caller must free. */
 char *framing_case_bytes(const framing_case *c, size_t *length);
 
 #endif

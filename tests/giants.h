@@ -5,16 +5,15 @@
 
 #include "mesh/mesh.h"
 
-/* All functions return NULL when memory is out. */
+/* The functions below return NULL when memory is out. */
 
-/* A star of very many points. */
+/* Returns a star: a polygon with very many points. */
 he_mesh *giant_star(void);
-/* Two rows of points, connected so that the number of flips grows with the square of their
- * number. */
+/* Returns two rows of points with triangles between them, for which the number of Delaunay flips
+ * grows with the square of the number of points. */
 he_mesh *giant_rows(void);
-/* A triangle whose table has `count` materials with the names PREFIX0, PREFIX1 and so on; no face
- * uses one.
- */
+/* Returns a triangle with a table of `count` materials that no face uses; their names are PREFIX0,
+ * PREFIX1 and so on. */
 he_mesh *giant_palette(const char *prefix, size_t count);
 
 #endif

@@ -1,5 +1,5 @@
-/* journal_room.h - what the journals of tests have in common: space for bodies, and no
- * Idempotency-Keys. */
+/* journal_room.h - what the journals of tests have in common: rooms, which reserve space for the
+ * bodies of records, and no Idempotency-Keys. */
 #ifndef TESTS_JOURNAL_ROOM_H
 #define TESTS_JOURNAL_ROOM_H
 
@@ -11,7 +11,7 @@
 st_status journal_room_new(st_status refuse, const st_room_need *need, st_room **out);
 void journal_room_free(st_room *room);
 
-/* The `keys` of a journal that stores none. */
+/* The function `keys` of a journal that stores no Idempotency-Keys. */
 st_status journal_keys_none(void *self, const char *id, st_take_key *take, void *context);
 
 #endif

@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* A content, as staged parts. */
+/* A content of a mesh that was staged, as encoded parts. */
 struct st_stage {
     size_t parts, capacity;
     struct {
@@ -24,7 +24,7 @@ struct st_stage {
     } * part;
 };
 
-/* Counted by its mesh and by readers. */
+/* A stored record; its mesh and the readers of the mesh count as its users. */
 typedef struct kept_record {
     size_t uses;
     st_record record; /* texts and body are owned; its key is not stored */
@@ -35,7 +35,7 @@ typedef struct kept_record {
 
 typedef struct kept_mesh {
     st_card card;
-    kept_record *base; /* made from a stage */
+    kept_record *base; /* the record that holds a whole content, made from a stage */
     kept_record **records;
     size_t count, capacity, opened, parts;
     struct kept_mesh *next;
@@ -44,7 +44,7 @@ typedef struct kept_mesh {
 struct kept_journal {
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    kept_mesh *meshes; /* in the order of ids */
+    kept_mesh *meshes; /* sorted by id */
     uint64_t newest;
     size_t out; /* rooms, stages and readers that exist */
     st_status refuse;
@@ -55,11 +55,11 @@ struct kept_journal {
     uint64_t secret[2];
 };
 
-/* Reads what was stored when it was opened. */
+/* A reader of one mesh: it reads what was stored when it was opened. */
 struct st_reader {
     kept_journal *journal;
     char id[ST_MESH_ID + 1];
-    kept_record **records; /* the base first */
+    kept_record **records; /* the base, then the edits after it */
     size_t count, record, part;
     bool in_parts;
     char why[ST_DAMAGE];
@@ -246,7 +246,7 @@ static st_stage *stage_of(const unsigned char *body, size_t size)
     return stage;
 }
 
-/* The first record of a mesh is a base. */
+/* Stores the first record of a mesh, which is its base, the record with a whole content. */
 static void keep_first(kept_journal *journal, const st_record *record)
 {
     kept_mesh *mesh = calloc(1, sizeof *mesh);

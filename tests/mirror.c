@@ -37,7 +37,7 @@ void mirror_clear(mirror *m)
     *m = (mirror){0};
 }
 
-/* Appends a row to the table. */
+/* Appends a material to the copied table of materials. */
 static void add_material(mirror *m, const char *name, const double numbers[9], bool two_sided)
 {
     size_t length = m->materials == NULL ? 0 : strlen(m->materials);
@@ -284,7 +284,8 @@ static void read_numbers(const cJSON *list, double *out, size_t count)
     }
 }
 
-/* Rounds to float: the shortest text of a float reads back as a different double. */
+/* Rounds the values of a column of floats to float, because the shortest text of a float reads back
+ * as a double that differs from it. */
 static void round_numbers(const mirror_column *c, double *values)
 {
     for (size_t k = 0; k < c->components && c->single; k++) {
@@ -477,7 +478,7 @@ static void apply_attributes(mirror *m, const cJSON *attributes)
     }
 }
 
-/* Requires that all elements of a set are live, or that none is. */
+/* Requires that all elements in the sets of an event are live in the copy, or that none is. */
 static void require_set(const mirror *m, const cJSON *sets, bool live)
 {
     const cJSON *set, *item;
@@ -531,7 +532,8 @@ static mirror_row row_of(const mirror_table *table, size_t i)
     return i < table->count ? table->rows[i] : (mirror_row){0};
 }
 
-/* Compares bits: minus zero differs from zero, and a NaN equals itself. */
+/* Returns whether two lists of numbers have equal bits: minus zero differs from zero, and a NaN
+ * equals itself. */
 static bool same_bits(const double *a, const double *b, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

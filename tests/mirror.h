@@ -1,6 +1,7 @@
 /* mirror.h - a client's copy of a mesh: plain tables, filled from a dump and updated by events.
  *
- * It derives nothing: what an event does not contain is not in the copy. */
+ * The copy derives nothing by itself: what an event does not contain is missing from the copy, so a
+ * comparison with the mesh shows it. */
 #ifndef TESTS_MIRROR_H
 #define TESTS_MIRROR_H
 
@@ -10,8 +11,8 @@
 
 enum { MIRROR_TEXT = 200, MIRROR_LINKS = 4, MIRROR_COMPONENTS = 16 };
 
-/* Links of a vertex: half-edge; of a half-edge: next, prev, origin, face; of a face: half-edge. A
- * vertex also has a position. */
+/* A row of the copy. A vertex has the link half-edge, a half-edge has next, prev, origin and face,
+ * a face has half-edge; a vertex also has a position. */
 typedef struct mirror_row {
     bool live;
     double position[3];
@@ -27,10 +28,10 @@ typedef struct mirror_column {
     he_kind domain;
     char name[64];
     size_t components, rows;
-    bool single; /* the numbers are floats */
+    bool single; /* the values are floats, else doubles */
     double fallback[MIRROR_COMPONENTS];
     char *labels;    /* one per line; NULL: none */
-    double *values;  /* one per row; rows beyond them have the default */
+    double *values;  /* one per row; rows beyond the end have the default */
     size_t capacity; /* number of rows allocated */
 } mirror_column;
 
@@ -45,29 +46,31 @@ typedef struct mirror {
 void mirror_clear(mirror *m);
 /* Copies `mesh` at `revision`. */
 void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision);
-/* Adds one line of the collection of a kind. */
+/* Adds an element from one line of GET .../vertices, .../halfedges or .../faces. */
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element);
-/* Adds an attribute of GET .../attributes; its values are added from pages of GET
- * .../attributes/{domain}/{name}. */
+/* Adds an attribute as GET .../attributes lists it; mirror_add_values adds its values, from pages
+ * of GET .../attributes/{domain}/{name}. */
 void mirror_add_attribute(mirror *m, const cJSON *attribute);
 void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page);
-/* Sets the list of GET .../materials. */
+/* Sets the table of materials from the list of GET .../materials. */
 void mirror_set_materials(mirror *m, const cJSON *list);
 
 typedef enum mirror_step {
     MIRROR_APPLIED,
-    MIRROR_KNOWN, /* the copy has this revision already */
-    MIRROR_LOST   /* stale, or based on another revision: fetch the mesh again */
+    MIRROR_KNOWN, /* the copy already had this revision */
+    MIRROR_LOST   /* the copy lacks a revision before this one: fetch the mesh again */
 } mirror_step;
 
-/* Applies the data of an `edit` event. Fails the test if the sets contradict the copy. */
+/* Applies the data of an `edit` event to the copy. Fails the test if the sets in it contradict the
+ * copy. */
 mirror_step mirror_apply(mirror *m, const cJSON *data);
 
-/* Are all links and values equal? If not, `text` names the difference. */
+/* Returns whether all links and values of two copies are equal; if not, `text` names the
+ * difference. */
 bool mirror_equal(const mirror *a, const mirror *b, char text[MIRROR_TEXT]);
 
-/* Returns the first live element from `from` on, wrapping around; HE_NONE if there is none. Edges
- * are searched as half-edges. */
+/* Returns the first live element from `from` on, wrapping around at the end; HE_NONE if there is
+ * none. Edges are found by their half-edges. */
 uint32_t mirror_live(const mirror *m, he_kind kind, uint32_t from);
 size_t mirror_count(const mirror *m, he_kind kind);
 

@@ -21,7 +21,7 @@ static void turn_all(uint32_t n, he_vec3 *p, double angle)
     }
 }
 
-/* xorshift64 (Marsaglia 2003), from 0 to 1 */
+/* Returns a pseudo-random number from 0 to 1: xorshift64 (Marsaglia 2003). */
 static double random_number(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -46,7 +46,7 @@ static void star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* All points but two at the bottom are tips of teeth or bottoms of gaps. */
+/* Makes a comb: all points but two at the bottom are tips of teeth or bottoms of gaps. */
 static void comb(uint32_t n, he_vec3 *out)
 {
     out[0] = (he_vec3){0, 0, 0};
@@ -65,7 +65,7 @@ static void tilted_comb(uint32_t n, he_vec3 *out)
     turn_all(n, out, TURN / 8);
 }
 
-/* Teeth from both sides that reach into each other's gaps. */
+/* Makes two rows of teeth, above and below, that reach into each other's gaps. */
 static void interlocked(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -75,7 +75,7 @@ static void interlocked(uint32_t n, he_vec3 *out)
     }
 }
 
-/* The teeth of interlocked(), longer and rotated. */
+/* Makes a zigzag: the teeth of interlocked(), longer and rotated. */
 static void zigzag(uint32_t n, he_vec3 *out)
 {
     interlocked(n, out);
@@ -89,7 +89,8 @@ static void zigzag(uint32_t n, he_vec3 *out)
 static void spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
-    /* The number of turns for which sides do not cross the next turn. */
+    /* This is the largest number of turns for which the sides of a turn do not cross the next
+     * one. */
     double turns = fmin(40, cbrt(0.03 * half * half));
     for (uint32_t i = 0; i < half; i++) {
         double angle = TURN * turns * i / half, radius = 1 + angle / TURN;
@@ -98,7 +99,8 @@ static void spiral(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Each turn has a third of the size of the turn around it: all scales in one polygon. */
+/* Makes a spiral in which each turn has a third of the size of the turn around it, so that all
+ * scales occur in one polygon. */
 static void deep_spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -110,7 +112,8 @@ static void deep_spiral(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Two arcs that nearly touch, at 45 degrees: all corners but four are reflex. */
+/* Makes an hourglass of two arcs that nearly touch, turned by 45 degrees: all corners but four are
+ * reflex. */
 static void hourglass(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -122,7 +125,7 @@ static void hourglass(uint32_t n, he_vec3 *out)
     turn_all(n, out, TURN / 8);
 }
 
-/* A square with a notch of many corners. */
+/* Makes a square with a notch that has many corners. */
 static void bite(uint32_t n, he_vec3 *out)
 {
     static const he_vec3 corners[] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}};
@@ -135,7 +138,7 @@ static void bite(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Many corners on each side of a square, with exact coordinates. */
+/* Makes a square with many corners on each side, all with exact coordinates. */
 static void straight_sides(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -148,7 +151,8 @@ static void straight_sides(uint32_t n, he_vec3 *out)
     }
 }
 
-/* A disc as a text file stores it: by rounding, corners are convex or reflex. */
+/* Makes a disc with coordinates as a text file stores them: because of the rounding, a corner may
+ * be convex or reflex. */
 static void rounded_disc(uint32_t n, he_vec3 *out)
 {
     disc(n, out);
@@ -166,8 +170,8 @@ static void random_star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Cells of a square grid connected as a tree; each has a bit for each open side, and 16 when it was
- * reached. */
+/* The cells of a square grid that are connected as a tree; each has a bit for each side that is
+ * open to a neighbour, and the bit 16 once it has been reached. */
 typedef struct cells {
     uint32_t side, *open;
 } cells;
@@ -210,7 +214,8 @@ static he_vec3 corner_of_cell(const cells *c, uint32_t at, uint32_t which)
     return (he_vec3){column + corner[which][0], row + corner[which][1], 0};
 }
 
-/* Follows the wall on the right back to the start. */
+/* Walks along the wall on the right until it is back at the start; returns the number of
+ * corners. */
 static uint32_t walk_outline(const cells *c, he_vec3 *out)
 {
     uint32_t at = 0, d = 0, made = 0;
@@ -230,8 +235,8 @@ static uint32_t walk_outline(const cells *c, he_vec3 *out)
     return made;
 }
 
-/* The outline of a tree of cells, with at most four corners per cell; further corners lie on
- * straight sides. */
+/* Makes the outline of a tree of cells, which has at most four corners per cell; the remaining
+ * corners lie on straight sides. */
 static void maze(uint32_t n, he_vec3 *out)
 {
     cells c = {.side = (uint32_t)sqrt(n / 4.0) + 1};
@@ -242,7 +247,8 @@ static void maze(uint32_t n, he_vec3 *out)
     }
     grow_tree(&c, n / 4, stack);
     uint32_t made = walk_outline(&c, out), left = n - made;
-    /* Adds the missing corners to the sides, those of the first sides last. */
+    /* The corners that are missing are spread over the sides, from the last side to the first, so
+     * that the positions can be moved in place. */
     he_vec3 end = out[0];
     for (uint32_t i = made, to = n; i-- > 0;) {
         uint32_t extra = (uint32_t)((uint64_t)left * (i + 1) / made - (uint64_t)left * i / made);
@@ -284,7 +290,7 @@ static void scribble(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Winds around its centre nearly as often as it has points. */
+/* Makes a star polygon that winds around its centre nearly as often as it has points. */
 static void dense_star(uint32_t n, he_vec3 *out)
 {
     const uint32_t half = n / 2;
@@ -294,7 +300,7 @@ static void dense_star(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Winds around a disc a few hundred times. */
+/* Makes a polygon that winds around a disc a few hundred times. */
 static void wound(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -302,7 +308,7 @@ static void wound(uint32_t n, he_vec3 *out)
     }
 }
 
-/* Visits four points again and again. */
+/* Makes a polygon that visits the same four points again and again. */
 static void repeated(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -310,7 +316,8 @@ static void repeated(uint32_t n, he_vec3 *out)
     }
 }
 
-/* A disc with a hole, connected by a bridge that is walked in both directions. */
+/* Makes a disc with a hole, connected to its outline by a bridge that is walked in both
+ * directions. */
 static void keyhole(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
@@ -322,7 +329,7 @@ static void keyhole(uint32_t n, he_vec3 *out)
     out[n - 1] = out[half];
 }
 
-/* A figure eight. */
+/* Makes a figure eight. */
 static void crossed(uint32_t n, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {

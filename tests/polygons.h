@@ -8,8 +8,8 @@
 
 typedef struct polygon_shape {
     const char *name;
-    bool simple; /* no point lies on two of its sides, except its corners */
-    /* Makes the positions of n corners, counter-clockwise, with z = 0. n is at least 64 and
+    bool simple; /* its sides do not touch or cross, except neighbours at their corner */
+    /* Makes the positions of n corners, counter-clockwise, with z = 0; n must be at least 64 and
      * even. */
     void (*make)(uint32_t n, he_vec3 *out);
 } polygon_shape;

@@ -12,7 +12,7 @@
 typedef struct draft {
     md_random *random;
     const mirror *mesh;
-    uint32_t halfedge; /* arguments are chosen near it */
+    uint32_t halfedge; /* arguments are chosen in its neighbourhood */
     char *text;
     size_t length;
 } draft;
@@ -35,7 +35,7 @@ static uint32_t link_of(const draft *d, uint32_t halfedge, enum link which)
     return d->mesh->tables[HE_HALFEDGE].rows[halfedge].link[which];
 }
 
-/* Walks a few steps across faces and edges. */
+/* Returns a half-edge a few random steps across faces and edges from the draft's own. */
 static uint32_t near_halfedge(draft *d)
 {
     uint32_t h = d->halfedge;
@@ -74,7 +74,7 @@ static uint32_t element(draft *d, he_kind kind)
     return HE_NONE;
 }
 
-/* Puts corners along a hole, of a face that would fill a part of it. */
+/* Puts `count` consecutive corners along a hole: a face of them would fill a part of the hole. */
 static void put_cycle(draft *d, uint32_t count)
 {
     uint32_t h = d->halfedge;
@@ -89,7 +89,7 @@ static void put_point(draft *d)
         2 * md_unit(d->random) - 1);
 }
 
-/* Puts a small number: more steps would make the mesh large. */
+/* Puts a small whole number, because many steps of an operation would make the mesh large. */
 static void put_whole(draft *d, const he_param *p)
 {
     enum { MANY = 400 };
@@ -163,7 +163,8 @@ static void put_value(draft *d, const he_param *p)
     }
 }
 
-/* Chooses one of several alternative parameters at random. */
+/* Returns whether parameter i is given: of several alternative parameters one is chosen at
+ * random. */
 static bool is_chosen(draft *d, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];
@@ -193,7 +194,8 @@ static uint32_t find_link(const draft *d, uint32_t h, uint32_t v)
     return HE_NONE;
 }
 
-/* Puts three edges around a neck: a cycle with six faces. Returns false if there is none. */
+/* Puts three edges that form a cycle without being a face, where the mesh can be split in two.
+ * Returns false if none is found. */
 static bool put_neck(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count;
@@ -236,7 +238,7 @@ static bool on_loop(const draft *d, uint32_t loop, uint32_t h)
     return false;
 }
 
-/* Puts half-edges of two holes. Returns false if there are fewer. */
+/* Puts a half-edge of each of two holes. Returns false if the mesh has fewer holes. */
 static bool put_holes(draft *d)
 {
     uint32_t count = (uint32_t)d->mesh->tables[HE_HALFEDGE].count, hole = HE_NONE;
@@ -262,7 +264,7 @@ void random_edit(md_random *r, const mirror *m, size_t row, char text[RANDOM_EDI
     draft d = {.random = r, .mesh = m, .text = text};
     char taken[HE_OP_PARAMS + 1] = "";
     d.halfedge = any(&d, HE_HALFEDGE);
-    /* Holes are rare, and some operations need one. */
+    /* Some operations need a hole, and holes are rare, so this looks for a half-edge beside one. */
     for (uint32_t tries = 0;
          md_chance(r, 97) && tries < 60 && link_of(&d, d.halfedge, FACE) != HE_NONE; tries++) {
         if (tries == 0 && md_chance(r, 60)) {

@@ -4,9 +4,8 @@
 
 #include <stdint.h>
 
-/* Returns SEED of the environment, else a seed from the clock, and prints it, so that a failed run
- * can be repeated.
- */
+/* Returns the seed in the environment variable SEED, or else one from the clock; prints it, so that
+ * a failed run can be repeated. */
 uint64_t seed_of_run(void);
 
 #endif

@@ -56,7 +56,7 @@ static st_status stage_content(void *self, const he_mesh *content, st_stage **ou
     return ST_OK;
 }
 
-/* The edit itself is not stored. */
+/* Counts an edit as staged; its bytes are not stored. */
 static st_status stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out)
 {
     slow_journal *journal = self;
@@ -130,7 +130,8 @@ static void tell_health(void *self, st_health *out)
                                      : ST_OK};
 }
 
-/* The lock is held. Keeps what the newest group brought, so that tests can examine it. */
+/* Keeps the records of the newest group, so that tests can examine them. The caller must hold the
+ * lock. */
 static void keep_newest(slow_journal *journal, st_room *room, const st_record *first)
 {
     journal_room_free(journal->room);

@@ -27,7 +27,8 @@ void sse_add(sse *s, const char *bytes, size_t length)
     s->length += length;
 }
 
-/* Cuts the first block off, up to its blank line. */
+/* Takes the first block, up to its blank line, from the bytes that have arrived; returns false if
+ * it is not complete. */
 static bool next_block(sse *s)
 {
     for (size_t i = 0; i + 1 < s->length; i++) {

@@ -71,8 +71,8 @@ void folder_write(const char *folder, const char *name, const unsigned char *byt
     }
 }
 
-/* The -shm file is not copied: SQLite rebuilds it from the -wal, whatever a killed process
- * leaves. */
+/* The file hedge.db-shm is not copied: SQLite rebuilds it from hedge.db-wal, whatever a killed
+ * process has left in it. */
 void folder_copy(const char *from, const char *to)
 {
     for (size_t i = 0; i < COPIED; i++) {

@@ -1,4 +1,4 @@
-/* store_folder.h - folders for stores of tests, and records to write to them. */
+/* store_folder.h - folders for the stores of tests, and records to write to these. */
 #ifndef TESTS_STORE_FOLDER_H
 #define TESTS_STORE_FOLDER_H
 
@@ -8,17 +8,18 @@
 
 enum { FOLDER_PATH = 256 };
 
-/* Makes a new empty folder. */
+/* Makes a new empty folder; `out` becomes its path. */
 void folder_make(char out[FOLDER_PATH]);
 /* Removes the folder with all files and folders in it. */
 void folder_remove(const char *folder);
-/* Copies the files of a store as they are, like those that a killed process leaves. */
+/* Copies the files of a store without closing it, so that the copy is what a killed process would
+ * leave. */
 void folder_copy(const char *from, const char *to);
 /* Reads a file of the folder; the caller frees the bytes. Returns NULL if there is none. */
 unsigned char *folder_read(const char *folder, const char *name, size_t *size);
 void folder_write(const char *folder, const char *name, const unsigned char *bytes, size_t size);
 
-/* A journal and what it reported. */
+/* A journal, and everything that it reported to its listener. */
 typedef struct told_journal {
     st_journal journal;
     pthread_mutex_t lock;
@@ -33,23 +34,23 @@ void told_wait(told_journal *told, uint64_t position); /* waits until it is dura
 unsigned told_losses(told_journal *told);
 void told_end(told_journal *told); /* closes the journal */
 
-/* A mesh as a journal sees it. */
+/* A mesh as a journal knows it: its id, name and counters. */
 typedef struct kept_mesh {
     char id[ST_MESH_ID + 1], name[ST_MESH_NAME + 1];
     uint64_t incarnation, number, revision, metadata;
     const he_mesh *content;
 } kept_mesh;
 
-/* Makes a record that creates the mesh, or replaces its whole content. The caller provides the
- * body. */
+/* Make a record that creates the mesh or replaces its whole content, and a record of an edit. The
+ * caller must provide the body. */
 st_record kept_content(kept_mesh *mesh);
 st_record kept_edit(kept_mesh *mesh);
 st_record kept_rename(kept_mesh *mesh, const char *name);
 st_record kept_remove(kept_mesh *mesh);
-/* Appends one record with this body, or with the encoded content if a content has no stage. Returns
- * its position, 0 if it is refused. */
+/* Appends one record. Its body is `body`, or the encoded content if the record has a content that
+ * was not staged. Returns the record's position, 0 if it is refused. */
 uint64_t kept_append(const st_journal *journal, st_record record, const kept_mesh *mesh,
                      const void *body, size_t size);
-st_status kept_status(void); /* of the last refusal */
+st_status kept_status(void); /* returns the reason of the last refusal */
 
 #endif

@@ -8,12 +8,12 @@
 
 #include <stddef.h>
 
-/* Longer bodies are cut at this length, which `length` shows. The content of bodies that are not
- * JSON is not checked. */
+/* A longer body is recorded only up to this length; the recorded `length` is that of the whole
+ * body. Bodies that are not JSON are not compared, so little of them is recorded. */
 enum { TRAFFIC_JSON = 1 << 20, TRAFFIC_OTHER = 4 << 10 };
 
 typedef struct traffic_message {
-    const char *head; /* "Name: value" lines that end in CR LF, with or without a start line */
+    const char *head; /* lines "Name: value" that end in CR LF, with or without a start line */
     const char *body; /* NULL: unknown; "": none */
     size_t length;
 } traffic_message;

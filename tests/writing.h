@@ -4,14 +4,14 @@
 
 #include "store/write.h"
 
-/* Begins a write; returns the content, which records its changes, or NULL. */
+/* Begins a write; returns the content, which records the changes made to it, or NULL on failure. */
 static inline he_mesh *writing_begin(st_mesh *mesh, st_write *write)
 {
     return st_write_begin(mesh, NULL, write) == ST_OK ? write->content : NULL;
 }
 
-/* Commits an edit and copies the new facts to `info` unless it is NULL. If there is no memory to
- * find its changes, aborts the write. */
+/* Commits an edit and copies the mesh's new revision and times to `info` unless it is NULL. If
+ * there is no memory to compute what the edit changed, aborts the write and returns false. */
 static inline bool writing_commit(st_write *write, const char *ops, st_mesh_info *info)
 {
     if (st_write_changes(write, NULL) != HE_OK) {
@@ -40,7 +40,8 @@ static inline st_status writing_step(st_mesh *mesh, st_action which, uint32_t st
     return status;
 }
 
-/* Replaces the content; takes it, and sets the name unless it is NULL. */
+/* Replaces the content of the mesh by `takes`, which then belongs to it, and sets the name unless
+ * it is NULL. */
 static inline st_status writing_replace(st_mesh *mesh, he_mesh *takes, const char *name,
                                         st_mesh_info *info)
 {

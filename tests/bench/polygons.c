@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-/* Returns processor time: other work on the machine does not count. */
+/* Returns the processor time of this program, so that other work on the machine does not count. */
 static double seconds(void)
 {
     struct timespec now;
@@ -24,7 +24,7 @@ static double seconds(void)
 
 enum { SHORT_POLYGONS = 64, SHORT_ROUNDS = 200, SHORT_MOST = 256 };
 
-/* xorshift64 (Marsaglia 2003), from 0 to 1 */
+/* Returns a pseudo-random number from 0 to 1: xorshift64 (Marsaglia 2003). */
 static double random_number(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -33,7 +33,8 @@ static double random_number(uint64_t *state)
     return ldexp((double)(*state >> 11), -53);
 }
 
-/* Each corner has its own angle, so no two sides cross. */
+/* Makes a star-shaped polygon: each corner has an angle of its own around the centre, so no two
+ * sides cross. */
 static void short_star(uint32_t n, uint64_t *state, he_vec3 *out)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -43,7 +44,7 @@ static void short_star(uint32_t n, uint64_t *state, he_vec3 *out)
     }
 }
 
-/* Teeth of random length on a straight side. */
+/* Makes a polygon of teeth of random length on a straight side. */
 static void short_comb(uint32_t n, uint64_t *state, he_vec3 *out)
 {
     out[0] = (he_vec3){0, 0, 0};
@@ -53,8 +54,8 @@ static void short_comb(uint32_t n, uint64_t *state, he_vec3 *out)
     }
 }
 
-/* Adds up the time of all rounds. The checksum (corner numbers times their positions) shows whether
- * two runs give equal triangles. */
+/* Prints the time of all rounds, and a checksum (corner numbers times their positions) that shows
+ * whether two runs give equal triangles. */
 static void measure_short(const char *name, uint32_t n,
                           void (*make)(uint32_t n, uint64_t *state, he_vec3 *out))
 {

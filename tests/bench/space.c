@@ -25,7 +25,7 @@ static double seconds(void)
 
 static uint64_t state = 88172645463325252u;
 
-/* xorshift64 (Marsaglia 2003), from -1 to 1 */
+/* Returns a pseudo-random number from -1 to 1: xorshift64 (Marsaglia 2003). */
 static double random_number(void)
 {
     state ^= state << 13;
@@ -76,7 +76,7 @@ static void show(const char *what, double took, const he_budget *budget, uint32_
            (double)(UINT64_MAX - budget->left) / ASKED, hits, ASKED);
 }
 
-/* The tree of boxes, and all pairs of intersecting faces. */
+/* Measures building the tree of boxes, and finding all pairs of intersecting faces. */
 static void show_intersections(const char *what, const he_mesh *m, const he_bvh *tree)
 {
     he_budget budget = {.left = UINT64_MAX};
@@ -90,7 +90,7 @@ static void show_intersections(const char *what, const he_mesh *m, const he_bvh 
     he_ids_clear(&pairs);
 }
 
-/* A disc, a cone, or a disc that is folded once per spoke. */
+/* Measures a fan of triangles: a disc, a cone, or a disc that is folded once per spoke. */
 static void show_fan(const char *what, double height, double stride)
 {
     enum { SPOKES = 60000 };

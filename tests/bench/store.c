@@ -58,10 +58,10 @@ static void require(bool good, const char *what)
 
 /* --- counting records --- */
 
-static st_journal below; /* the journal that the store uses */
+static st_journal below; /* the journal whose records are counted */
 static atomic_size_t record_bytes, records;
 
-/* Counts the bytes that a record takes on disk. */
+/* Counts the bytes that a record takes on the disk, and passes the record on. */
 static uint64_t append(void *self, st_room *room, const st_record *list, size_t count)
 {
     unsigned char head[RECORD_ROOM];
@@ -157,7 +157,7 @@ static void wait_for(double time)
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 }
 
-/* Returns edits per second. */
+/* Runs the writers for some seconds; returns the edits per second. */
 static double run_writers(const st_journal *journal, size_t writers, size_t meshes, double time)
 {
     static writer all[MOST_WRITERS];
@@ -228,7 +228,8 @@ static double run_memory(size_t meshes, double time)
     return run_writers(&journal, MOST_WRITERS, meshes, time);
 }
 
-/* Writes as many bytes as a record has, again and again. */
+/* Appends as many bytes as a record has to a file and syncs it, again and again; returns how often
+ * per second. */
 static double run_raw(const char *folder, size_t size, double time)
 {
     char path[1000], bytes[RECORD_ROOM];
@@ -269,7 +270,7 @@ int main(int count, char **arguments)
     const double time = count > 3 ? strtod(arguments[3], NULL) : 1;
     double rates[ROWS][MOST_ROUNDS], median[ROWS];
     st_memory_install(0);
-    (void)run_sqlite(folder, 1, 1, 0.1); /* finds the size of records */
+    (void)run_sqlite(folder, 1, 1, 0.1); /* finds the size of a record */
     const size_t size = record_bytes / (records > 0 ? records : 1);
     for (size_t i = 0; i < rounds; i++) {
         rates[RAW][i] = run_raw(folder, size, time);

@@ -1,6 +1,6 @@
-/* Mesh documents in JSON: whole and in pieces they give the same mesh or the same refusal, the
- * repairs that are advised let them pass, and what was read is written to a document that gives the
- * same mesh again. */
+/* Mesh documents in JSON: read whole and in pieces, they must give the same mesh or the same
+ * refusal; the advised repairs must make them acceptable; and a mesh that was read must be written
+ * to a document that gives the same mesh again. */
 #include "fuzz/fuzz.h"
 
 #include "api/document/document_in.h"
@@ -10,7 +10,8 @@
 #include "unit/fixture.h"
 #include "repair/repair.h"
 
-/* In pieces of up to `most` bytes, each in a block of its own; 0: whole. NULL when refused. */
+/* Reads the document in pieces of up to `most` bytes, each in a block of its own; 0: in one piece.
+ * Returns NULL if it is refused. */
 static api_document_in *feed(const char *bytes, size_t size, uint32_t most, md_random *random,
                              api_problem *problem)
 {
@@ -54,8 +55,8 @@ static char *write_document(const he_mesh *mesh, size_t step, size_t *length)
     return text;
 }
 
-/* The mesh of a document with a set of repairs applied, or NULL; then *advised is what would help,
- * 0 for nothing. */
+/* Returns the mesh of a document after a set of repairs, or NULL; then *advised is the set that
+ * would help, 0 if none would. */
 static he_mesh *make(api_document_in *in, unsigned which, unsigned *advised)
 {
     he_repair_plan plan = {.which = which, .hole_edges = 6};
@@ -105,7 +106,8 @@ static void write_and_read(const he_mesh *mesh, bool repaired, md_random *random
     FUZZ_REQUIRE(in != NULL, "%s: %s", problem.pointer, problem.detail);
     he_mesh *again = make(in, 0, &advised);
     assert_non_null(again);
-    /* Columns with labels are equal only where they share those. */
+    /* he_mesh_equal takes columns with labels as equal only if they share one table of labels, so a
+     * mesh that was read anew is then compared by its document only. */
     assert_true(repaired || has_labels(mesh) || he_mesh_equal(again, mesh));
     char *repeated = write_document(again, md_from(random, 1, 5000), &length_again);
     assert_int_equal(length_again, length);

@@ -1,6 +1,7 @@
-/* Lists of edits, as bodies of POST .../edits on an open mesh, a closed one and one with a bow-tie.
- * What is refused leaves the mesh as it was, bit for bit; what is done leaves one that passes
- * he_check, and undo brings the earlier one back. */
+/* Lists of edits are sent as bodies of POST .../edits to an open mesh, a closed one and one with a
+ * bow-tie (a vertex with two fans of faces). A refused list must leave the mesh unchanged in every
+ * bit; after a list that succeeds the mesh must pass he_check, and undo must restore the earlier
+ * mesh. */
 #include "fuzz/fuzz.h"
 #include "fuzz/service.h"
 #include "unit/fixture.h"
@@ -16,7 +17,8 @@ static void edit(api_bench *b, const char *id, const char *body, size_t size)
     (void)snprintf(target, sizeof target, "/v1/meshes/%s/undo", id);
     status = fuzz_service_send(b, "POST", target, NULL, NULL, 0);
     he_mesh *undone = fuzz_service_mesh(b, id);
-    /* compact is not undone */
+    /* if the list was refused, or contained compact, which ends the history, undo answers 409 and
+     * changes nothing */
     FUZZ_REQUIRE(status == 409 ? he_mesh_equal(undone, after)
                                : status == 200 && he_mesh_equal_live(undone, before),
                  "undo gives %d, and leads elsewhere", status);

@@ -1,6 +1,6 @@
-/* The readers of glTF, as JSON and in its binary container: reader.h says what must hold. Text up
- * to a zero byte, and what follows that, are also put into a container whose lengths are right,
- * since changes to one of those are mostly seen at its lengths. */
+/* The readers of glTF, as JSON and in its binary container: reader.h says what must hold. The bytes
+ * before the first zero byte and those after it are also put into a container with correct lengths,
+ * because random changes to a container are mostly refused for its lengths alone. */
 #include "fuzz/fuzz.h"
 #include "fuzz/reader.h"
 
@@ -14,7 +14,7 @@ static void put_u32(uint8_t *at, size_t value)
     }
 }
 
-/* One chunk, filled up to a multiple of four; its end. */
+/* Writes one chunk, filled up to a multiple of four bytes; returns its end. */
 static uint8_t *put_chunk(uint8_t *at, const char *type, char fill, const uint8_t *bytes,
                           size_t size)
 {

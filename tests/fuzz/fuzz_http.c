@@ -1,7 +1,7 @@
-/* The bytes of a connection, as http_syntax.h checks them before libmicrohttpd reads them. However
- * they are cut, and however little room there is beside them, the same bytes are passed on, with
- * the same fault in the same request; nothing after a fault changes any of it; and what is passed
- * on ends lines and chunks as RFC 9112 has it. */
+/* The bytes of a connection, which http_syntax.h checks before libmicrohttpd reads them. In
+ * whatever pieces they arrive, and however little room there is for the output, the same bytes must
+ * be passed on, with the same fault in the same request. Nothing after a fault may change the
+ * result. Lines and chunks that are passed on must end as RFC 9112 says. */
 #include "fuzz/fuzz.h"
 #include "server/http/syntax/http_syntax.h"
 #include "unit/fixture.h"
@@ -53,7 +53,8 @@ static void require_equal(const passed *a, const passed *b, const char *what)
                  "%s: other bytes are passed on", what);
 }
 
-/* One byte at a time: where the fault is found, every byte before it has been passed on. */
+/* Feeds one byte at a time: when the fault is found, every byte before it must have been
+ * passed on. */
 static size_t find_fault(passed *p, const char *bytes, size_t size)
 {
     p->syntax = (srv_syntax){0};

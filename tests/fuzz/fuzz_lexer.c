@@ -1,12 +1,13 @@
-/* The lexer of JSON: a text is the same text wherever its pieces are cut, and what is wrong with it
- * is wrong at one of its bytes. */
+/* The JSON lexer: wherever a text is cut into pieces, it must have the same tokens and the same
+ * fault at the same byte. */
 #include "fuzz/fuzz.h"
 
 #include "json_tokens.h"
 
 #include <string.h>
 
-/* Longer numbers and names are refused in texts that come in pieces alone. */
+/* The lexer refuses longer numbers and names only in a text that comes in pieces, so such inputs
+ * are left out. */
 enum { MOST = HE_JSON_NAMES };
 
 void fuzz_one(const uint8_t *bytes, size_t size)
@@ -15,7 +16,7 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     char text[MOST + 1];
     size = size < MOST ? size : MOST;
     memcpy(text, bytes, size);
-    text[size++] = '\n'; /* a number ends where something else follows */
+    text[size++] = '\n'; /* without it, a number at the end could go on in another piece */
 
     json_tokens_of_text(&whole, text, size);
     FUZZ_REQUIRE(whole.last == HE_TOKEN_END || whole.last == HE_TOKEN_FAULT, "it has no end");

@@ -1,5 +1,5 @@
-/* The reader of material libraries: what it makes is a table as check.h wants it, and the library
- * that is written of it makes the same table again, but for sides. */
+/* The reader of MTL files, libraries of materials. The table that it makes must be one that a mesh
+ * can have, and the library written from this table must be readable and have no more materials. */
 #include "fuzz/fuzz.h"
 #include "unit/format_fixture.h"
 
@@ -9,7 +9,7 @@
 static he_status read_library(const char *bytes, size_t size, he_import *import)
 {
     he_error err = {0};
-    char *copy = malloc(size == 0 ? 1 : size); /* so that reading beyond is seen */
+    char *copy = malloc(size == 0 ? 1 : size); /* so that the sanitizer sees a read beyond it */
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     he_status status = he_mtl_read(copy, size, import, &err);

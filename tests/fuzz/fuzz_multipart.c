@@ -1,6 +1,7 @@
-/* Bodies of several files. Up to the first line feed the bytes are the Content-Type, the rest is
- * the body. Whole and in pieces it has the same parts or is refused alike; names are UTF-8 without
- * control characters; and the parts, put together anew under another boundary, are the same. */
+/* Bodies of several files (multipart/form-data). The input up to the first line feed is the
+ * Content-Type, the rest is the body. Read whole and in pieces, it must have the same parts or be
+ * refused alike; names must be UTF-8 without control characters; and the parts, written with
+ * another boundary, must be read back as they were. */
 #include "fuzz/fuzz.h"
 
 #include "api/header/multipart.h"
@@ -11,7 +12,7 @@
 
 enum { MOST_TYPE = 200 };
 
-/* What came, as a body of its own, which read again gives itself. */
+/* The parts that were read, written as a body of their own. */
 typedef struct bodies {
     api_text body;
     size_t parts, bytes;
@@ -35,7 +36,8 @@ static void begin(bodies *out, const api_part *part)
     for (const char *p = part->name; *p != '\0'; p++) {
         bool escaped = *p == '"' || *p == '\\' || *p == '%';
         if (escaped && *p == '%') {
-            /* an escape that is itself: %22 alone means something */
+            /* The sequence %22 stands for a quotation mark, so a percent sign in front of 22 cannot
+             * be written; all others stand for themselves. */
             api_text_add_string(&out->body, strncmp(p, "%22", 3) == 0 ? "?" : "%");
             continue;
         }
@@ -50,7 +52,7 @@ static void begin(bodies *out, const api_part *part)
     out->parts++;
 }
 
-/* The code of a refusal, HE_OK where it is well formed. */
+/* Reads a body. Returns the code of the refusal, or HE_OK. */
 static int read_in(const char *type, const uint8_t *bytes, size_t size, uint32_t most,
                    md_random *random, bodies *out)
 {

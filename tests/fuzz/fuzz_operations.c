@@ -1,7 +1,7 @@
-/* Operations one after another on a small mesh: the bytes choose the mesh, the rows of the table
- * and their arguments, as a decoded request would give them. After each the mesh passes he_check; a
- * refusal is one that the row declares, and changes nothing; and undo leads back through all states
- * and redo forth again. */
+/* Operations run one after another on a small mesh: the bytes choose the mesh, the rows of the
+ * table of operations and their arguments, as a decoded request would. After each operation the
+ * mesh must pass he_check. A refusal must be one that the row declares, and must change nothing.
+ * Undo must lead back through all states, and redo forth again. */
 #include "fuzz/fuzz.h"
 
 #include "algo/shape.h"
@@ -38,7 +38,8 @@ static he_mesh *make_shape(const char *name, const char *param, double value)
     return mesh;
 }
 
-/* Closed, open, with many corners to a face, of two components, with a bow-tie, empty. */
+/* Returns the mesh to start from: closed, open, with faces of many corners, of two components, with
+ * a bow-tie, or empty. */
 static he_mesh *start(uint32_t which)
 {
     switch (which % 7) {
@@ -59,7 +60,7 @@ static he_mesh *start(uint32_t which)
     }
 }
 
-/* Mostly a live one. */
+/* Returns an id, in most cases one of a live element. */
 static uint32_t pick(fuzz_tape *t, const he_mesh *mesh, he_kind kind)
 {
     uint32_t issued = he_mesh_issued(mesh, kind), byte = fuzz_byte(t);
@@ -105,7 +106,8 @@ static void draw_matrix(fuzz_tape *t, double matrix[16])
     matrix[15] = 1;
 }
 
-/* `elements` is how many a list of points has one for each of, 0 for no list. */
+/* Draws the i-th argument of a call. `elements` is the length of a list that must have one point
+ * for each element; 0: there is no such list. */
 static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, const he_mesh *other,
                        size_t elements)
 {
@@ -166,7 +168,8 @@ static void draw_value(fuzz_tape *t, call *c, size_t i, const he_mesh *mesh, con
     }
 }
 
-/* Exactly one of several alternatives is given, where one is required. */
+/* Returns whether parameter i is given a value. Of a group of alternative parameters at most one
+ * is, and exactly one if the group is required. */
 static bool is_wanted(fuzz_tape *t, const he_op *op, size_t i, const char *taken)
 {
     const he_param *p = &op->params[i];

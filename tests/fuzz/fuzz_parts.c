@@ -1,6 +1,7 @@
-/* Parts of contents as a store keeps them packed (core/journal/part_packing.h). Any bytes are
- * unpacked into the room of one part or refused with a reason, and so are those behind the head of
- * a zstd frame of any length; what is packed comes back as it was. */
+/* Parts of contents as a store compresses them (core/journal/part_packing.h). Any bytes must be
+ * decompressed within the size of one part or be refused with a reason, and so must the same bytes
+ * behind the header of a zstd frame of any length. Bytes that were compressed must come back
+ * unchanged. */
 #include "fuzz/fuzz.h"
 
 #include "journal/part_packing.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Packs the part, which may stay as it is, and unpacks it. */
+/* Compresses a part, which may also be left as it is, and decompresses it again. */
 static void pack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
 {
     unsigned char *part = malloc(HE_STORED_PART_ROOM);
@@ -43,7 +44,7 @@ static void unpack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
                  (int)status);
     if (status == ST_OK) {
         FUZZ_REQUIRE(out_size <= HE_STORED_PART_ROOM, "a part of %zu bytes", out_size);
-        unsigned char *copy = malloc(out_size + 1); /* the next unpacking writes over it */
+        unsigned char *copy = malloc(out_size + 1); /* the next call overwrites the output */
         FUZZ_REQUIRE(copy != NULL, "no memory");
         memcpy(copy, out, out_size);
         pack(unpacker, copy, out_size);

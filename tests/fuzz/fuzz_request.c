@@ -1,13 +1,15 @@
-/* Whole requests as text, each line ended by a line feed: method and target, headers, and after an
- * empty line the body, up to the end or a line of one dot, after which the next request follows.
- * Each gets an answer that is well formed, and what meshes there are afterwards pass he_check. */
+/* Complete requests as text, each line ended by a line feed: method and target, headers, and after
+ * an empty line the body, which reaches to the end or to a line of one dot, after which the next
+ * request follows. Each request must get a well-formed answer, and all meshes that exist afterwards
+ * must pass he_check. */
 #include "fuzz/fuzz.h"
 #include "fuzz/service.h"
 #include "unit/fixture.h"
 
 enum { REQUESTS = 4, HEADERS = 8 };
 
-/* The text up to `stop` or the end, which is cut off there; *next is what follows. */
+/* Returns the text up to `stop` or the end, and ends it there with a NUL; *next is the text after
+ * it. */
 static char *cut(char *text, char stop, char **next)
 {
     char *end = strchr(text, stop);
@@ -18,7 +20,8 @@ static char *cut(char *text, char stop, char **next)
     return text;
 }
 
-/* Where a body of this length ends at the latest: at a line of one dot. */
+/* Returns the length of the body at `body`, which ends before a line of one dot or after `length`
+ * bytes. */
 static size_t body_length(const char *body, size_t length)
 {
     for (size_t i = 0; i + 3 <= length; i++) {
@@ -29,7 +32,8 @@ static size_t body_length(const char *body, size_t length)
     return length;
 }
 
-/* `text` ends in NUL, and may hold others in its body. Where the next request begins. */
+/* Sends the request that begins at `text`, which ends in NUL and whose body may contain NULs.
+ * Returns where the next request begins. */
 static char *send(api_bench *b, char *text, const char *end)
 {
     const char *headers[2 * HEADERS + 1] = {NULL};

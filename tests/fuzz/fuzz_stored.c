@@ -1,7 +1,7 @@
-/* Bytes as a store reads them (core/stored): the length of a content, the content, the high-water
- * marks after an edit, the edit, as in the golden files of tests/unit/test_stored.c. What is
- * refused has a reason and changes nothing; what is read can be written and read again, and undone.
- */
+/* Bytes of a mesh as a store keeps them (core/stored): the length of a content, the content, the
+ * number of ids issued after an edit, the edit, as in the golden files of tests/unit/test_stored.c.
+ * A refusal must have a reason and change nothing. What can be read must be writable, readable
+ * again, and possible to undo. */
 #include "fuzz/fuzz.h"
 
 #include "mesh/check.h"
@@ -39,7 +39,8 @@ static void write_content(const he_mesh *m)
     free(bytes);
 }
 
-/* The edit led from `before` to the mesh as it is. */
+/* Writes the edit that led from `before` to the mesh m; applied to a copy of `before`, the bytes
+ * must give m. */
 static void write_edit(const he_delta *delta, const he_mesh *before, const he_mesh *m,
                        const uint32_t issued[HE_KIND_COUNT])
 {

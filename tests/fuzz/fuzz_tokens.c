@@ -1,5 +1,5 @@
-/* The reader of files of tokens: what it takes obeys its limits, and what it refuses it explains
- * without a word of the file. */
+/* The reader of files of tokens: a file that it accepts must obey its limits, and the reason of a
+ * refusal must not contain a word of the file, which may be secret. */
 #include "fuzz/fuzz.h"
 
 #include "api/token/token_file.h"
@@ -35,7 +35,7 @@ void fuzz_one(const uint8_t *bytes, size_t size)
 {
     api_token_list list;
     char message[API_TOKENS_MESSAGE] = "";
-    char *copy = malloc(size == 0 ? 1 : size); /* so that reading beyond is seen */
+    char *copy = malloc(size == 0 ? 1 : size); /* so that the sanitizer sees a read beyond it */
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     if (api_token_file_read(copy, size, &list, message)) {

@@ -1,6 +1,7 @@
-/* Coded bodies: gzip, or zstd where the bytes begin as its frames do. Whole and in pieces they
- * unfold to the same or are refused alike, never beyond the ratio that is allowed, and to what the
- * libraries make of them in one go. And any bytes that are packed unfold to themselves. */
+/* Compressed bodies: zstd if the bytes begin as its frames do, else gzip. Read whole and in pieces
+ * they must decompress to the same bytes or be refused alike, never beyond the allowed ratio, and
+ * to the bytes that zlib and libzstd make of them in one call. Any bytes that are compressed must
+ * decompress to themselves. */
 #include "fuzz/fuzz.h"
 
 #include "api/header/pack.h"
@@ -25,7 +26,7 @@ static bool take(void *context, const char *bytes, size_t length)
     return true;
 }
 
-/* The code of a refusal, HE_OK where it unfolds. */
+/* Decompresses a body. Returns the code of the refusal, or HE_OK. */
 static int unfold(api_coding coding, const uint8_t *bytes, size_t size, uint32_t most,
                   md_random *random, unfolded *out)
 {
@@ -78,8 +79,9 @@ static void pack_and_unpack(api_coding coding, const uint8_t *bytes, size_t size
     free(packed);
 }
 
-/* In one go zlib takes one member. libzstd then takes blocks that are larger than RFC 8878 lets
- * them be. */
+/* If zlib or libzstd decodes the body in one call, the daemon must accept it, with the same bytes.
+ * In one call zlib decodes one gzip member only, and libzstd accepts blocks larger than RFC 8878
+ * allows: so gzip is not compared beyond the ratio, and zstd only if the daemon accepts it. */
 static void compare(api_coding coding, const uint8_t *bytes, size_t size, int code,
                     const unfolded *whole)
 {

@@ -6,7 +6,7 @@
 #include "repair/repair.h"
 #include "unit/format_fixture.h"
 
-/* Pieces of all sizes up to a size that is drawn too, each in a block of its own. */
+/* Reads the bytes in pieces of random sizes, each in a block of its own. */
 static he_status read_cut(const char *format, const char *bytes, size_t size, md_random *random,
                           he_import *out, he_error *err)
 {
@@ -41,7 +41,7 @@ static he_import read_again(const char *format, const void *bytes, size_t size)
 
 /* --- writing --- */
 
-/* What is read as JSON alone is written in the binary container. */
+/* Returns the format to write: a glTF that was read as JSON is written in the binary container. */
 static const char *writer_of(const char *format)
 {
     return strcmp(format, "gltf") == 0 ? "glb" : format;
@@ -52,12 +52,12 @@ static uint32_t corners_of(const he_mesh *mesh)
     return 2 * he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);
 }
 
-/* How often a mesh is written and read until its documents repeat: never, at once, or, where
- * positions are rounded and polygons cut by them, from the second on. */
+/* After how many rounds of writing and reading the files of a mesh must be equal: never; at once;
+ * or, if positions are rounded and polygons cut by this, from the second round on. */
 enum { NEVER, AT_ONCE, ROUNDED };
 
-/* A mesh in one encoding of a format: it can be read again and is as large, unless the format is of
- * triangles without numbers. */
+/* Writes a mesh in one encoding of a format and reads it again: it must have the same size, except
+ * in STL, which has no shared vertices. */
 static void write_and_read(const he_mesh *mesh, const char *format, const char *encoding,
                            int repeats, md_random *random)
 {
@@ -75,7 +75,8 @@ static void write_and_read(const he_mesh *mesh, const char *format, const char *
             assert_int_equal(he_mesh_faces(again), he_mesh_faces(mesh));
             assert_int_equal(corners_of(again), corners_of(mesh));
         }
-        /* What has no rows is written, but read only with its first. */
+        /* A mesh without faces can have a format's table of zero rows, of which the reader does not
+         * restore everything, so the second file is compared only if there are faces. */
         if (repeats == AT_ONCE && he_mesh_faces(mesh) > 0) {
             char *repeated = write_encoded(format, encoding, again, md_from(random, 1, 5000), NULL,
                                            &length_again);
@@ -92,7 +93,8 @@ static void write_and_read(const he_mesh *mesh, const char *format, const char *
     free(first);
 }
 
-/* A position may be beyond the floats of a format. */
+/* Returns whether the format can hold the mesh: a coordinate may be too large for the floats of
+ * some formats. */
 static bool can_write(const he_mesh *mesh, const he_format *format, const char *encoding)
 {
     he_writer *writer = NULL;
@@ -104,7 +106,8 @@ static bool can_write(const he_mesh *mesh, const he_format *format, const char *
     return status == HE_OK;
 }
 
-/* Text keeps all digits in every format; of STL, only as long as it is what was read. */
+/* Writes the mesh in its own format and, at random, in the others. A text encoding keeps all digits
+ * of a position; STL does so only if the mesh is as it was read. */
 static void write_all_formats(const he_mesh *mesh, const char *own, bool repaired,
                               md_random *random)
 {
@@ -124,7 +127,7 @@ static void write_all_formats(const he_mesh *mesh, const char *own, bool repaire
             continue;
         }
         bool varies = stl && (repaired || strcmp(encoding, "ascii") != 0);
-        /* A repair may leave labels that no face has: they are gone after one round. */
+        /* A repair may leave labels that no face has; these are gone after one round. */
         bool rounds = repaired || strcmp(row->name, "glb") == 0;
         int repeats = !mine || varies ? NEVER : rounds ? ROUNDED : AT_ONCE;
         write_and_read(mesh, row->name, encoding, repeats, random);
@@ -151,8 +154,8 @@ static void require_report(const he_report *report, size_t vertices, size_t face
     }
 }
 
-/* Read anew and apply a set of repairs: a mesh that passes the check, or what set is advised then,
- * 0 for none. */
+/* Reads the input again and applies a set of repairs. The mesh must then pass he_check; if it is
+ * refused instead, returns the set of repairs that is now advised, 0 for none. */
 static unsigned mend(subject *s, unsigned which)
 {
     he_repair_plan plan = {.which = which,
@@ -191,14 +194,14 @@ static unsigned mend(subject *s, unsigned which)
     return advised;
 }
 
-/* What is advised with a tolerance lets the file pass with another one too only where nothing is
- * welded: then the vertices that meet are others. */
+/* Requires that the advised repairs suffice. They are applied with the tolerance for which they
+ * were advised: with another one, other vertices would be merged and other defects appear. */
 static void mend_as_advised(subject *s, unsigned which)
 {
     md_random random = s->random;
     unsigned advised = mend(s, which);
     if (advised != 0) {
-        s->random = random; /* the same tolerance */
+        s->random = random; /* so that the same tolerance is drawn */
         FUZZ_REQUIRE(mend(s, advised) == 0, "%#x, advised after %#x, is not enough", advised,
                      which);
     }

@@ -1,16 +1,16 @@
-/* reader.h - what holds of any bytes that are read as a mesh file.
+/* reader.h - what must hold for any bytes that are read as a mesh file.
  *
- * Whole and in pieces they give the same import or the same refusal, and a refusal names its place.
- * An import can be built, or is refused with its place; then the repairs that are advised let it
- * pass. What was built passes he_check, and written in each format it can be read again: in its own
- * format to the same document. Sizes of pieces, further repairs and encodings follow from the
- * bytes. */
+ * Read whole and in pieces they must give the same import or the same refusal, and a refusal must
+ * name its place in the file. An import must be buildable, or be refused with a place; then the
+ * advised repairs must make it acceptable. The built mesh must pass he_check, and each format in
+ * which it is written must be readable again; in its own format it must give the same file. The
+ * sizes of the pieces, the other repairs and the encodings are derived from the bytes. */
 #ifndef TESTS_FUZZ_READER_H
 #define TESTS_FUZZ_READER_H
 
 #include <stddef.h>
 
-/* `format` is a name of the table. */
+/* Checks the bytes as a file of this format, a name in the table of formats. */
 void fuzz_reader(const char *format, const void *bytes, size_t size);
 
 #endif

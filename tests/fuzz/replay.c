@@ -1,4 +1,5 @@
-/* Goes through files as libFuzzer would: the main program where a target is not linked with it. */
+/* Runs the fuzz target on each file it is given, as libFuzzer would: the main program of targets
+ * that are not linked with libFuzzer. */
 #include "fuzz/fuzz.h"
 
 #include <stdio.h>
@@ -26,7 +27,7 @@ static bool replay(const char *path)
     }
     bool good = ferror(file) == 0 && feof(file) != 0;
     (void)fclose(file);
-    /* A block of just these bytes, so that reading beyond them is seen by the sanitizer. */
+    /* The block has exactly the size of the file, so that the sanitizer sees a read beyond it. */
     uint8_t *exact = size == 0 ? bytes : realloc(bytes, size);
     if (good && exact != NULL) {
         (void)fprintf(stderr, "%s\n", path);

@@ -3,7 +3,7 @@
 #include "fuzz/fuzz.h"
 #include "unit/fixture.h"
 
-/* Small bodies, so that nothing they ask for is large. */
+/* Bodies are small, so that nothing that they describe is large. */
 enum { UNDO_BUDGET = 8 << 20, UPLOAD = 64 << 10 };
 
 static void create(api_bench *b, const char *target, const char *body)

@@ -1,5 +1,6 @@
-/* service.h - a service in the process, over a store with three small meshes: "m" is a square of
- * quads, "cube" closed, "bowtie" two triangles that meet at a vertex. */
+/* service.h - a service in the process of the fuzz target, over a store with three small
+ * meshes: "m" is a square of quads, "cube" is closed, "bowtie" has two triangles that share
+ * only a vertex. */
 #ifndef TESTS_FUZZ_SERVICE_H
 #define TESTS_FUZZ_SERVICE_H
 
@@ -7,14 +8,16 @@
 
 api_bench *fuzz_service_new(void);
 
-/* A copy of what the mesh of an id is now; NULL when there is none. It passes he_check. */
+/* Returns a copy of the present mesh with this id, NULL if there is none; requires that it passes
+ * he_check. */
 he_mesh *fuzz_service_mesh(api_bench *b, const char *id);
 
-/* Could these bytes ask for much finer meshes? What is large by intent is no find. */
+/* Returns whether these bytes may ask for a much finer mesh. Such inputs are skipped, because a
+ * mesh that is large on request is no fault. */
 bool fuzz_service_refines(const void *bytes, size_t size);
 
-/* Send a request; the status of the answer, which is well formed and no 500. Jobs are run to their
- * end. */
+/* Sends a request, and runs jobs to their end. Returns the status of the answer; requires that the
+ * answer is well-formed and that the status is not 500. */
 int fuzz_service_send(api_bench *b, const char *method, const char *target,
                       const char *const *headers, const char *body, size_t length);
 

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- arguments by name ------------------------------------------------------------------- */
+/* --- arguments by name --- */
 
 size_t md_index(const md_call *c, const char *name)
 {
@@ -84,7 +84,7 @@ void md_give_points(md_draft *d, const char *name, uint32_t count, bool list)
     arg->list = list;
 }
 
-/* --- elements: mostly live, sometimes deleted, sometimes never issued ----------------------- */
+/* --- elements --- */
 
 uint32_t md_live(md_draft *d, he_kind kind)
 {

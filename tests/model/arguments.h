@@ -1,4 +1,4 @@
-/* arguments.h - arguments of a call by name, and elements to use as arguments: mostly live,
+/* arguments.h - draws arguments for a call by name: elements of the mesh, in most cases live,
  * sometimes deleted, sometimes never issued. */
 #ifndef TESTS_MODEL_ARGUMENTS_H
 #define TESTS_MODEL_ARGUMENTS_H
@@ -17,20 +17,20 @@ typedef struct md_call {
     he_vec3 points[HE_OP_PARAMS][MD_LIST];
 } md_call;
 
-/* Writes the call as a request would spell it. */
+/* Writes the call in the form of a request. */
 void md_describe(const md_call *c, char text[MD_CALL_TEXT]);
 
-/* Finds parameters by name or plural; a missing one fails the test. */
+/* Find a parameter by its name or its plural; if it is missing, the test fails. */
 size_t md_index(const md_call *c, const char *name);
 const he_arg *md_get(const md_call *c, const char *name);
 
-/* State of making up a call. */
+/* The state while a call and its arguments are drawn. */
 typedef struct md_draft {
     md_call *c;
     const or_mesh *o;
     const he_mesh *m;
     md_random *r;
-    bool far; /* points may be as large as doubles get */
+    bool far; /* points may have coordinates as large as doubles get */
 } md_draft;
 
 void md_give_id(md_draft *d, const char *name, uint32_t id);
@@ -39,21 +39,24 @@ void md_give_flag(md_draft *d, const char *name, bool flag);
 void md_give_ids(md_draft *d, const char *name, const uint32_t *ids, uint32_t count, bool list);
 void md_give_points(md_draft *d, const char *name, uint32_t count, bool list);
 
-/* Returns a live element if there is one. */
+/* md_live returns a live element if there is one; md_pick returns one that may also be deleted or
+ * never issued. */
 uint32_t md_live(md_draft *d, he_kind kind);
 uint32_t md_pick(md_draft *d, he_kind kind);
-/* Puts up to `most` elements, as one id or as a list, sometimes with a repeated one. Returns their
- * number. */
+/* Puts up to `most` elements into the call, as one id or as a list, sometimes with a repeated one.
+ * Returns their number. */
 uint32_t md_pick_some(md_draft *d, const char *one, const char *many, he_kind kind, uint32_t most);
 uint32_t md_boundary_halfedge(md_draft *d);
-/* Puts `point` and `normal`: random ones, or those of a plane through three vertices. */
+/* Puts the arguments `point` and `normal`: random ones, or those of a plane through three
+ * vertices. */
 void md_give_plane(md_draft *d);
 
-/* Calls or_require for all elements of a list, and returns HE_REPEATED_ELEMENT, too. */
+/* Returns what or_require refuses about any element of a list, and HE_REPEATED_ELEMENT if one is
+ * repeated. */
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg);
 bool md_is_live_boundary(const he_mesh *m, uint32_t h);
-/* Finds the origins along the hole of a boundary half-edge, at most OR_CORNERS; returns 0 if there
- * are more. */
+/* Finds the origins of the half-edges along a hole, given one of its half-edges, at most
+ * OR_CORNERS; returns 0 if there are more. */
 uint32_t md_hole(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS]);
 
 #endif

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- the rows ------------------------------------------------------------------------------ */
+/* --- the rows --- */
 
 static bool draw_vertex_add(md_draft *d)
 {
@@ -102,7 +102,7 @@ static uint64_t play_vertex_split(const md_call *c, or_mesh *o, const he_mesh *m
     uint64_t sides = left == HE_NONE ? 0 : or_require(o, HE_VERTEX, left);
     sides |= right == HE_NONE ? 0 : or_require(o, HE_VERTEX, right);
     if (sides != 0) {
-        /* Another reason that also holds may be reported first. */
+        /* If another reason to refuse also holds, hedge may report that one first. */
         bool null = left == HE_NONE || right == HE_NONE;
         uint32_t v = md_get(c, "vertex")->id;
         bool there = refused == 0;
@@ -210,7 +210,7 @@ static uint64_t play_face_delete(const md_call *c, or_mesh *o, const he_mesh *m)
                : or_face_delete(o, f->ids, (uint32_t)f->count, md_get(c, "keep_isolated")->flag);
 }
 
-/* Corners are named by vertex or by the half-edge that leaves them. */
+/* The request names a corner of the face by its vertex or by the half-edge that leaves it. */
 static const char *const split_corner[2][2] = {{"from", "from_halfedge"}, {"to", "to_halfedge"}};
 
 static bool draw_face_split(md_draft *d)
@@ -260,7 +260,8 @@ static uint64_t play_face_split(const md_call *c, or_mesh *o, const he_mesh *m)
     }
     refused |= missing;
     if (refused != 0) {
-        /* If another reason holds, two equal corners may be reported first. */
+        /* If another reason to refuse holds, hedge may report first that the two corners are
+         * equal. */
         return refused | OR_BIT(HE_NOT_A_CORNER) | OR_BIT(HE_SAME_CORNER);
     }
     return or_face_split(o, f, corner[0], corner[1]);
@@ -272,7 +273,7 @@ static bool draw_edge(md_draft *d)
     return true;
 }
 
-/* Faces beside a live edge, or a live face, must not outgrow the oracle. */
+/* Returns whether the faces beside a live edge stay small enough for the oracle's tables. */
 static bool edge_has_room(const or_mesh *o, uint32_t e, uint32_t most)
 {
     uint32_t corners = 0;
@@ -471,8 +472,8 @@ static uint64_t play_edge_collapse(const md_call *c, or_mesh *o, const he_mesh *
                             to->given ? to->points : NULL);
 }
 
-/* A rotation about z, a translation, and sometimes a mirror: repeated many times, it stays in
- * range. */
+/* Draws a rotation about z, a translation, and sometimes a mirror: repeated many times, these keep
+ * the coordinates small. */
 static bool draw_transform(md_draft *d)
 {
     double angle = md_unit(d->r) * 6;
@@ -485,7 +486,8 @@ static bool draw_transform(md_draft *d)
     arg->given = true;
     memcpy(arg->matrix, matrix, sizeof matrix);
     if (md_chance(d->r, 5)) {
-        /* Everything that is not near the plane x = 0 overflows. */
+        /* The matrix makes all coordinates overflow except those of vertices near the plane x
+         * = 0. */
         bool overflows = false;
         for (uint32_t v = 0; v < d->o->vertices; v++) {
             overflows = overflows || (d->o->vertex[v].alive && d->o->vertex[v].at.x > 0.2);
@@ -673,7 +675,7 @@ bool md_draw(md_call *c, const or_mesh *o, const he_mesh *m, md_random *r, bool 
     }
     he_op_defaults(c->op, c->args);
     const md_row *row = row_of(c->op->name);
-    /* Spares a mesh with few faces. */
+    /* A mesh with few faces is mostly spared from operations that make it smaller. */
     if (row->growth < 0 && he_mesh_faces(m) < 8 && md_chance(r, 60)) {
         return false;
     }

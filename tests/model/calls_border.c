@@ -37,7 +37,7 @@ static uint32_t interior_edge_at(md_draft *d, uint32_t v, uint32_t not )
     return OR_NONE;
 }
 
-/* Edges along a path, or random ones. */
+/* Draws edges along a path, or random ones. */
 static bool draw_edge_cut(md_draft *d)
 {
     uint32_t path[5];
@@ -76,7 +76,7 @@ static uint64_t play_edge_cut(const md_call *c, or_mesh *o, const he_mesh *m)
     return refused != 0 ? refused : or_edge_cut(o, e->ids, (uint32_t)e->count);
 }
 
-/* Two consecutive edges along a hole, or random ones. */
+/* Draws two consecutive edges along a hole, or random ones. */
 static bool draw_edge_weld(md_draft *d)
 {
     uint32_t h = md_boundary_halfedge(d);
@@ -110,7 +110,7 @@ static uint64_t play_edge_weld(const md_call *c, or_mesh *o, const he_mesh *m)
     return refused != 0 ? refused : or_edge_weld(o, a, b, keeps[md_get(c, "keep")->choice]);
 }
 
-/* A chain along a hole, or random edges. */
+/* Draws a chain of edges along a hole, or random edges. */
 static bool draw_edge_extrude(md_draft *d)
 {
     uint32_t chain[5];
@@ -126,7 +126,7 @@ static bool draw_edge_extrude(md_draft *d)
     he_halfedge k = {h};
     while (n < most && (n == 0 || k.i != h)) {
         chain[n++] = k.i / 2;
-        /* Continues along the hole, or jumps to another one. */
+        /* The chain goes on along its hole, or sometimes jumps to another one. */
         k = md_chance(d->r, 85) ? he_next(d->m, k) : (he_halfedge){md_boundary_halfedge(d)};
         for (uint32_t i = 1; i < n; i++) {
             most = chain[i] == k.i / 2 ? n : most;
@@ -158,7 +158,8 @@ static bool draw_edge_bevel(md_draft *d)
     if (or_require(d->o, HE_EDGE, e) != 0) {
         return true;
     }
-    /* Faces at the ends get an additional corner. */
+    /* The bevel adds corners to the faces at both ends of the edge, which must fit into the
+     * oracle's tables. */
     uint32_t ends[2] = {d->o->edge[e].a, d->o->edge[e].b};
     for (uint32_t f = 0; f < d->o->faces; f++) {
         bool beside = d->o->face[f].alive && (or_place(&d->o->face[f], ends[0]) != OR_NONE ||

@@ -14,8 +14,8 @@ static uint32_t draw_interior(md_draft *d)
     return v;
 }
 
-/* Does a face with all corners of the faces around v, except its neighbours, fit into the
- * oracle? */
+/* Returns whether the oracle has room for the face that dissolving v makes: it has all corners of
+ * the faces around v, except its neighbours. */
 static bool has_room_about(const or_mesh *o, uint32_t v)
 {
     uint32_t corners = 0;
@@ -83,7 +83,8 @@ static uint64_t play_vertex_split_corners(const md_call *c, or_mesh *o, const he
     if (he_origin(m, a).i != he_origin(m, b).i) {
         return OR_BIT(HE_DIFFERENT_ORIGINS);
     }
-    /* At a bow-tie the order of the fans is hedge's choice. */
+    /* These are the vertices that the move takes along. At a bow-tie (a vertex with several fans of
+     * faces) the order of the fans is hedge's choice, so it is read from hedge's mesh. */
     for (he_halfedge h = a; h.i != b.i; h = he_turn_ccw(m, h)) {
         moved[count++] = he_target(m, h).i;
     }

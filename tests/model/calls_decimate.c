@@ -38,8 +38,9 @@ static bool draw_decimate(md_draft *d)
     return true;
 }
 
-/* hedge chooses which edges to collapse. A copy of its mesh shows the choice; each collapse must be
- * one that edge_collapse allows, and ids and faces must be as these give. */
+/* Runs a decimation on the oracle. hedge may choose which edges to collapse; a copy of its mesh
+ * shows the choice. Each collapse must be one that edge_collapse allows, and the ids and faces must
+ * be as these collapses give. */
 static uint64_t play_decimate(const md_call *c, or_mesh *o, const he_mesh *m)
 {
     const he_arg *faces = md_get(c, "faces"), *most = md_get(c, "max_error");

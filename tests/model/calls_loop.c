@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Finds the origins along the loop of h; returns 0 if h is not live or its loop is too long. */
+/* Finds the origins of the half-edges along the loop of h; returns 0 if h is not live or its loop
+ * is too long. */
 static uint32_t loop_of(const he_mesh *m, uint32_t h, uint32_t loop[OR_CORNERS])
 {
     if (h >= he_mesh_issued(m, HE_HALFEDGE) || !he_mesh_is_live(m, HE_HALFEDGE, h)) {
@@ -66,7 +67,8 @@ static bool draw_loop_bridge(md_draft *d)
         for (int tries = 0; tries < 20 && (on_one_loop(d->m, a, b) || meet(d->m, a, b)); tries++) {
             b = md_boundary_halfedge(d);
         }
-        /* Usually there is only one hole. */
+        /* In most meshes there is only one hole, so two half-edges of one loop are mostly rejected,
+         * to try again. */
         if (on_one_loop(d->m, a, b) && md_chance(d->r, 80)) {
             return false;
         }
@@ -142,8 +144,8 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
     if (n != k) {
         return OR_BIT(HE_LOOP_LENGTH);
     }
-    /* b runs from y[0] to y[1] and is laid on a from x[0] to x[1]: the two run in opposite
-     * directions. */
+    /* The second loop runs from y[0] to y[1] and is joined to the first, which runs from x[0] to
+     * x[1]: the two must run in opposite directions. */
     for (uint32_t i = 0; i < n; i++) {
         against[i] = y[(n + 1 - i) % n];
     }
@@ -152,7 +154,8 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* --- loop_split --- */
 
-/* Finds three mutually adjacent corners that share no face, if there are any. */
+/* Finds three vertices, each adjacent to both others, that are not the corners of one face, where
+ * the mesh can be split; returns their edges in `e`, or false if none are found. */
 static bool find_neck(md_draft *d, uint32_t e[3])
 {
     const or_mesh *o = d->o;
@@ -210,8 +213,8 @@ static uint64_t play_loop_split(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* --- plane_cut --- */
 
-/* Is some face so nearly in the plane, or its part there so small, that rounding decides its
- * direction? */
+/* Returns whether some face is so nearly in the plane, or its part there is so small, that rounding
+ * decides on which side it lies. */
 static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal, double within)
 {
     double length = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
@@ -262,8 +265,9 @@ static bool draw_plane_cut(md_draft *d)
            size.longest < OR_CORNERS;
 }
 
-/* The steps of the cut are operations of their own: hedge runs each on a copy, which gives ids and
- * links of holes, and the oracle runs it, too. What is cut where is found here. */
+/* The steps of plane_cut are operations by themselves: hedge runs each on a copy of the mesh, which
+ * gives the ids and the links of holes, and the oracle runs it, too. Which elements are cut is
+ * found here, independently. */
 typedef struct cutting {
     or_mesh *o;
     he_mesh *copy;
@@ -328,8 +332,8 @@ static uint64_t delete_side(cutting *c)
         if (refused != 0 || !o->vertex[v].alive || !away) {
             continue;
         }
-        /* All faces at this corner are deleted, since faces that stay have no corners on the other
-         * side. */
+        /* All faces at this vertex are deleted, since a face that stays has no corner on the other
+         * side of the plane. */
         refused |= or_vertex_delete(o, v, false);
         if (refused == 0 && he_mesh_is_live(c->copy, HE_VERTEX, v) &&
             he_is_isolated(c->copy, (he_vertex){v})) {

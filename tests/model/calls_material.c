@@ -8,15 +8,16 @@
 static const char *const names[] = {"red", "green", "blue", "steel", "glass"};
 enum { NAMES = sizeof names / sizeof *names };
 
-/* The attribute `material` of faces, made by marks.c without labels, names no materials. */
+/* Returns whether the mesh has the attribute `material` of faces without labels, which marks.c
+ * makes: it takes the name of the attribute that stands for materials, but names none. */
 static bool clashes(const he_mesh *m)
 {
     const he_column *column = he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE);
     return column != NULL && !he_is_material_column(column);
 }
 
-/* The model has no attributes: unit tests check the values of materials, the model checks that
- * nothing else changes. */
+/* Draws a material_set. The model has no attributes: unit tests check the values of materials, and
+ * the model checks that nothing else changes. */
 static bool draw_material_set(md_draft *d)
 {
     he_arg *name = &d->c->args[md_index(d->c, "name")];

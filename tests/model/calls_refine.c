@@ -11,7 +11,8 @@ static void give_scheme(md_draft *d, or_scheme scheme)
     arg->choice = (int)scheme;
 }
 
-/* Does the result of a step fit into the oracle, with space left? */
+/* Returns whether the result of a step of subdivision fits into the oracle's tables, with space
+ * left. */
 static bool fits(const or_mesh *o, or_scheme scheme, uint32_t faces, uint32_t corners)
 {
     enum { ROOM = 200 };
@@ -21,8 +22,8 @@ static bool fits(const or_mesh *o, or_scheme scheme, uint32_t faces, uint32_t co
            o->edges + edges + corners + ROOM < OR_EDGES && o->faces + corners + ROOM < OR_FACES;
 }
 
-/* Mostly small meshes, since one face becomes four. Many steps test the limit, which four faces
- * exceed by far. */
+/* Draws a subdivision, mostly of small meshes, since one face becomes four. A large number of steps
+ * tests the limit, which even a mesh of four faces then exceeds by far. */
 static bool draw_subdivide(md_draft *d)
 {
     enum { FEW = 3, MANY = 40, LEAST_BEYOND = 4, BEYOND = 12 };

@@ -18,7 +18,7 @@ static void find_starts(const he_mesh *m, uint32_t start[OR_FACES])
     }
 }
 
-/* Is there space for what extruding the named faces makes? */
+/* Returns whether the oracle has room for the faces that extruding these faces makes. */
 static bool have_room(const or_mesh *o, const he_arg *faces)
 {
     uint32_t corners = 0;
@@ -29,7 +29,7 @@ static bool have_room(const or_mesh *o, const he_arg *faces)
            o->faces + corners < OR_FACES && corners < 4 * OR_LIST;
 }
 
-/* Mostly a few connected faces; sometimes a whole small component. */
+/* Picks a few connected faces in most cases, sometimes a whole small component. */
 static void pick_patch(md_draft *d)
 {
     uint32_t ids[MD_LIST];
@@ -57,7 +57,7 @@ static void pick_patch(md_draft *d)
     md_give_ids(d, "faces", ids, n, true);
 }
 
-/* Picks a face whose corners are in two places only. */
+/* Picks a face whose corners are at only two positions, so that it has no normal. */
 static bool pick_flat(md_draft *d)
 {
     uint32_t start = md_below(d->r, d->o->faces + 1);
@@ -93,7 +93,8 @@ static or_region region_of(const md_call *c, const uint32_t *start)
     return (or_region){f->ids, start, (uint32_t)f->count, md_get(c, "region")->flag};
 }
 
-/* With a distance, the faces must have a direction that rounding cannot change. */
+/* Returns whether the faces have a direction that rounding cannot change, which an extrusion by a
+ * distance needs. */
 static bool is_clear(md_draft *d, bool inset)
 {
     uint32_t start[OR_FACES];
@@ -154,8 +155,8 @@ static uint64_t play_face_inset(const md_call *c, or_mesh *o, const he_mesh *m)
     return or_face_inset(o, region_of(c, start), factor->given ? factor->number : 0, distance);
 }
 
-/* Not where a face has such large surroundings that hedge may refuse the work, which limits.h
- * tests. */
+/* Draws a face_collapse, but not of a face with so large surroundings that hedge may refuse the
+ * work; limits.h tests that refusal. */
 static bool draw_face_collapse(md_draft *d)
 {
     uint32_t f = md_pick(d, HE_FACE);
@@ -254,7 +255,8 @@ static uint64_t play_dual(const md_call *c, or_mesh *o, const he_mesh *m)
 static or_mesh *other_oracle;
 static he_mesh *other;
 
-/* Adds numbers; if marks are bools, the two clash. */
+/* Adds the attribute `locked` of faces as numbers; if the mesh that is edited has it as bools, the
+ * two clash. */
 static bool add_numbers(he_mesh *m)
 {
     he_column *column = NULL;

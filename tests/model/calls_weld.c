@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-/* --- merging vertices ----------------------------------------------------------------------- */
+/* --- merging vertices --- */
 
-/* Chooses ends of two consecutive boundary edges, so that the edges become one. */
+/* Draws the ends of two consecutive boundary edges, so that merging them makes the edges one. */
 static uint32_t draw_zip(md_draft *d, uint32_t v[2])
 {
     he_halfedge h = {md_boundary_halfedge(d)};
@@ -41,7 +41,8 @@ static uint32_t draw_face_corners(md_draft *d, uint32_t *v)
     return d->o->face[f].count;
 }
 
-/* Chooses vertices on the boundary, which may make bow-ties. */
+/* Draws vertices on the boundary; merging them may make bow-ties (vertices with several fans of
+ * faces). */
 static uint32_t draw_boundary(md_draft *d, uint32_t v[2])
 {
     for (uint32_t i = 0; i < 2; i++) {
@@ -51,7 +52,7 @@ static uint32_t draw_boundary(md_draft *d, uint32_t v[2])
     return v[0] == v[1] ? 0 : 2;
 }
 
-/* Slightly more than the distance of two vertices, a small value, or 0. */
+/* Returns a tolerance: slightly more than the distance of two vertices, a small value, or 0. */
 static double draw_tolerance(md_draft *d)
 {
     if (md_chance(d->r, 3)) {
@@ -156,7 +157,7 @@ static uint64_t play_weld(const md_call *c, or_mesh *o, const he_mesh *m)
     return play_near(c, o, true);
 }
 
-/* --- separating bow-ties -------------------------------------------------------------------- */
+/* --- separating bow-ties --- */
 
 static bool draw_vertex_separate(md_draft *d)
 {
@@ -174,8 +175,8 @@ static bool draw_vertex_separate(md_draft *d)
     return md_chance(d->r, 30);
 }
 
-/* Finds the first neighbours of the fans that leave v: all but the fan that ends with the stored
- * half-edge. */
+/* Finds the fans of faces that get a new vertex when v is separated, and in each its first
+ * neighbour of v: all fans but the one that ends with the stored half-edge of v. */
 static uint32_t leaving(const he_mesh *m, uint32_t v, uint32_t starts[OR_VERTICES])
 {
     uint32_t n = 0;
@@ -200,7 +201,8 @@ static uint64_t separate(or_mesh *o, const he_mesh *m, const uint32_t *v, size_t
     }
     for (size_t i = 0; i < count && refused == 0; i++) {
         uint32_t n = leaving(m, v[i], starts);
-        /* Some of them may have another vertex by now. */
+        /* An earlier vertex in the list may have been separated already, so a neighbour at which a
+         * fan begins may have been replaced by a new vertex. */
         for (uint32_t k = 0; k < n; k++) {
             he_halfedge h = he_find_halfedge(m, (he_vertex){v[i]}, (he_vertex){starts[k]});
             const or_edge *e = &o->edge[h.i / 2];

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Larger meshes leave the oracle no space to grow. */
+/* A larger mesh would leave no space in the oracle's tables to grow. */
 enum { MOST_VERTICES = OR_VERTICES / 2, MOST_FACES = OR_FACES / 3, MOST_BYTES = 1 << 20 };
 
 static char *read_bytes(const char *path, size_t *length)
@@ -24,7 +24,7 @@ static char *read_bytes(const char *path, size_t *length)
     return bytes;
 }
 
-/* Scales into the box from -2 to 2. */
+/* Scales the positions into the box from -2 to 2. */
 static void fit(he_soup *soup)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};

@@ -1,4 +1,4 @@
-/* corpus.h - meshes of files for the oracle. */
+/* corpus.h - meshes read from files, as starts for the model test. */
 #ifndef TESTS_MODEL_CORPUS_H
 #define TESTS_MODEL_CORPUS_H
 
@@ -9,10 +9,10 @@ typedef struct md_file {
     he_mesh *mesh;
 } md_file;
 
-/* Finds the files, sorted by name, and returns their number; the caller frees the list and the
+/* Reads the files, sorted by name, and returns their number; the caller must free the list and the
  * meshes. */
 size_t md_corpus_read(md_file **out);
-/* Copies the live elements of a mesh without dead ones into an empty oracle. */
+/* Copies the elements of a mesh, none of which is deleted, into an empty oracle. */
 void md_take(or_mesh *o, const he_mesh *m);
 
 #endif

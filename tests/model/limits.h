@@ -6,7 +6,7 @@
 
 #include "model/tally.h"
 
-/* Runs each once. Returns NULL, or what went wrong. */
+/* Runs each edit in the table of limits.c once. Returns NULL, or what went wrong. */
 const char *md_limits_run(md_tally *tally);
 
 #endif

@@ -24,8 +24,8 @@ static bool add(he_mesh *m, md_random *r, he_kind kind, const char *name)
     return true;
 }
 
-/* Adds numbers of three kinds with any rule. The oracle does not know what becomes of them, but
- * they are undone, rolled back and reported like everything else. */
+/* Adds attributes of numbers with three types and any rule. The oracle does not know what edits do
+ * to them, but they must be undone, rolled back and reported like everything else. */
 static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
 {
     static const he_type types[HE_KIND_COUNT] = {[HE_VERTEX] = HE_DOUBLE,
@@ -58,7 +58,7 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
     return true;
 }
 
-/* Adds numbers with the name of the attribute that names materials, unless faces name some. */
+/* Adds numbers under the name of the attribute that names materials, unless faces name some. */
 static bool add_clash(he_mesh *m)
 {
     if (he_mesh_find_column(m, HE_FACE, HE_MATERIAL_ATTRIBUTE) != NULL) {

@@ -1,14 +1,15 @@
-/* marks.h - features, locks and other attributes on some meshes of the model. */
+/* marks.h - feature edges, locks and other attributes, on some meshes of the model test. */
 #ifndef TESTS_MODEL_MARKS_H
 #define TESTS_MODEL_MARKS_H
 
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* Sometimes adds marks to a new mesh, with a few set, columns of numbers, and an attribute
- * `material` of faces that names no materials. Returns false when memory is out. */
+/* Adds marks (feature edges and locks) to some new meshes, with a few elements set, attributes of
+ * numbers, and an attribute `material` of faces that names no materials. Returns false when memory
+ * is out. */
 bool md_mark(he_mesh *m, md_random *r);
-/* Passes the marked elements to the oracle. */
+/* Copies the locks and features of hedge's mesh to the oracle. */
 void md_read_marks(or_mesh *o, const he_mesh *m);
 
 #endif

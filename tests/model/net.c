@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Compares bits: -0 and 0 differ. */
+/* Returns whether two points have equal bits: -0 and 0 differ. */
 static bool same_point(he_vec3 a, he_vec3 b)
 {
     uint64_t bits[2][3];
@@ -20,7 +20,8 @@ static bool same_bytes(const he_column *a, const he_column *b, uint32_t row)
     return memcmp(he_column_value(a, row), he_column_value(b, row), a->row_bytes) == 0;
 }
 
-/* Returns the label of the first component; if `column` is NULL, of the other column's default. */
+/* Returns the label in the first component of a row; if `column` is NULL, the label of the other
+ * column's default. */
 static const char *name_in(const he_column *column, const he_column *other, uint32_t row)
 {
     const he_column *from = column != NULL ? column : other;
@@ -29,7 +30,8 @@ static const char *name_in(const he_column *column, const he_column *other, uint
     return he_labels_get(from->labels, index);
 }
 
-/* Values of columns that were added or removed are in no set, except those with labels. */
+/* Returns whether a row's value counts as unchanged. Adding or removing a column does not put its
+ * values into a set of modified elements, unless they are labels. */
 static bool same_in(const he_column *a, const he_column *b, uint32_t row)
 {
     bool labels = (a == NULL || a->labels != NULL) && (b == NULL || b->labels != NULL);
@@ -113,7 +115,7 @@ static bool lives(const he_mesh *m, he_kind kind, uint32_t id)
     return id < he_mesh_issued(m, kind) && he_mesh_is_live(m, kind, id);
 }
 
-/* Takes id from the front of a sorted list, if it is there. */
+/* If `id` is the next one in the sorted list, passes over it and returns true. */
 static bool take(const he_ids *list, size_t *at, uint32_t id)
 {
     bool there = *at < list->count && list->ids[*at] == id;

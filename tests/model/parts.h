@@ -7,21 +7,22 @@
 
 /* Adds n vertices; returns the first. */
 uint32_t md_add_vertices(or_mesh *o, md_random *r, uint32_t n);
-/* Adds a face of the vertices from `first` on, in order or backwards. */
+/* Adds a face whose corners are the n vertices from `first` on, in this order or backwards. */
 void md_add_row(or_mesh *o, uint32_t first, uint32_t n, bool backwards);
 
-/* Adds a polygon of 3 to 12 sides. */
+/* Adds a polygon of 3 to 12 sides, as one face or as two faces back to back. */
 void md_add_polygon(or_mesh *o, md_random *r, bool both_sides);
-/* Adds a prism over 3 to 12 sides. `triangles` percent of its quads are split, `caps` percent of
- * its caps exist. */
+/* Adds a prism over a polygon of 3 to 12 sides. `triangles` percent of its quads are split, `caps`
+ * percent of its caps exist. */
 void md_add_prism(or_mesh *o, md_random *r, uint32_t triangles, uint32_t caps);
-/* Adds a fan around a vertex, closed below by another fan (0), by a polygon (1), or open. */
+/* Adds a fan of triangles around a vertex, closed below by another fan (0), by a polygon (1), or
+ * not at all. */
 void md_add_pyramid(or_mesh *o, md_random *r, uint32_t below);
 /* Adds polygons that share one vertex and nothing else. */
 void md_add_bowtie(or_mesh *o, md_random *r);
 
-/* Cells of a grid that may wrap in each direction: sheet, tube or torus. In a checkerboard the
- * white squares are missing. */
+/* A grid of cells that may wrap around in each direction, so that it is a sheet, a tube or a torus.
+ * In a checkerboard the white squares are missing. */
 typedef struct md_sheet {
     uint32_t columns, rows;
     bool wrap_x, wrap_y, board;

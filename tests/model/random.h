@@ -18,7 +18,7 @@ static inline uint64_t md_bits(md_random *r)
     return z ^ (z >> 31);
 }
 
-/* Returns 0..n-1; n is not 0. */
+/* Returns a random number from 0 to n - 1; n must not be 0. */
 static inline uint32_t md_below(md_random *r, uint32_t n)
 {
     return (uint32_t)((md_bits(r) >> 32) * n >> 32);
@@ -35,7 +35,7 @@ static inline bool md_chance(md_random *r, uint32_t percent)
     return md_below(r, 100) < percent;
 }
 
-/* Returns 0 <= x < 1. */
+/* Returns a random number x with 0 <= x < 1. */
 static inline double md_unit(md_random *r)
 {
     return (double)(md_bits(r) >> 11) * 0x1p-53;

@@ -1,5 +1,5 @@
-/* rows.h - one line for each operation: how the model draws its arguments and runs it on the
- * oracle. */
+/* rows.h - the tables with one line for each operation: how the model test draws its arguments and
+ * runs it on the oracle. */
 #ifndef TESTS_MODEL_ROWS_H
 #define TESTS_MODEL_ROWS_H
 
@@ -8,14 +8,14 @@
 typedef struct md_row {
     const char *name;
     int growth; /* rough growth of the mesh: rows above 0 wait while there is no space */
-    /* md_draw, md_play and md_follow of calls.h for one operation. */
+    /* The functions behind md_draw, md_play and md_follow of calls.h for this operation. */
     bool (*draw)(md_draft *d);
     uint64_t (*play)(const md_call *c, or_mesh *o, const he_mesh *m);
     bool (*follow)(const md_call *c, or_mesh *o, const he_results *results, char text[OR_TEXT]);
-    bool far; /* correct even if coordinates are as large as doubles get */
+    bool far; /* the operation is correct even if coordinates are as large as doubles get */
 } md_row;
 
-/* Rows in addition to those of calls.c; each array ends in a row without a name. */
+/* The lines that are not in calls.c; each array ends in a line without a name. */
 extern const md_row md_border_rows[];
 extern const md_row md_weld_rows[];
 extern const md_row md_corner_rows[];

@@ -28,7 +28,7 @@ static void make_holes(or_mesh *o, md_random *r, uint32_t holes)
     }
 }
 
-/* --- the families ---------------------------------------------------------------------------- */
+/* --- the families --- */
 
 static void add_any_grid(or_mesh *o, md_random *r)
 {
@@ -103,7 +103,8 @@ void md_fill_quads(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* Caps of 3 to 12 sides between quads, polygons on both sides of a hole or on one. */
+/* A prism with caps of 3 to 12 sides, and two polygons, each as one face or as two faces back to
+ * back. */
 void md_fill_polygons(or_mesh *o, md_random *r)
 {
     md_add_prism(o, r, 0, 100);
@@ -112,7 +113,7 @@ void md_fill_polygons(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* Drops a vertex from a mesh of quads; the last vertex takes its id. */
+/* Removes a vertex from a mesh of quads; the last vertex takes its id. */
 static void drop_vertex(or_mesh *o, uint32_t v)
 {
     uint32_t last = --o->vertices;
@@ -124,7 +125,7 @@ static void drop_vertex(or_mesh *o, uint32_t v)
     }
 }
 
-/* Two tori of quads that share the rim of a hole. */
+/* Makes a closed mesh of genus 2: two tori of quads are joined at the rim of a missing face. */
 void md_fill_genus_2(or_mesh *o, md_random *r)
 {
     uint32_t torus[2];
@@ -138,7 +139,8 @@ void md_fill_genus_2(or_mesh *o, md_random *r)
             rim[i][k] = o->face[torus[i]].v[k];
         }
     }
-    /* The two rims run in opposite directions. */
+    /* The vertices of the second rim are replaced by those of the first, in the opposite
+     * direction. */
     for (uint32_t f = torus[1]; f < o->fresh; f++) {
         for (uint32_t k = 0; k < 4; k++) {
             for (uint32_t j = 0; j < 4; j++) {
@@ -149,7 +151,8 @@ void md_fill_genus_2(or_mesh *o, md_random *r)
             }
         }
     }
-    /* From the highest on, so that the vertex that takes its id is not on a rim. */
+    /* The vertices of the second rim are removed from the highest id on, so that the last vertex,
+     * which takes the free id, is never one of the rim. */
     static const int order[4] = {2, 3, 1, 0};
     for (int k = 0; k < 4; k++) {
         drop_vertex(o, rim[1][order[k]]);
@@ -200,9 +203,8 @@ void md_fill_bowties(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* A fan around one vertex: not quite all the way around, all the way, or closed by a face with as
- * many sides.
- */
+/* A fan of triangles around one vertex: not quite all the way around, all the way around, or also
+ * closed by a face with as many sides. */
 void md_fill_fan_1000(or_mesh *o, md_random *r)
 {
     const uint32_t fan = 1000;
@@ -245,7 +247,7 @@ void md_fill_tetrahedron(or_mesh *o, md_random *r)
     (void)or_add_face(o, (uint32_t[]){v + 2, v, v + 3}, 3);
 }
 
-/* The sum of two coordinates may overflow. */
+/* Makes a mesh with coordinates so large that the sum of two may overflow. */
 void md_fill_far(or_mesh *o, md_random *r)
 {
     md_add_grid(o, r, (md_sheet){md_from(r, 1, 3), md_from(r, 1, 3), false, false, false, 50});
@@ -258,7 +260,7 @@ void md_fill_far(or_mesh *o, md_random *r)
     shuffle(o, r);
 }
 
-/* --- giving ids ------------------------------------------------------------------------------ */
+/* --- giving ids --- */
 
 void md_shape(or_mesh *o, md_random *r, void (*fill)(or_mesh *, md_random *))
 {

@@ -6,10 +6,11 @@
 #include "model/random.h"
 #include "oracle/oracle.h"
 
-/* The largest coordinate of the far mesh: the sum of two may overflow. */
+/* The largest coordinate of the mesh made by md_fill_far: the sum of two such coordinates
+ * overflows. */
 #define MD_FAR 1.6e308
 
-/* These functions add vertices and faces to an empty oracle. */
+/* The following functions add vertices and faces to an empty oracle. */
 void md_fill_mixed(or_mesh *o, md_random *r); /* a mixture of everything but the last five */
 void md_fill_closed_triangles(or_mesh *o, md_random *r);
 void md_fill_open_triangles(or_mesh *o, md_random *r);
@@ -24,10 +25,10 @@ void md_fill_doubled_square(or_mesh *o, md_random *r);
 void md_fill_tetrahedron(or_mesh *o, md_random *r);
 void md_fill_far(or_mesh *o, md_random *r);
 
-/* Fills an empty oracle. Edges get the ids that he_build promises: in the order of their first
- * appearance, directed as in that face. */
+/* Fills an empty oracle by `fill`. Edges get the ids that he_build promises: they are numbered in
+ * the order in which faces name them, and directed as in the first face that has them. */
 void md_shape(or_mesh *o, md_random *r, void (*fill)(or_mesh *, md_random *));
-/* Makes the mesh by he_build; returns NULL if it refuses. */
+/* Builds hedge's mesh from the oracle by he_build; returns NULL if he_build refuses. */
 he_mesh *md_build(const or_mesh *o);
 
 #endif

@@ -10,7 +10,7 @@ enum { MD_START_NAME = 64 };
 
 typedef struct md_start {
     char name[MD_START_NAME];
-    double share;                           /* part of all edits; the sum is 1 */
+    double share;                           /* its share of all edits; the sum is 1 */
     void (*fill)(or_mesh *o, md_random *r); /* NULL for a file */
     he_mesh *file;
     bool far; /* coordinates up to the largest doubles: not for operations that compute with them */
@@ -22,13 +22,14 @@ typedef struct md_starts {
     size_t files; /* files come last; this is their number */
 } md_starts;
 
-/* Files are read from CORPUS=, by default ../shared/corpus: those whose mesh he_build accepts and
- * that leave space in the oracle. They are scaled into the box of the shapes, for which the
- * oracle's tolerances are made. */
+/* Files are read from the folder in CORPUS, by default ../shared/corpus: those whose mesh he_build
+ * accepts and that leave space in the oracle's tables. They are scaled into the box of the random
+ * shapes, for which the oracle's tolerances are made. */
 md_starts md_starts_find(void);
 void md_starts_clear(md_starts *starts);
 
-/* Makes a new mesh of this start, in the oracle and in hedge. Returns NULL if he_build refuses. */
+/* Makes a new mesh of this start, both in the oracle and in hedge. Returns NULL if he_build refuses
+ * it. */
 he_mesh *md_begin(const md_start *start, or_mesh *o, md_random *r);
 
 #endif

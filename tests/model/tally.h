@@ -1,4 +1,4 @@
-/* tally.h - the outcomes of each operation, for each start and in total. */
+/* tally.h - counts the outcomes of each operation, for each start and in total. */
 #ifndef TESTS_MODEL_TALLY_H
 #define TESTS_MODEL_TALLY_H
 
@@ -14,15 +14,15 @@ typedef struct md_row_tally {
 
 typedef struct md_tally {
     uint64_t edits, meshes, undone, rolled_back;
-    uint32_t faces; /* of the largest mesh */
+    uint32_t faces; /* number of faces of the largest mesh */
     md_row_tally row[MD_ROWS];
 } md_tally;
 
 void md_tally_add(md_tally *sum, const md_tally *part);
-/* Prints one line. */
+/* Prints the totals in one line. */
 void md_tally_print(const md_tally *tally, const char *name);
-/* Prints a line for each operation, each after `before`: how often it succeeded, how often it was
- * refused for each reason, and after `never:` the declared refusals that did not occur. */
+/* Prints a line for each operation, with `before` in front: how often it succeeded, how often it
+ * was refused for each reason, and after `never:` the declared refusals that did not occur. */
 void md_tally_print_rows(const md_tally *tally, const char *before);
 /* Return the number of operations that never succeeded, and of declared refusals that never
  * occurred. */

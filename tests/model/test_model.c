@@ -41,7 +41,7 @@ typedef struct world {
     uint64_t seed;
     md_random random;
     const md_start *start;
-    md_tally *tally; /* of this start */
+    md_tally *tally; /* the outcomes for this start */
     uint32_t faces_at_first;
     or_mesh *oracle;
     he_mesh *mesh;
@@ -50,7 +50,7 @@ typedef struct world {
     md_call call;
 } world;
 
-/* --- failing ------------------------------------------------------------------------------- */
+/* --- failing --- */
 
 static void show_faces(const or_mesh *o)
 {
@@ -92,11 +92,11 @@ static he_mesh *copy_of(const world *w)
     return copy;
 }
 
-/* --- allocations that fail ------------------------------------------------------------------ */
+/* --- allocations that fail --- */
 
 typedef struct famine {
-    uint32_t left; /* allocations that still succeed */
-    bool lasts;    /* do all allocations after the first failure fail, too? */
+    uint32_t left; /* number of allocations that still succeed */
+    bool lasts;    /* all allocations after the first failure fail, too */
     bool struck;
 } famine;
 
@@ -115,8 +115,8 @@ static void *resize_until(void *context, void *memory, size_t size)
     return realloc(memory, size);
 }
 
-/* Runs the call with the first, second, third ... allocation failing, until one run succeeds. If
- * there are very many, not all are tried. */
+/* Runs the call with the first, second, third ... allocation failing, until one run succeeds. If a
+ * call makes very many allocations, not all are tried. */
 static he_status run_starved(world *w, const he_mesh *before, const he_delta *delta,
                              he_results *results, he_error *err)
 {
@@ -139,7 +139,7 @@ static he_status run_starved(world *w, const he_mesh *before, const he_delta *de
     }
 }
 
-/* --- undo ----------------------------------------------------------------------------------- */
+/* --- undo --- */
 
 static void forget_steps(world *w)
 {
@@ -204,7 +204,7 @@ static void undo_and_redo(world *w)
     w->tally->undone += w->steps - to;
 }
 
-/* Runs the call and rolls it back. */
+/* Runs the call and rolls it back, as a dry run does: the mesh must be unchanged. */
 static void rehearse(world *w, const he_mesh *before)
 {
     he_results results = {0};
@@ -217,7 +217,7 @@ static void rehearse(world *w, const he_mesh *before)
     he_results_clear(&results);
 }
 
-/* --- one edit ------------------------------------------------------------------------------- */
+/* --- one edit --- */
 
 static void require_declared_change(const world *w, const he_mesh *before)
 {
@@ -230,7 +230,8 @@ static void require_declared_change(const world *w, const he_mesh *before)
     }
 }
 
-/* A result called vertex, edge or face must be the new element, if there is exactly one. */
+/* If exactly one element of a kind is new, the result called vertex, edge or face must be this
+ * element. */
 static void require_results(const world *w, const he_mesh *before, const he_results *results)
 {
     for (size_t i = 0; i < he_op_results(w->call.op); i++) {
@@ -298,8 +299,8 @@ static void refused(world *w, uint64_t expected, he_status status, const he_erro
     he_mesh_free(before);
 }
 
-/* An edit makes at most some hundred elements, or some for each corner of the longest face or hole
- * and for each neighbour. */
+/* Returns whether the oracle has room for an edit: it makes at most some hundred elements, or some
+ * for each corner of the longest face or hole and for each neighbour of a vertex. */
 static bool has_room(const world *w)
 {
     const or_mesh *o = w->oracle;
@@ -349,7 +350,7 @@ static void edit(world *w)
     }
 }
 
-/* --- the run -------------------------------------------------------------------------------- */
+/* --- the run --- */
 
 static uint64_t number_from(const char *name, uint64_t fallback)
 {
@@ -357,7 +358,7 @@ static uint64_t number_from(const char *name, uint64_t fallback)
     return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
 }
 
-/* Edits one mesh for a while. */
+/* Makes `edits` random edits of one mesh. */
 static void live(world *w, uint64_t edits)
 {
     char text[OR_TEXT] = "";
@@ -397,7 +398,9 @@ static void start_from(world *w, const md_start *start, uint64_t edits, md_tally
     (void)fflush(stdout);
 }
 
-/* Files get too few edits for the rarest operations, and the far mesh does not suit them all. */
+/* Requires that every operation has succeeded. Starts from files are left out, because they get too
+ * few edits for rare operations, and the mesh with huge coordinates, which does not suit all
+ * operations. */
 static void require_all_rows(const md_start *start, const md_tally *tally)
 {
     if (start->file == NULL && !start->far && md_tally_idle(tally) > 0) {

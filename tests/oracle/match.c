@@ -19,7 +19,8 @@ static bool differ(char text[OR_TEXT], const char *format, ...)
     return false;
 }
 
-/* Reads the corners of hedge's face f; returns false if its loop does not close. */
+/* Reads the corners of hedge's face f; returns false if the loop of its half-edges does not
+ * close. */
 static bool read_face(const he_mesh *m, uint32_t f, or_face *out)
 {
     out->alive = out->locked = false;
@@ -87,7 +88,7 @@ static bool adopt_faces(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Either of the two edges may survive, with its direction. */
+/* Finds which edge survives an edge_join: either of the two may, and keeps its direction. */
 static bool adopt_joined(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
 {
     bool alive[2];
@@ -143,8 +144,9 @@ static bool adopt_edges(or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* A triangle left of k->i closes corners i..k of a polygon, and so on inside. Directed sides are
- * unique, so the triangles can be found without guessing. */
+/* Returns whether the corners i..k of a polygon are cut into triangles, and counts these. The
+ * triangle left of k->i has its third corner j in between; then i..j and j..k must be cut, too.
+ * Each directed side belongs to one face only, so the triangles are found without guessing. */
 static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_t k,
                          uint32_t *triangles)
 {
@@ -163,7 +165,7 @@ static bool chain_is_cut(const or_mesh *o, const or_face *p, uint32_t i, uint32_
     return chain_is_cut(o, p, i, j, triangles) && chain_is_cut(o, p, j, k, triangles);
 }
 
-/* Returns 1 or -1 if a face has corners on that side of the plane only, else 0. */
+/* Returns 1 or -1 if a face has corners only above or only below the plane, else 0. */
 static int side_of_part(const or_mesh *o, const or_face *f)
 {
     bool above = false;
@@ -175,9 +177,10 @@ static int side_of_part(const or_mesh *o, const or_face *f)
     return above == below ? 0 : above ? 1 : -1;
 }
 
-/* Finds the parts of a cut face from the part that keeps the id, by crossing diagonals. Each must
- * be on one side of the plane, its neighbours on the other, and together they must have the whole
- * cycle once. If there is one diagonal less than parts, they form a disk. */
+/* Returns whether a cut face was cut correctly; finds its parts from the part that keeps the id,
+ * across diagonals. Each part must be on one side of the plane and its neighbours on the other, and
+ * together they must have every side of the old face once. If there is one diagonal less than there
+ * are parts, the parts form a disk. */
 static bool parts_make_up(const or_mesh *o, uint32_t i, uint32_t first_new, uint32_t *made)
 {
     const or_face *was = &o->cut[i].was;
@@ -380,8 +383,8 @@ static bool faces_match(const or_mesh *o, const he_mesh *m, char text[OR_TEXT])
     return true;
 }
 
-/* Turning around v from its stored half-edge must visit each fan from its first neighbour to its
- * last; the order of the fans is hedge's choice. */
+/* Returns whether turning around v, from its stored half-edge on, visits each fan of faces from its
+ * first neighbour to its last; the order of the fans is hedge's choice. */
 static bool ring_matches(const or_mesh *o, const he_mesh *m, uint32_t v, char text[OR_TEXT])
 {
     uint32_t degree = or_degree(o, v);

@@ -20,18 +20,18 @@ uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep
     return or_face_delete(o, faces, n, keep_isolated);
 }
 
-/* --- edge_cut: the faces around a vertex form fans, which cut edges divide into parts ---------
- */
+/* --- edge_cut: cut edges divide the fans of faces around a vertex into parts --- */
 
-/* A part of a fan that gets a new vertex: some of the faces around v. */
+/* A part of a fan of faces around v, which gets a new vertex in place of v. */
 typedef struct part {
-    uint32_t v, start; /* the half-edge where it begins */
+    uint32_t v, start; /* the half-edge where the part begins */
     bool face[OR_FACES];
 } part;
 
 enum { PARTS = 40, AROUND = OR_CORNERS };
 
-/* The faces around one vertex; faces with equal numbers are connected. */
+/* The faces around one vertex. Faces with equal numbers in `fan` are in one fan; faces with equal
+ * numbers in `part` are not separated by cut edges. */
 typedef struct around {
     uint32_t count, face[AROUND], fan[AROUND], part[AROUND];
 } around;
@@ -77,9 +77,8 @@ static around look_around(const or_mesh *o, uint32_t v, const bool cut[])
     return a;
 }
 
-/* Finds the part that keeps the vertex in the fan of face i: the part of the lowest cut edge's
- * first side.
- */
+/* Returns which part of the fan of face i keeps the vertex v: the part that has the first side of
+ * the lowest cut edge. */
 static uint32_t part_that_stays(const or_mesh *o, const around *a, uint32_t i, uint32_t v,
                                 const bool cut[])
 {
@@ -116,7 +115,8 @@ static void add_parts(const or_mesh *o, uint32_t v, const bool cut[], part *part
     }
 }
 
-/* Does this edge move with the part? A cut edge moves with its first side. */
+/* Returns whether this edge gets the new vertex of the part. A cut edge becomes two, of which the
+ * old one belongs to the part with its first side. */
 static bool goes_along(const or_mesh *o, const part *p, uint32_t e, const bool cut[])
 {
     uint32_t a = o->edge[e].a;
@@ -182,7 +182,7 @@ uint64_t or_edge_cut(or_mesh *o, const uint32_t *e, uint32_t count)
     for (uint32_t k = 0; k < o->edges; k++) {
         edges[k] = o->edge[k];
     }
-    /* In the order of their lowest half-edge. */
+    /* The parts get their vertices in the order of their lowest half-edge. */
     for (uint32_t done = 0; done < n; done++) {
         part *next = NULL;
         for (uint32_t i = 0; i < n; i++) {
@@ -210,7 +210,7 @@ uint64_t or_edge_cut(or_mesh *o, const uint32_t *e, uint32_t count)
     return 0;
 }
 
-/* --- edge_weld ------------------------------------------------------------------------------- */
+/* --- edge_weld --- */
 
 static uint32_t became(uint32_t v, const uint32_t goes[2], const uint32_t stays[2])
 {
@@ -227,7 +227,7 @@ static bool same_place(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Is anything locked around a vertex that is merged into another? */
+/* Returns whether an element around a vertex that is merged into another is locked. */
 static bool locked_at_end(const or_mesh *o, uint32_t goes, uint32_t stays, or_keep keep)
 {
     bool moves = keep != OR_A && !same_place(o->vertex[goes].at, o->vertex[stays].at);
@@ -256,7 +256,8 @@ uint64_t or_edge_weld(or_mesh *o, uint32_t ea, uint32_t eb, or_keep keep)
     if (refused != 0) {
         return refused;
     }
-    /* The faces of the two must run along the edge in opposite directions. */
+    /* The faces of the two edges must run along the joined edge in opposite directions, so the ends
+     * of one are exchanged if they do not. */
     if (forward != backward) {
         uint32_t swap = goes[0];
         goes[0] = goes[1];

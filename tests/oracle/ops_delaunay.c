@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Both answers are allowed for angles closer to pi than this. */
+/* If the sum of the angles is closer to pi than this, the edge may be flipped or not. */
 static const double SLACK = 1e-6;
 
 static bool is_triangle(const or_mesh *o, uint32_t f)
@@ -11,7 +11,7 @@ static bool is_triangle(const or_mesh *o, uint32_t f)
     return f != OR_NONE && o->face[f].count == 3;
 }
 
-/* The angle at c between a and b; 0 if one of them is at c. */
+/* Returns the angle at c between a and b; 0 if a or b is at the position of c. */
 static double angle_at(const or_mesh *o, uint32_t c, uint32_t a, uint32_t b)
 {
     he_vec3 at = o->vertex[c].at;
@@ -26,8 +26,8 @@ static double angle_at(const or_mesh *o, uint32_t c, uint32_t a, uint32_t b)
                : atan2(sqrt(n.x * n.x + n.y * n.y + n.z * n.z), along);
 }
 
-/* Returns by how much the angles opposite to an edge between triangles exceed pi; -4 for any other
- * edge. */
+/* Returns by how much the two angles opposite to an edge exceed pi, if the edge is between two
+ * triangles; -4 for any other edge. */
 static double excess(const or_mesh *o, uint32_t e)
 {
     uint32_t a = o->edge[e].a;
@@ -41,7 +41,7 @@ static double excess(const or_mesh *o, uint32_t e)
            angle_at(o, or_after(&o->face[g], a), a, b) - acos(-1);
 }
 
-/* Sets `left` of the sides of a face to `what`. */
+/* Sets the entries of `left` for all sides of a face to `what`. */
 static void say(or_mesh *o, uint32_t f, uint32_t what)
 {
     for (uint32_t i = 0; i < o->face[f].count; i++) {

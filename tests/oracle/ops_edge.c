@@ -15,7 +15,7 @@ static uint32_t left_of(const or_mesh *o, uint32_t a, uint32_t b)
     return o->left[a][b];
 }
 
-/* Inserts w between a and the corner after it. */
+/* Inserts w as a corner of the face between a and the next corner. */
 static void insert_after(or_face *f, uint32_t a, uint32_t w)
 {
     uint32_t i = or_place(f, a) + 1;
@@ -32,7 +32,8 @@ static void remove_corner(or_face *f, uint32_t v)
     f->count--;
 }
 
-/* Puts w on e: the old id keeps the end that half-edge 2e leaves. */
+/* Splits the edge e at t by a new vertex; the part that keeps the id has the origin of half-edge
+ * 2e. Returns the new vertex. */
 static uint32_t cut_edge(or_mesh *o, uint32_t e, double t)
 {
     uint32_t a = o->edge[e].a;
@@ -55,7 +56,7 @@ uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t)
     return 0;
 }
 
-/* Is the edge locked, or a face beside it? */
+/* Returns whether the edge or a face beside it is locked. */
 static bool locked_at(const or_mesh *o, uint32_t e)
 {
     uint32_t f = left_of(o, o->edge[e].a, o->edge[e].b);
@@ -99,14 +100,15 @@ uint64_t or_edge_join(or_mesh *o, uint32_t v)
     return 0;
 }
 
-/* The end of the diagonal in the face left of a->b: the corner after b. */
+/* Returns the corner after b in the face left of a->b; the diagonal of the split ends there. */
 static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
 {
     uint32_t f = left_of(o, a, b);
     return f == OR_NONE ? OR_NONE : or_after(&o->face[f], b);
 }
 
-/* Cuts the triangle w, b, c off the face a, w, b, c, ... The part with `keeper` keeps the id. */
+/* Cuts the triangle w, b, c off the face a, w, b, c, ... The part that has the side `keeper` keeps
+ * the id of the face. */
 static void cut_corner(or_mesh *o, uint32_t f, uint32_t w, uint32_t b, uint32_t c, uint32_t keeper)
 {
     or_face rest = o->face[f];
@@ -174,7 +176,8 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     if (refused != 0) {
         return refused;
     }
-    /* f: a, b, c, ... becomes a, d, c, ...   g: b, a, d, ... becomes b, c, d, ... */
+    /* The face f: a, b, c, ... becomes a, d, c, ...   The face g: b, a, d, ... becomes b, c,
+     * d, ... */
     o->face[f].v[or_place(&o->face[f], b)] = d;
     o->face[g].v[or_place(&o->face[g], a)] = c;
     o->edge[e].a = d;
@@ -182,7 +185,8 @@ uint64_t or_edge_flip(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* Besides u,v,c and v,u,d there are only the triangles u,c,d and v,d,c. */
+/* Returns whether the component is a tetrahedron: besides the triangles u,v,c and v,u,d there are
+ * only u,c,d and v,d,c. */
 static bool is_tetrahedron(const or_mesh *o, uint32_t u, uint32_t v, uint32_t c, uint32_t d)
 {
     uint32_t f = left_of(o, u, c);
@@ -234,7 +238,7 @@ static uint32_t features_at(const or_mesh *o, uint32_t v)
     return n;
 }
 
-/* Returns what locks and feature lines forbid when u is merged into v. */
+/* Returns which locks and feature edges forbid merging u into v. */
 static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves)
 {
     uint64_t refused = 0;
@@ -260,7 +264,8 @@ static bool same_point(he_vec3 a, he_vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Is the point at t certainly different from v, whatever the rounding? */
+/* Returns whether the point at t between u and v differs from v in any case, however it is
+ * rounded. */
 static bool surely_off(double u, double v, double t)
 {
     double most = 8 * DBL_EPSILON * fmax(fabs(u), fabs(v)) + 8 * DBL_TRUE_MIN;
@@ -322,7 +327,7 @@ void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec
         if (edge->alive && (edge->a == u || edge->b == u)) {
             uint32_t other = edge->a == u ? edge->b : edge->a;
             if (o->joined[v][other] != OR_NONE) {
-                edge->alive = false; /* the target's side edge stays */
+                edge->alive = false; /* v has an edge to this neighbour already */
             } else {
                 *(edge->a == u ? &edge->a : &edge->b) = v;
             }

@@ -57,7 +57,8 @@ uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to)
     if (o->joined[from][to] != OR_NONE) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
-    /* The old id stays left of from->to: it runs from `to` on, back to `from`. */
+    /* When a diagonal splits the face, the part on the left of from->to keeps the old id: its
+     * corners run from `to` on, back to `from`. */
     or_face old = {.alive = true};
     or_face new = {.alive = true};
     for (uint32_t s = k;; s = (s + 1) % face->count) {
@@ -103,7 +104,8 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     for (uint32_t i = 0; i < keeps->count; i++) {
         joined.v[joined.count++] = keeps->v[(start + i) % keeps->count];
     }
-    /* That part ends at a. The other face follows, from a to b, without both. */
+    /* In the joined face, the corners of `goes` that follow a, without a and b, are inserted where
+     * the other face has the side from a to b. */
     start = or_place(goes, a);
     for (uint32_t i = 1; i + 1 < goes->count; i++) {
         assert(joined.count < OR_CORNERS);
@@ -115,7 +117,7 @@ uint64_t or_face_join(or_mesh *o, uint32_t e)
     return 0;
 }
 
-/* Adds a vertex somewhere in the bounding box of some corners. */
+/* Adds a vertex whose position is unknown, somewhere in the bounding box of some corners. */
 static uint32_t add_inside(or_mesh *o, const uint32_t *v, uint32_t count)
 {
     uint32_t w = or_add_vertex(o, (he_vec3){0, 0, 0});
@@ -153,7 +155,8 @@ static bool is_side(const or_face *f, uint32_t a, uint32_t b)
     return or_after(f, a) == b || or_after(f, b) == a;
 }
 
-/* Is there a diagonal of f that is an edge already, or that may also be one of g's? */
+/* Returns whether f can have a diagonal between two vertices that an edge connects already, or that
+ * a diagonal of g may connect, too. */
 static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
 {
     for (uint32_t i = 0; i < f->count; i++) {
@@ -170,7 +173,8 @@ static bool can_double(const or_mesh *o, const or_face *f, const or_face *g)
     return false;
 }
 
-/* The choice of diagonals is hedge's, and so is whether a diagonal doubles an edge. */
+/* Notes that a face was cut into triangles. hedge chooses the diagonals, and whether it refuses
+ * because a diagonal would double an edge. */
 static void cut_up(or_mesh *o, uint32_t id, const or_face *was, uint32_t start)
 {
     assert(o->cuts < OR_LIST);

@@ -50,8 +50,9 @@ static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
     return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z);
 }
 
-/* Considers all pairings of the corners of two loops of equal length by which no two edges join the
- * same two vertices: returns the least sum of squares, infinite if there is no such pairing. */
+/* Tries all rotations of two loops of equal length against each other in which no two edges would
+ * join the same two vertices. Returns the least sum of the squared lengths of the new edges,
+ * infinite if all are excluded. */
 static double least_twist(const or_mesh *o, const uint32_t *a, const uint32_t *b, uint32_t n)
 {
     double least = INFINITY;
@@ -80,9 +81,9 @@ uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_
     if (o->twist == INFINITY) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
-    /* Between loops of different lengths hedge chooses corner by corner, so the oracle does not
-     * know whether an edge would be doubled, nor whether hedge finds a pairing within its number of
-     * attempts. */
+    /* Between loops of different lengths hedge chooses each triangle freely. So the oracle does not
+     * know whether an edge would be doubled, nor whether hedge finds a solution within its number
+     * of attempts. */
     bool can_double = false;
     for (uint32_t i = 0; i < n && n != m; i++) {
         for (uint32_t k = 0; k < m; k++) {
@@ -110,8 +111,8 @@ static bool is_side(const or_face *loop, uint32_t a, uint32_t b)
     return false;
 }
 
-/* A face of the strip has one side of each loop, or (a triangle) of one loop; its other sides
- * connect the loops. */
+/* Returns whether a face belongs to the strip between two loops: it has one side of each loop or,
+ * if a triangle, of one loop, and its other sides connect the loops. */
 static bool is_in_strip(const or_mesh *o, const or_face *f)
 {
     const or_face *a = &o->bridge[0];
@@ -132,8 +133,8 @@ static bool is_in_strip(const or_mesh *o, const or_face *f)
                                 : f->count == 3 && sides[0] + sides[1] == 1;
 }
 
-/* Loops of equal length, of which hedge tries all rotations: is there no allowed one with
- * shorter rungs? */
+/* hedge tries all rotations of two loops of equal length: returns whether no allowed rotation has
+ * shorter connecting edges than hedge's. */
 static bool is_least_twisted(const or_mesh *o)
 {
     const or_face *a = &o->bridge[0];
@@ -168,7 +169,7 @@ bool or_strip_is_right(const or_mesh *o, uint32_t first_new)
 
 /* --- loop_join --- */
 
-/* What v becomes when b[i] is merged into a[i]. */
+/* Returns the vertex that v becomes when each b[i] is merged into a[i]. */
 static uint32_t becomes(const uint32_t *a, const uint32_t *b, uint32_t n, uint32_t v)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -314,7 +315,8 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3])
     if (repeats(faces, 6)) {
         return OR_BIT(HE_SHARED_FACE);
     }
-    /* The corners right of the cycle: counter-clockwise from the corner before to the one after. */
+    /* `beyond` and `around` hold, for each corner of the cycle, its neighbours and faces on the
+     * right of the cycle: counter-clockwise from the corner before it to the corner after it. */
     uint32_t beyond[3][OR_VERTICES];
     uint32_t around[3][OR_VERTICES];
     uint32_t count[3];

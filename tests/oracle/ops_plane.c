@@ -18,8 +18,9 @@ static bool has_edge(const or_mesh *o, uint32_t v)
     return found;
 }
 
-/* 1e-9 of the longest side of the box around the vertices that have edges. The model's meshes are
- * not small relative to their coordinates, so rounding needs no larger tolerance. */
+/* Returns hedge's default tolerance, 1e-9 of the longest side of the box around the vertices that
+ * have edges. The model's meshes are not small relative to their coordinates, so rounding needs no
+ * larger one. */
 static double tolerance_of(const or_mesh *o)
 {
     he_vec3 low = {INFINITY, INFINITY, INFINITY};
@@ -34,7 +35,8 @@ static double tolerance_of(const or_mesh *o)
     return 1e-9 * fmax(0, fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z)));
 }
 
-/* Returns false if a vertex is so close to the limit of the tolerance that rounding decides. */
+/* Finds the distances of all vertices from the plane, 0 if within the tolerance. Returns false if a
+ * distance is so close to the tolerance that rounding decides. */
 static bool find_distances(const or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
                            double distance[OR_VERTICES])
 {
@@ -93,8 +95,8 @@ or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
     return size;
 }
 
-/* Finds where the plane meets the sides of a face: at vertices, or at vertices to be made, which
- * are named by their edges. */
+/* Finds where the plane meets the sides of a face: at vertices, or inside of edges, for which the
+ * vertex to be made there is named by its edge. */
 static uint32_t meetings(const or_mesh *o, const or_face *f, uint32_t out[2 * OR_CORNERS])
 {
     uint32_t n = 0;
@@ -121,8 +123,9 @@ static bool holds(const uint32_t *list, uint32_t n, uint32_t x)
     return false;
 }
 
-/* May a diagonal between two meeting points of cut i double an existing edge, or a diagonal of
- * another cut? It is certain if both cuts have exactly two meeting points. */
+/* Returns whether a diagonal of cut face i may connect two vertices that an edge, or a diagonal of
+ * another cut face, connects already. If both faces have exactly two points in the plane, this is
+ * certain. */
 static bool can_double(const or_mesh *o, uint32_t i, bool *certain)
 {
     const or_face *f = &o->face[o->cut[i].id];
@@ -202,7 +205,8 @@ void or_plane_vertices(or_mesh *o)
         (void)or_edge_bisect(o, e, o->distance[a] / apart);
         o->distance[o->vertices - 1] = 0;
         if (fabs(apart) < 1e-4) {
-            /* The edge is so flat that rounding decides where the point is. */
+            /* The edge is so nearly parallel to the plane that rounding decides where the new point
+             * is. */
             he_vec3 p = o->vertex[a].at;
             he_vec3 q = o->vertex[b].at;
             w->near = false;

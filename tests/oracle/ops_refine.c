@@ -4,14 +4,14 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* State of one step. Old vertices move last, since everything else is computed from their old
- * positions. */
+/* The state of one step of subdivision. Old vertices are moved last, since everything else is
+ * computed from their old positions. */
 typedef struct refining {
     or_mesh *o;
     or_scheme scheme;
-    uint32_t vertices, faces;  /* numbers of old ones */
-    uint32_t middle[OR_EDGES]; /* the vertex on an edge */
-    uint32_t centre[OR_FACES]; /* the vertex in a face; OR_NONE: none */
+    uint32_t vertices, faces;  /* numbers of vertices and faces before the step */
+    uint32_t middle[OR_EDGES]; /* the new vertex on each edge */
+    uint32_t centre[OR_FACES]; /* the new vertex in each face; OR_NONE: none */
     he_vec3 mean[OR_FACES];
     he_vec3 moved[OR_VERTICES];
 } refining;
@@ -40,7 +40,7 @@ static uint32_t faces_at(const or_mesh *o, uint32_t v)
     return count;
 }
 
-/* Does another triangle have the same three vertices? */
+/* Returns whether another triangle has the same three vertices. */
 static bool is_pillow(const or_mesh *o, const or_face *f)
 {
     uint32_t beside = o->left[f->v[1]][f->v[0]];
@@ -159,7 +159,7 @@ static void put(or_mesh *o, uint32_t f, const uint32_t *v, uint32_t count)
     o->face[f].count = count;
 }
 
-/* Replaces face f by its parts, beginning with the part at `start`. */
+/* Replaces face f by its parts; the part at the corner `start` is the first. */
 static void refine_face(refining *r, uint32_t f, uint32_t start)
 {
     or_mesh *o = r->o;

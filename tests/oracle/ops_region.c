@@ -4,13 +4,13 @@
 #include <math.h>
 #include <string.h>
 
-/* --- parts: connected sets of the listed faces, and their rims ------------------------------ */
+/* --- parts: connected sets of the listed faces, and their rims --- */
 
 typedef struct part {
     uint32_t faces[OR_LIST];
     uint32_t count;
     bool in[OR_FACES];
-    /* The directed sides on its rim. */
+    /* The directed sides on the rim of the part. */
     uint32_t from[OR_LIST * 4], to[OR_LIST * 4];
     uint32_t rim;
 } part;
@@ -25,14 +25,15 @@ static bool is_listed(or_region region, uint32_t f)
     return false;
 }
 
-/* The corner i places after the first one of a face. */
+/* Returns the corner that is i places after the first one of a face in the region. */
 static uint32_t corner(const or_mesh *o, or_region region, uint32_t f, uint32_t i)
 {
     const or_face *face = &o->face[f];
     return face->v[(or_place(face, region.start[f]) + i) % face->count];
 }
 
-/* Finds the part of `first`, breadth-first. */
+/* Finds the part that contains the face `first`: all listed faces that are connected with it,
+ * breadth-first. */
 static void find_part(const or_mesh *o, or_region region, uint32_t first, part *p)
 {
     memset(p, 0, sizeof *p);
@@ -100,7 +101,7 @@ static uint64_t check_part(const or_mesh *o, const part *p, bool moves_inside)
     return refused;
 }
 
-/* Twice the area vector. */
+/* Returns twice the area vector of a face (Newell's method). */
 static he_vec3 newell(const or_mesh *o, uint32_t f)
 {
     const or_face *face = &o->face[f];
@@ -181,7 +182,7 @@ bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset)
     return false;
 }
 
-/* --- separating a part ----------------------------------------------------------------------- */
+/* --- separating a part --- */
 
 static void draw_off(or_mesh *o, const part *p)
 {
@@ -224,7 +225,7 @@ static bool is_finite(he_vec3 a, he_vec3 b)
     return isfinite(a.x + b.x) && isfinite(a.y + b.y) && isfinite(a.z + b.z);
 }
 
-/* Returns the refusals for the translation of a part. */
+/* Returns the refusals that apply if the vertices of a part are moved by `by`. */
 static uint64_t check_shift(const or_mesh *o, const part *p, const he_vec3 *by)
 {
     uint64_t refused = by == NULL && is_all_flat(o, p) ? OR_BIT(HE_NO_NORMAL) : 0;
@@ -242,7 +243,7 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
     static part p;
     bool done[OR_FACES] = {false};
     uint64_t refused = 0;
-    /* The parts are independent, so their order does not matter. */
+    /* Each part is checked and moved by itself, so the order of the parts does not matter. */
     for (uint32_t k = 0; k < region.count; k++) {
         find_part(o, region, region.faces[k], &p);
         refused |= check_part(o, &p, true) | check_shift(o, &p, by);
@@ -275,7 +276,8 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
                 o->vertex[v].near = true;
             }
         }
-        /* New sides belong to no listed face; sides between parts are found again. */
+        /* The new side faces belong to no listed face; `left` and `joined` are computed again to
+         * include them. */
         uint64_t wrong = or_derive(o);
         assert(wrong == 0);
         (void)wrong;
@@ -283,7 +285,7 @@ uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double
     return refused;
 }
 
-/* Allows positions within a box around the old one. */
+/* Marks that hedge may put a vertex anywhere within a box around its old position. */
 static void may_move(or_vertex *v, double reach)
 {
     v->inside = true;
@@ -291,7 +293,7 @@ static void may_move(or_vertex *v, double reach)
     v->high = (he_vec3){v->at.x + reach, v->at.y + reach, v->at.z + reach};
 }
 
-/* The mean of the centroids of the part's faces around v. */
+/* Returns the mean of the centroids of those faces of the part that meet at v. */
 static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 sum = {0, 0, 0};
@@ -311,7 +313,7 @@ static he_vec3 middle(const or_mesh *o, const part *p, uint32_t v)
     return sum;
 }
 
-/* The vector from a corner on the rim to the middle of its faces. */
+/* Returns the vector from a vertex on the rim to the middle of the part's faces there. */
 static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
 {
     he_vec3 from = o->vertex[v].at;
@@ -319,7 +321,7 @@ static he_vec3 way_inside(const or_mesh *o, const part *p, uint32_t v)
     return (he_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
 }
 
-/* Returns the refusals for the movement of the rim. */
+/* Returns the refusals that apply if the rim of an inset is moved inward. */
 static uint64_t check_way(const or_mesh *o, const part *p, bool by_factor)
 {
     uint64_t refused = 0;

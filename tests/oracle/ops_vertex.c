@@ -24,7 +24,8 @@ uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32
     return refused;
 }
 
-/* Deletes faces; then edges without faces; then corners of these faces that have no face left. */
+/* Deletes faces, then the edges that have no faces left, then (unless isolated vertices are kept)
+ * those of the faces' vertices that have no face left. */
 static void delete_faces(or_mesh *o, const bool *gone, bool keep_isolated)
 {
     bool corner[OR_VERTICES] = {false};
@@ -56,7 +57,8 @@ static bool would_go(const bool *gone, uint32_t f)
     return f == OR_NONE || gone[f];
 }
 
-/* Is anything locked among what is deleted with the faces? `alone` is deleted, too. */
+/* Returns whether an element that is deleted together with the faces is locked; the vertex `alone`
+ * is deleted, too. */
 static uint64_t locked_among(const or_mesh *o, const bool *gone, uint32_t alone, bool keep_isolated)
 {
     bool locked = alone != OR_NONE && o->vertex[alone].locked;
@@ -111,7 +113,8 @@ uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep
     return refused;
 }
 
-/* The first neighbour, counter-clockwise, of v's only open fan: no face precedes it. */
+/* Returns the first neighbour of v, counter-clockwise, in its only fan of faces, which is open: no
+ * face comes before this neighbour. */
 static uint32_t fan_start(const or_mesh *o, uint32_t v)
 {
     for (uint32_t i = 0; i < or_degree(o, v); i++) {
@@ -146,8 +149,8 @@ uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, 
         return refused;
     }
 
-    /* Visits the sectors counter-clockwise from left to right, across the gap if it lies between
-     * them. */
+    /* Visits the sectors (the angles of faces at v) counter-clockwise from `left` to `right`,
+     * across the gap if it lies between them. */
     uint32_t moved[OR_VERTICES];
     uint32_t count = 0;
     uint32_t x = left == OR_NONE ? fan_start(o, v) : left;
@@ -177,7 +180,8 @@ uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, 
     if (right != OR_NONE) {
         (void)or_add_face(o, (uint32_t[]){v, w, right}, 3);
     }
-    /* Edges that only moved sectors use move, too; those to left and right stay. */
+    /* An edge at v moves to the new vertex if only moved sectors have it; the edges to `left` and
+     * `right` stay. */
     (void)or_derive(o);
     for (uint32_t e = 0; e < o->edges; e++) {
         or_edge *edge = &o->edge[e];

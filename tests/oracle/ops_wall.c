@@ -3,11 +3,12 @@
 #include <assert.h>
 #include <math.h>
 
-/* --- edge_extrude ---------------------------------------------------------------------------- */
+/* --- edge_extrude --- */
 
 uint64_t or_edge_extrude(or_mesh *o, const uint32_t *e, uint32_t count, he_vec3 by)
 {
-    /* Predecessors and successors along the hole. */
+    /* `from` and `to` hold, for each vertex, the vertex before it and the one after it along the
+     * hole. */
     uint32_t from[OR_VERTICES];
     uint32_t to[OR_VERTICES];
     uint32_t copy[OR_VERTICES];
@@ -55,15 +56,15 @@ uint64_t or_edge_extrude(or_mesh *o, const uint32_t *e, uint32_t count, he_vec3 
     return 0;
 }
 
-/* --- edge_bevel ------------------------------------------------------------------------------ */
+/* --- edge_bevel --- */
 
 static double distance(he_vec3 a, he_vec3 b)
 {
     return sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
 }
 
-/* The neighbours of v in the fan of its neighbour w, counter-clockwise from w; v itself stands for
- * the hole. */
+/* Finds the neighbours of v in the fan of faces that contains its neighbour w, counter-clockwise
+ * from w; in the result, v itself stands for the hole. */
 static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[OR_CORNERS])
 {
     uint32_t n = 0;
@@ -78,7 +79,7 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     }
     out[n++] = x;
     out[n++] = v;
-    /* Goes back to the beginning of the fan. */
+    /* Goes back, clockwise, to the beginning of the fan. */
     x = w;
     while (o->left[x][v] != OR_NONE) {
         x = or_after(&o->face[o->left[x][v]], v);
@@ -91,8 +92,8 @@ static uint32_t fan_from(const or_mesh *o, uint32_t v, uint32_t w, uint32_t out[
     return n;
 }
 
-/* In each face of the fan, replaces the corner v by the cut towards the corner before it and the
- * cut towards the corner after it, if these exist. */
+/* In each face of a fan around v, replaces the corner v by the new vertices on the edges to the
+ * corners before and after it, as far as these edges are cut. */
 static void cut_faces(or_mesh *o, uint32_t v, const uint32_t cut[OR_VERTICES])
 {
     for (uint32_t f = 0; f < o->faces; f++) {

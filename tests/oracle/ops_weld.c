@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- merging vertices ----------------------------------------------------------------------- */
+/* --- merging vertices --- */
 
-/* Replaces corners by the vertices that they are merged into; equal neighbours become one. */
+/* Replaces the corners of a face by the vertices into which they are merged; if two consecutive
+ * corners become equal, one is removed. */
 static void draw_together(or_face *f, const uint32_t *to)
 {
     uint32_t first = to[f->v[0]];
@@ -31,7 +32,8 @@ static bool repeats(const or_face *f)
     return false;
 }
 
-/* Returns what is wrong with how faces meet at edges; faces in `skip` do not count. */
+/* Returns why the faces cannot meet at their edges, as a set of refusals; faces in `skip` do not
+ * count. */
 static uint64_t clashes(const or_mesh *o, const bool *skip)
 {
     static uint8_t uses[OR_VERTICES][OR_VERTICES];
@@ -77,7 +79,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
         any |= same[f];
     }
     uint64_t refused = clashes(o, same);
-    /* If some faces are equal and others clash, both refusals are correct. */
+    /* If some faces become equal and others meet wrongly, hedge may report either. */
     refused |= refused != 0 && any ? clashes(o, none) : 0;
     for (uint32_t f = 0; f < o->faces; f++) {
         o->face[f].alive &= !same[f];
@@ -85,7 +87,7 @@ static uint64_t weld_faces(or_mesh *o, const uint32_t *to)
     return refused;
 }
 
-/* If several edges have equal ends, the lowest stays, unless it has no face left. */
+/* If several edges get the same two ends, the lowest stays, unless it has no face left. */
 static void weld_edges(or_mesh *o, const uint32_t *to)
 {
     for (uint32_t e = 0; e < o->edges; e++) {
@@ -210,7 +212,7 @@ bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES])
     return clear;
 }
 
-/* --- separating bow-ties -------------------------------------------------------------------- */
+/* --- separating bow-ties --- */
 
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count)
 {

@@ -251,7 +251,8 @@ uint32_t or_degree(const or_mesh *o, uint32_t v)
     return v < o->known_vertices ? o->degree[v] : 0;
 }
 
-/* Returns the number of open fans: each begins at a neighbour that no face precedes. */
+/* Returns the number of open fans of faces around v: each has a first neighbour, which no face
+ * precedes. */
 static uint32_t open_fans(const or_mesh *o, uint32_t v)
 {
     uint32_t n = 0;
@@ -287,7 +288,8 @@ bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y)
     return x == y && or_fans(o, v) > 1;
 }
 
-/* One closed fan, or any number of open ones? */
+/* Returns whether a mesh can have such faces around v: one closed fan, or any number of open
+ * ones. */
 static bool fans_can_be_held(const or_mesh *o, uint32_t v)
 {
     uint32_t degree = or_degree(o, v);

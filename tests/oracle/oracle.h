@@ -37,7 +37,7 @@ typedef struct or_vertex {
     bool alive;
     bool locked;
     bool near;   /* `at` was computed here: compared with a tolerance, then replaced by hedge's */
-    bool inside; /* `at` is not specified: anything within low..high is correct */
+    bool inside; /* `at` is not specified: any position within low..high is correct */
     he_vec3 at, low, high;
 } or_vertex;
 
@@ -55,9 +55,9 @@ typedef struct or_face {
 typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* numbers of ids issued */
     uint32_t fresh;                  /* faces after `faces` that have no ids yet */
-    /* Faces that became triangles of hedge's choice: their old cycles. `id` is OR_NONE if all
-     * triangles are new (a filled hole). For plane_split: faces that became parts on one side of
-     * the plane; or_adopt makes the new vertices in `was`. */
+    /* Faces that hedge cut as it liked, with their old corners: into triangles or, by plane_split,
+     * into parts on one side of the plane. `id` is OR_NONE if all triangles are new, because they
+     * fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
     struct {
         uint32_t id, start;
         or_face was;
@@ -66,8 +66,9 @@ typedef struct or_mesh {
     bool by_plane;
     bool chosen[OR_FACES];        /* faces that plane_split cuts */
     double distance[OR_VERTICES]; /* from the plane; 0: in it */
-    /* Refusals that depend on those triangles, or on rounding: hedge may refuse or succeed.
-     * `before` has the lists to go back to if it refuses, NULL if nothing was changed. */
+    /* The refusals that depend on how hedge cut those faces, or on rounding: hedge may report one
+     * of them or succeed. `before` has the lists to which the oracle returns if hedge refuses; NULL
+     * if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
     bool bridging;     /* loop_bridge: new faces of hedge's choice connect these two loops */
@@ -82,8 +83,8 @@ typedef struct or_mesh {
     uint32_t joined[OR_VERTICES][OR_VERTICES];
     uint32_t around[OR_VERTICES][OR_VERTICES];
     uint32_t degree[OR_VERTICES];
-    /* The extent of the tables: rows of vertices, and for each edge the pair under which it was
-     * entered. */
+    /* The part of the tables that is in use: the rows of vertices and, for each edge, the pair of
+     * vertices under which it was entered. */
     uint32_t known_vertices, known_edges;
     uint32_t pair[OR_EDGES][2];
 } or_mesh;
@@ -92,75 +93,78 @@ or_mesh *or_new(void);
 void or_free(or_mesh *o);
 void or_empty(or_mesh *o);
 
-/* --- building: ids in order; faces are not checked ----------------------------------------- */
+/* --- building: ids in order; faces are not checked --- */
 
 uint32_t or_add_vertex(or_mesh *o, he_vec3 at);
 uint32_t or_add_face(or_mesh *o, const uint32_t *v, uint32_t count);
 void or_remove_last_face(or_mesh *o);
 
-/* The lists between two operations, to go back to. or_restore also frees them. */
+/* A copy of the oracle's lists, to which an operation can be taken back. or_restore also
+ * frees it. */
 typedef struct or_lists {
     uint32_t vertices, edges, faces;
     or_vertex *vertex;
     or_edge *edge;
-    or_face **face; /* each as long as its corners */
+    or_face **face; /* each allocated for as many corners as it has */
 } or_lists;
 
 or_lists *or_save(const or_mesh *o);
 void or_restore(or_mesh *o, or_lists *lists);
 void or_forget(or_lists *lists);
-/* hedge may refuse this operation with `may`: or_decline then goes back to `before`, which the
- * oracle owns.
- */
+/* Notes that hedge may refuse this operation for one of the reasons in `may`: then or_decline takes
+ * the oracle back to `before`, which belongs to the oracle from now on. */
 void or_doubt(or_mesh *o, or_lists *before, uint64_t may);
 
-/* --- queries -------------------------------------------------------------------------------- */
+/* --- queries --- */
 
-/* Fills `left` and `joined` from the lists. Returns what no mesh can represent: HE_TOO_FEW_CORNERS,
- * HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
+/* Computes `left` and `joined` from the lists. Returns why no mesh can have these faces:
+ * HE_TOO_FEW_CORNERS, HE_REPEATED_CORNER, HE_ORIENTATION, HE_CLOSED_FAN. */
 uint64_t or_derive(or_mesh *o);
-/* Each sets one entry, of `left` or of `joined`. */
+/* Set one entry of the table `left` or of the table `joined`. */
 void or_set_left(or_mesh *o, uint32_t a, uint32_t b, uint32_t f);
 void or_set_joined(or_mesh *o, uint32_t e);
 
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
 uint32_t or_live_faces(const or_mesh *o);
-/* Returns the place of v in the cycle of f; OR_NONE if it is no corner. */
+/* or_place returns the position of v among the corners of f, OR_NONE if it is no corner; or_after
+ * returns the next corner. */
 uint32_t or_place(const or_face *f, uint32_t v);
 uint32_t or_after(const or_face *f, uint32_t v);
 uint32_t or_before(const or_face *f, uint32_t v);
 uint32_t or_degree(const or_mesh *o, uint32_t v);
 bool or_on_boundary(const or_mesh *o, uint32_t v); /* also true for an isolated vertex */
 uint32_t or_fans(const or_mesh *o, uint32_t v);
-/* Finds the neighbours of v, at most `room`. */
+/* Finds the neighbours of v, at most `room`; returns their number. */
 uint32_t or_neighbours(const or_mesh *o, uint32_t v, uint32_t *out, uint32_t room);
-/* Returns the next neighbour of the same fan counter-clockwise from x around v; OR_NONE at its
- * end. */
+/* Returns the neighbour of v that comes after x, counter-clockwise, in the same fan of faces;
+ * OR_NONE at the end of the fan. */
 uint32_t or_turn(const or_mesh *o, uint32_t v, uint32_t x);
-/* Does the open fan at v that begins with neighbour x end with y, and is there another one? */
+/* Returns whether the open fan at v that begins with the neighbour x ends with y, and v has another
+ * fan. */
 bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y);
 bool or_same_cycle(const or_face *f, const or_face *g);
 
-/* --- operations (ops_*.c) --------------------------------------------------------------------- */
+/* --- operations (ops_*.c) --- */
 
-/* Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or nothing. Operations expect live elements. */
+/* Returns HE_NO_SUCH_ELEMENT or HE_DELETED_ELEMENT, or no refusal. The operations below expect live
+ * elements. */
 uint64_t or_require(const or_mesh *o, he_kind kind, uint32_t id);
 
 uint64_t or_vertex_add(or_mesh *o, he_vec3 at);
 uint64_t or_vertex_move(or_mesh *o, const uint32_t *v, const he_vec3 *to, uint32_t count);
 uint64_t or_vertex_delete(or_mesh *o, uint32_t v, bool keep_isolated);
-/* left or right may be OR_NONE; if `to` is NULL the new vertex is at v. */
+/* `left` or `right` may be OR_NONE; if `to` is NULL the new vertex is at the position of v. */
 uint64_t or_vertex_split(or_mesh *o, uint32_t v, uint32_t left, uint32_t right, const he_vec3 *to);
 
 uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_join(or_mesh *o, uint32_t v);
 uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
-/* u, the origin, is deleted; v stays, at `to` or at t between them. */
+/* The vertex u, the origin of the edge, is deleted; v stays, at `to` or at t between the two. */
 uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
-/* The two halves of or_edge_collapse. Refusals that apply only if v moves, which rounding decides,
- * are added to *doubt. */
+/* The two steps of or_edge_collapse. Refusals that apply only if v moves, where rounding may decide
+ * whether it does, are added to *doubt. */
 uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
                            uint64_t *doubt);
 void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
@@ -176,31 +180,35 @@ uint64_t or_face_add(or_mesh *o, const uint32_t *v, uint32_t count);
 uint64_t or_face_delete(or_mesh *o, const uint32_t *f, uint32_t count, bool keep_isolated);
 uint64_t or_face_split(or_mesh *o, uint32_t f, uint32_t from, uint32_t to);
 uint64_t or_face_join(or_mesh *o, uint32_t e);
-/* `start` is the origin of the stored half-edge of f; `at` NULL means somewhere inside. */
+/* `start` is the origin of the stored half-edge of f; `at` NULL: the position is not specified. */
 uint64_t or_face_poke(or_mesh *o, uint32_t f, uint32_t start, const he_vec3 *at);
-/* Each face keeps the triangle of its stored half-edge, which leaves start[i]. */
+/* In each face f[i], the triangle with its stored half-edge, which leaves start[i], keeps the
+ * id. */
 uint64_t or_face_triangulate(or_mesh *o, const uint32_t *f, const uint32_t *start, uint32_t count);
 
 typedef enum or_fill { OR_POLYGON, OR_FAN, OR_TRIANGULATE } or_fill;
-/* The hole in the order of hedge's boundary links, which at a bow-tie is hedge's choice. */
+/* `loop` has the vertices of the hole in the order of hedge's boundary links, which is hedge's
+ * choice at a bow-tie. */
 uint64_t or_hole_fill(or_mesh *o, const uint32_t *loop, uint32_t count, or_fill method);
 
-/* (ops_corner.c) `start` is the neighbour of v where hedge's stored half-edge begins: its face
- * stays, or v moves towards it. `moved` are the neighbours that move to the new vertex. */
+/* (ops_corner.c) `start` is the neighbour of v to which hedge's stored half-edge leads: the face of
+ * that half-edge stays, or v moves towards the neighbour. `moved` are the neighbours whose edges
+ * move to the new vertex. */
 uint64_t or_vertex_dissolve(or_mesh *o, uint32_t v, uint32_t start);
 uint64_t or_vertex_split_corners(or_mesh *o, uint32_t v, const uint32_t *moved, uint32_t count);
 uint64_t or_vertex_bevel(or_mesh *o, uint32_t v, uint32_t start, double width);
 
-/* (ops_weld.c) Merges vertex v into to[v], which may be v itself; the result is at the mean of all,
- * or at to[v]. or_weld_near finds `to` for a tolerance; it returns false if rounding decides. */
+/* (ops_weld.c) or_weld merges each vertex v into to[v], which may be v itself; the result is at the
+ * mean of all merged vertices, or at the position of to[v]. or_weld_near finds `to` for a
+ * tolerance; it returns false if rounding decides. */
 uint64_t or_weld(or_mesh *o, const uint32_t to[OR_VERTICES], bool mean);
 bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES]);
-/* `starts` are the first neighbours of the fans around v that leave it: hedge chooses which one
- * stays, and in which order the others get their vertices. */
+/* `starts` are the first neighbours of those fans around v that get a new vertex: hedge chooses
+ * which fan stays, and in which order the others get their vertices. */
 uint64_t or_check_separate(const or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count);
 uint64_t or_delete_isolated(or_mesh *o);
-/* Holes in the order of hedge's links. */
+/* `a` and `b` have the vertices of two holes in the order of hedge's boundary links. */
 uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
 /* Merges b[i] into a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
 uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
@@ -209,11 +217,12 @@ uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
 /* Finds the vertices of a cycle of three edges, in the direction of the first one; returns false if
  * they form none. */
 bool or_find_cycle(const or_mesh *o, const uint32_t e[3], uint32_t cycle[3]);
-/* After plane_split has cut everything: is the face above the plane? */
+/* Returns whether the face is above the plane, after plane_split has cut all faces. */
 bool or_face_is_above(const or_mesh *o, uint32_t f, he_vec3 normal);
-/* (ops_region.c) start[f] is the origin of the stored half-edge of face f, where its corners begin.
- * `by` NULL: `distance` along the normal. A factor of 0: by `distance`; the new corners of an inset
- * are then only known to be near the old ones. */
+/* (ops_region.c) A set of faces to extrude or inset. start[f] is the origin of the stored half-edge
+ * of face f, where its corners begin. If `by` is NULL, the faces move by `distance` along the
+ * normal. With a factor of 0 an inset is by `distance`; its new corners are then only known to be
+ * near the old ones. */
 typedef struct or_region {
     const uint32_t *faces, *start;
     uint32_t count;
@@ -221,62 +230,65 @@ typedef struct or_region {
 } or_region;
 uint64_t or_face_extrude(or_mesh *o, or_region region, const he_vec3 *by, double distance);
 uint64_t or_face_inset(or_mesh *o, or_region region, double factor, double distance);
-/* Is the direction of a face, or of the whole region, so uncertain that rounding decides it? Faces
- * whose corners are in two places only are certain: they have none. */
+/* or_faces_vaguely returns whether the direction of a face, or of the whole region, is so uncertain
+ * that rounding decides it. A face whose corners are at only two positions (or_is_flat) has no
+ * direction, which is certain. */
 bool or_faces_vaguely(const or_mesh *o, or_region region, bool inset);
 bool or_is_flat(const or_mesh *o, uint32_t f);
 
-/* (ops_whole.c) `faces` NULL: all faces. */
+/* (ops_whole.c) `faces` NULL: the operation applies to all faces. */
 uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start);
 uint64_t or_reverse(or_mesh *o, const uint32_t *faces, uint32_t count);
 uint64_t or_dual(or_mesh *o);
-/* Appends all live elements of `other`, in the order of ids. */
+/* Appends copies of all live elements of `other`, in the order of their ids. */
 void or_append(or_mesh *o, const or_mesh *other);
 
 uint64_t or_transform(or_mesh *o, const double matrix[16], const uint32_t *v, uint32_t count);
 void or_compact(or_mesh *o);
 
-/* (ops_refine.c) Makes one step; start[f] is the origin of the stored half-edge of face f. */
+/* (ops_refine.c) Makes one step of subdivision; start[f] is the origin of the stored half-edge of
+ * face f. */
 typedef enum or_scheme { OR_LOOP, OR_CATMULL_CLARK, OR_LINEAR, OR_SQRT3 } or_scheme;
 uint64_t or_subdivide(or_mesh *o, or_scheme scheme, const uint32_t *start);
 
-/* A NULL tolerance stands for hedge's, NULL faces for all; start[f] is the origin of the stored
- * half-edge of face f. In a face with more than two corners in the plane, hedge chooses which are
- * joined, as long as every part lies on one side of the plane. */
+/* `tolerance` NULL stands for hedge's default, `faces` NULL for all faces; start[f] is the origin
+ * of the stored half-edge of face f. If a face has more than two corners in the plane, hedge
+ * chooses which of them are joined, as long as every part lies on one side of the plane. */
 uint64_t or_plane_split(or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
                         const uint32_t *faces, uint32_t count, const uint32_t *start);
-/* The maximum size of the result, and whether a vertex is so close to the limit of the tolerance
- * that rounding decides. */
+/* The maximum size of the result of plane_split, and whether a vertex is so close to the limit of
+ * the tolerance that rounding decides. */
 typedef struct or_plane_size {
-    /* number of edges and faces, and corners of the longest face afterwards */
+    /* numbers of edges crossed and of faces cut, and corners of the longest face afterwards */
     uint32_t crossed, cut, longest;
     bool doubtful;
 } or_plane_size;
 or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
                                const double *tolerance);
 
-/* Applies one flip that hedge's delaunay reports. Returns false with a sentence unless the edge
- * lies between two triangles, the opposite angles require a flip, and edge_flip allows it. hedge
- * chooses the order of the flips. Afterwards no edge of `looked` may require an allowed flip. */
+/* or_delaunay_flip applies one flip that hedge's delaunay reports; hedge chooses the order. Returns
+ * false, with a sentence, unless the edge lies between two triangles, the opposite angles require a
+ * flip, and edge_flip allows it. or_delaunay_done returns false if an edge in `looked` still
+ * requires an allowed flip. */
 bool or_delaunay_flip(or_mesh *o, uint32_t e, bool looked[], char *text, size_t room);
 bool or_delaunay_done(or_mesh *o, const bool looked[], char *text, size_t room);
 
-/* --- comparison with hedge (match.c) ---------------------------------------------------------- */
+/* --- comparison with hedge (match.c) --- */
 
 enum { OR_TEXT = 256 };
 
-/* Makes the vertices that plane_split puts on edges, by ascending edge, and inserts them into the
- * faces to be cut.
- */
+/* Makes the vertices that plane_split puts on edges, in ascending order of the edges, and inserts
+ * them into the faces that are cut. */
 void or_plane_vertices(or_mesh *o);
-/* Do the faces from `first_new` on form the strip of loop_bridge? */
+/* Returns whether the faces from `first_new` on form the strip of loop_bridge. */
 bool or_strip_is_right(const or_mesh *o, uint32_t first_new);
-/* or_adopt takes over the ids that hedge gave to new elements, then calls or_derive. Returns false
- * with a sentence if hedge's mesh has other new elements. or_decline handles a refusal in `may`:
- * the oracle goes back to its state before the operation. */
+/* or_adopt takes over the ids that hedge gave to new elements, then calls or_derive. It returns
+ * false, with a sentence, if hedge's mesh has other new elements. or_decline is called if hedge
+ * refused for a reason in `may`: it takes the oracle back to the state before the operation. */
 void or_decline(or_mesh *o);
 bool or_adopt(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
-/* Does hedge's mesh equal this one in all counts, cycles, ends, links, rings and positions? */
+/* Returns whether hedge's mesh equals this one in all counts, cycles, ends, links, rings and
+ * positions; if not, `text` says why. */
 bool or_matches(or_mesh *o, const he_mesh *m, char text[OR_TEXT]);
 
 #endif

@@ -43,7 +43,7 @@ static void store_like(he_mesh *m, const he_mesh *like)
     }
 }
 
-/* --- edge_cut and edge_weld ------------------------------------------------------------------- */
+/* --- edge_cut and edge_weld --- */
 
 static void test_weld_undoes_cut(void **state)
 {
@@ -165,7 +165,7 @@ static void test_welds_at_a_bowtie_in_every_order(void **state)
     }
 }
 
-/* --- edge_extrude ----------------------------------------------------------------------------- */
+/* --- edge_extrude --- */
 
 static void test_deleting_the_walls_undoes_extrude(void **state)
 {
@@ -237,7 +237,7 @@ static void test_extrude_shares_corners(void **state)
     he_mesh_free(m);
 }
 
-/* --- edge_bevel ------------------------------------------------------------------------------- */
+/* --- edge_bevel --- */
 
 static void test_bevel_of_a_cube(void **state)
 {
@@ -350,7 +350,7 @@ static void test_bevel_at_the_ends_of_doubles(void **state)
     }
 }
 
-/* --- marks, values and ancestry --------------------------------------------------------------- */
+/* --- marks, values and ancestry --- */
 
 enum { FIRST_VALUE = 10 };
 
@@ -466,7 +466,7 @@ static void test_descent(void **state)
     }
 }
 
-/* --- a vertex with a thousand edges ----------------------------------------------------------- */
+/* --- a vertex with a thousand edges --- */
 
 enum { SPOKES = 1000 };
 

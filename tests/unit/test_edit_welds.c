@@ -21,7 +21,7 @@
 #define CF3     "0123,3245"
 #define BOARD   "0154,2376,56a9,89dc,abfe"
 
-/* --- inverses ------------------------------------------------------------------------------- */
+/* --- inverses --- */
 
 /* Are two meshes equal except for the half-edge that each vertex stores? */
 static void assert_same_rings(he_mesh *m, const he_mesh *before)
@@ -156,7 +156,7 @@ static void test_poke_and_dissolve(void **state)
     he_mesh_free(m);
 }
 
-/* --- cases ---------------------------------------------------------------------------------- */
+/* --- cases --- */
 
 static void test_cube_bevel(void **state)
 {
@@ -290,7 +290,7 @@ static void test_extreme_positions(void **state)
     }
 }
 
-/* --- surviving ids --------------------------------------------------------------------------- */
+/* --- surviving ids --- */
 
 /* Checks ids given as text, "3 5 7". */
 static void assert_ids(const he_ids *list, const char *expected)
@@ -382,7 +382,7 @@ static void test_survivors(void **state)
     edit_end(&e);
 }
 
-/* --- values --------------------------------------------------------------------------------- */
+/* --- values --- */
 
 /* A column of one double named "a": row i holds 10 * i, the default is -1. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)

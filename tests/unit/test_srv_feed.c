@@ -273,7 +273,7 @@ static void a_message_without_memory_is_a_gap(void **state)
     st_queue_leave(&listener);
 }
 
-/* --- threads --------------------------------------------------------------------------------- */
+/* --- threads --- */
 
 enum { LISTENERS = 6, MESSAGES = 20000 };
 

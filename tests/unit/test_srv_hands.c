@@ -14,7 +14,7 @@
 static const size_t hand_counts[] = {0, 1, 7};
 enum { HAND_COUNTS = 3 };
 
-/* --- parts ------------------------------------------------------------------------------------ */
+/* --- parts --- */
 
 enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
 
@@ -107,7 +107,7 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
     }
 }
 
-/* --- cancelling ------------------------------------------------------------------------------ */
+/* --- cancelling --- */
 
 typedef struct listener {
     pthread_t owner;
@@ -141,7 +141,7 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
     }
 }
 
-/* --- what core computes in parallel ---------------------------------------------------------- */
+/* --- what core computes in parallel --- */
 
 /* Soups large enough for many parts; vertices and faces are in random order if `shuffled`. */
 enum { SIDE = 220 };
@@ -342,7 +342,7 @@ static void defects_are_the_same_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* --- memory ----------------------------------------------------------------------------------- */
+/* --- memory --- */
 
 static _Atomic long requests, blocks, failing;
 

@@ -1,7 +1,8 @@
-/* The least that a libmicrohttpd server can do: it sends fixed bytes for every request.
- * tests/bench/http.sh compares hedged with it.
+/* The minimum that a server based on libmicrohttpd can do: it answers every request with the same
+ * bytes. tests/bench/http.sh compares hedged with it.
  *
- *     bare WORKERS BODY      prints the port it listens on, and ends when stdin does */
+ *     bare WORKERS BODY      prints the port it listens on, and ends when its standard input ends
+ */
 #include <arpa/inet.h>
 #include <microhttpd.h>
 #include <netinet/in.h>

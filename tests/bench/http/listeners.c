@@ -1,5 +1,5 @@
-/* Benchmark of listeners: the memory of each while nothing happens, and the time from the first
- * byte of an edit to the last listener's event.
+/* Benchmark of event streams: the memory per listener while nothing happens, and the time from the
+ * first byte of an edit until the last listener has its event.
  *
  *     listeners PORT PID LISTENERS ROUNDS */
 #include <arpa/inet.h>
@@ -57,7 +57,7 @@ static void say(int fd, const char *method, const char *path, const char *body)
 
 static char buffer[BUFFER];
 
-/* Reads until `end` has arrived. */
+/* Reads from a socket until the bytes `end` have arrived. */
 static void hear(int fd, const char *end)
 {
     size_t length = 0;
@@ -90,7 +90,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Waits until each listener has received one event, which arrives as one chunk and ends in a blank
+/* Waits until each listener has received one event: it arrives as one chunk and ends in a blank
  * line. */
 static void hear_all(int epoll, size_t listeners)
 {

@@ -1,13 +1,14 @@
 #define _GNU_SOURCE /* ppoll */
-/* A client that keeps to a rate: requests at even distances, whatever the answers take. A wait
- * counts from when a request was due, so that an answer that comes late is not hidden by a client
- * that asks later.
+/* A client that sends requests at a fixed rate, whether or not earlier ones are answered. The time
+ * of an answer counts from when its request was due, so that a slow answer also shows in the
+ * requests that had to wait behind it (no coordinated omission).
  *
  *     paced PORT PATH TOKEN RATE CONNECTIONS SECONDS IDLE
  *
- * RATE requests a second over CONNECTIONS connections, and IDLE more that were asked once and say
- * nothing. It prints how many answers were 200, 429 and another status, the median and the 99th
- * percentile of the waits in milliseconds, and how many of the 429 named when to come again. */
+ * It sends RATE requests a second over CONNECTIONS connections, and keeps IDLE more connections
+ * open that have sent one request each. It prints the numbers of answers with status 200, 429 and
+ * any other, the median and the 99th percentile of the times in milliseconds, and how many of the
+ * 429 had a Retry-After. */
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -25,7 +26,7 @@ enum { MOST_CONNECTIONS = 256, ANSWER = 16 * 1024, REQUEST = 1024 };
 
 typedef struct line {
     int fd;
-    double due; /* of the request that is under way; 0: none is */
+    double due; /* when the request on its way was due; 0: none is on its way */
     size_t length;
     char answer[ANSWER];
 } line;
@@ -71,7 +72,7 @@ static void ask(line *l, double due)
     }
 }
 
-/* The status of a whole answer, 0 where more is to come. */
+/* Returns the status of an answer that has arrived completely, 0 if more of it is to come. */
 static int take(line *l)
 {
     ssize_t got = recv(l->fd, l->answer + l->length, ANSWER - 1 - l->length, 0);

@@ -1,4 +1,4 @@
-/* Building a mesh from arrays. */
+/* Benchmark rows: building a mesh from arrays. */
 #include "bench/ours/ours.h"
 #include "mesh/walk.h"
 

@@ -1,4 +1,5 @@
-/* JSON mesh documents in memory: making a mesh from one, and one from a mesh. */
+/* Benchmark rows: JSON mesh documents in memory, both making a mesh from a document and a document
+ * from a mesh. */
 #include "bench/ours/ours.h"
 
 #include "api/document/document_in.h"
@@ -29,7 +30,7 @@ static char *print(const he_mesh *m, size_t *length)
     return text;
 }
 
-/* Leaves the document in the folder for the other program. */
+/* Writes the document to the folder, for the program that is compared with ours. */
 static void make_document(bench_side *side, bench_result *out)
 {
     size_t length;

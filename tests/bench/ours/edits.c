@@ -1,4 +1,5 @@
-/* Many small edits at random places of a copy of the mesh, and compacting it afterwards. */
+/* Benchmark rows: many small edits at random places of a copy of the mesh, and compacting it
+ * afterwards. */
 #include "bench/ours/ours.h"
 #include "edit/local/collapse.h"
 #include "edit/local/cut.h"
@@ -10,7 +11,7 @@
 
 #include <stdlib.h>
 
-/* An edit at a half-edge; returns false if it was refused. */
+/* A function that makes an edit at a half-edge; it returns false if the edit was refused. */
 typedef bool (*edit)(he_mesh *m, he_halfedge h);
 
 static bool split(he_mesh *m, he_halfedge h)
@@ -23,13 +24,13 @@ static bool flip(he_mesh *m, he_halfedge h)
     return he_edge_flip(m, he_edge_of(h), NULL) == HE_OK;
 }
 
-/* The kernel refuses picked edges that an earlier collapse has deleted. */
+/* Collapses an edge. The kernel refuses it if an earlier collapse has deleted the edge. */
 static bool collapse(he_mesh *m, he_halfedge h)
 {
     return he_edge_collapse(m, h, 1, NULL, NULL, NULL) == HE_OK;
 }
 
-/* The picked half-edges of the mesh as it was built. */
+/* Returns the half-edges of the mesh where edits are made, the same ones in every program. */
 static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_t *count)
 {
     bench_pick *picks = bench_picks(&side->input, count);
@@ -43,11 +44,11 @@ static he_halfedge *find_picks(const bench_side *side, const he_mesh *m, uint32_
     return found;
 }
 
-/* Options: each delta is emptied after its edit, as by a store that passes it on (RECORDED); the
- * kernel gets the edges as a list in advance, as by delaunay (OF_A_LIST). */
+/* How edits are made. RECORDED: each delta is emptied after its edit, as by a store that passes it
+ * on. OF_A_LIST: the kernel gets the edges as a list in advance, as from delaunay. */
 enum { RECORDED = 1, OF_A_LIST = 2 };
 
-/* Tries the edit at `count` half-edges of a copy. */
+/* Tries the edit at `count` half-edges of a copy of the mesh; returns the copy. */
 static he_mesh *run(bench_side *side, edit try, uint32_t count, unsigned how, bench_result *out)
 {
     enum { NEXT = 2, SOON = 4 };
@@ -126,7 +127,8 @@ static void time_collapse_recorded(bench_side *side, bench_result *out)
     he_mesh_free(run(side, collapse, COLLAPSES, RECORDED, out));
 }
 
-/* Ids change differently in every library, so positions identify the vertices. */
+/* Returns a hash of the mesh by positions, because every library numbers the vertices differently
+ * after edits. */
 static uint64_t place_hash(const he_mesh *m)
 {
     uint64_t hash = 0;

@@ -1,6 +1,6 @@
-/* Distance between a decimated mesh, made by any of the programs, and the input: points on each
- * surface and their nearest points on the other, as in P. Cignoni, C. Rocchini and R. Scopigno,
- * "Metro: measuring error on simplified surfaces", 1998. */
+/* Benchmark rows: the distance between a decimated mesh, made by any of the programs, and the
+ * input, from points on each surface and their nearest points on the other, as in P. Cignoni, C.
+ * Rocchini and R. Scopigno, "Metro: measuring error on simplified surfaces", 1998. */
 #include "bench/ours/ours.h"
 #include "geometry/vec3.h"
 #include "mesh/walk.h"
@@ -11,13 +11,13 @@
 
 enum { SAMPLES = 1000000 };
 
-/* Sums over the points of one surface. */
+/* Sums of the distances over the points of one surface. */
 typedef struct sums {
     double squares, farthest;
-    uint32_t turned; /* points whose face looks away from the face of the nearest point */
+    uint32_t turned; /* points whose face is turned away from the face of the nearest point */
 } sums;
 
-/* Returns 0 to 1; the sequence is fixed. */
+/* Returns a pseudo-random number from 0 to 1; the sequence is the same in every run. */
 static double draw(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -35,7 +35,7 @@ static void corners_of(const he_mesh *m, uint32_t f, he_vec3 out[3])
     }
 }
 
-/* Returns the normal, with twice the area as its length. */
+/* Returns the area vector of a triangle: its normal, with twice the area as length. */
 static he_vec3 area_of(const he_vec3 p[3])
 {
     return he_vec3_cross(he_vec3_sub(p[1], p[0]), he_vec3_sub(p[2], p[0]));
@@ -66,8 +66,8 @@ static void look(const he_bvh *tree, const he_mesh *to, he_vec3 point, he_vec3 a
     out->turned += he_vec3_dot(area, area_of(p)) < 0;
 }
 
-/* Points spread evenly over the faces of `from`, in their order, so that consecutive points are
- * near each other. */
+/* Measures the distances from points of `from` to `to`. The points are spread evenly over the
+ * faces, in the order of the faces, so that consecutive points are near each other. */
 static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
 {
     sums out = {0, 0, 0};
@@ -92,9 +92,8 @@ static sums sample(const he_mesh *from, const he_bvh *tree, const he_mesh *to)
     return out;
 }
 
-/* Gives each face its own vertices: the result of another program need not be representable as our
- * mesh.
- */
+/* Reads a mesh and gives each face vertices of its own, because the result of another program need
+ * not be a manifold, which our mesh has to be. */
 static he_mesh *read_faces(const bench_side *side)
 {
     he_import import;
@@ -115,8 +114,9 @@ static he_mesh *read_faces(const bench_side *side)
     return mesh;
 }
 
-/* Takes the larger of both directions. VALUE: the root mean square; NEAR: the farthest distance,
- * which estimates the Hausdorff distance; AMOUNT: points where a face is turned over. */
+/* Measures the error of a decimated mesh, the larger of both directions. VALUE: the root mean
+ * square; NEAR: the farthest distance, which estimates the Hausdorff distance; AMOUNT: points where
+ * a face is turned over. */
 static void decimate_error(bench_side *side, bench_result *out)
 {
     const he_mesh *input = bench_mesh(side);

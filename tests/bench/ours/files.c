@@ -1,4 +1,5 @@
-/* Mesh files: the daemon's readers and writers, with files in pieces of 64 kB. */
+/* Benchmark rows: the daemon's readers and writers of mesh files, with files given in pieces of 64
+ * kB. */
 #include "bench/ours/ours.h"
 #include "mesh/walk.h"
 
@@ -9,7 +10,8 @@
 
 enum { PIECE = 65536 };
 
-/* Counts, and the sum of the coordinates, which show whether two readers read the same mesh. */
+/* Reports the counts of a mesh and the sum of its coordinates, which show whether two readers have
+ * read the same mesh. */
 static void describe(const he_mesh *m, bench_result *out)
 {
     double sum = 0;
@@ -78,7 +80,8 @@ static void import(bench_side *side, const char *format, const char *name, bench
     he_mesh_free(mesh);
 }
 
-/* Our reader reads the files that all programs wrote. */
+/* Measures the export of a mesh; our reader then reads the file, as it reads the files that the
+ * other programs wrote. */
 static void export(bench_side *side, const char *format, const char *encoding, const char *name,
                    bench_result *out)
 {
@@ -131,7 +134,7 @@ static void export_ply(bench_side *side, bench_result *out)
     export(side, "ply", "binary", "output.ply", out);
 }
 
-/* Describes what a program has just exported. */
+/* Reads the OBJ file that a program has just exported, and reports its counts. */
 static void check_obj(bench_side *side, bench_result *out)
 {
     import(side, "obj", "output.obj", out);
@@ -209,8 +212,8 @@ static void write_stl(const bench_side *side)
     fclose(file);
 }
 
-/* Makes the files that all programs read, with the C library, so that no program reads what it
- * wrote itself. */
+/* Writes the files that all programs read, with the C library's functions, so that no program reads
+ * a file that it wrote itself. */
 static void make_files(bench_side *side, bench_result *out)
 {
     char head[64];
@@ -222,7 +225,7 @@ static void make_files(bench_side *side, bench_result *out)
     out->amount = side->input.faces;
 }
 
-/* A file that only our program reads. */
+/* Writes a binary glTF, which only our program reads. */
 static void make_glb(bench_side *side, bench_result *out)
 {
     bench_write(side, bench_mesh(side), "glb", "", "input.glb");

@@ -1,4 +1,5 @@
-/* Rows of which only the growth of time matters: the checker, and memory itself. */
+/* Benchmark rows of which only the growth of time with the size matters: the checker of meshes, and
+ * memory access by itself. */
 #include "bench/ours/ours.h"
 
 #include "base/mem.h"
@@ -23,7 +24,8 @@ static void check(bench_side *side, bench_result *out)
     }
 }
 
-/* Reads words at random places of a block as large as the mesh; no read depends on another. */
+/* Measures reads of words at random places of a block as large as the mesh; no read depends on
+ * another. */
 static void gather(bench_side *side, bench_result *out)
 {
     enum { READS = 1 << 23, BYTES_A_FACE = 66 };
@@ -35,7 +37,7 @@ static void gather(bench_side *side, bench_result *out)
     memset(block, 1, words * sizeof *block);
     double start = bench_seconds();
     for (int i = 0; i < READS; i++) {
-        /* A linear congruential generator (Knuth, TAOCP 2, 3.3.4). */
+        /* The places come from a linear congruential generator (Knuth, TAOCP 2, 3.3.4). */
         state = state * 6364136223846793005u + 1442695040888963407u;
         sum += block[(state >> 32) * words >> 32];
     }

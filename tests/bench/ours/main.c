@@ -1,4 +1,4 @@
-/* The kernel's program of the benchmark; side.h describes its input and output. */
+/* The kernel's program in the benchmark; side.h describes its input and output. */
 #include "bench/ours/ours.h"
 
 #include "system/memory.h"
@@ -18,7 +18,8 @@ int main(int argc, char **argv)
                                               bench_scaling_rows,
                                               bench_stored_rows,
                                               NULL};
-    /* Allocates memory as the daemon does, counted and in mappings of its own. */
+    /* The program allocates memory as the daemon does: counted, with large blocks in mappings of
+     * their own. */
     st_memory_install(0);
     return bench_serve(argc, argv, tables);
 }

@@ -1,5 +1,6 @@
-/* Rows that measure memory only: a history as the store keeps it, and documents from and into
- * files. The other rows of memory are rows of the other tables. */
+/* Benchmark rows that measure only memory: a history as the store keeps it, and mesh documents read
+ * from and written to files. The rows of the other tables can be run with a memory measurement,
+ * too. */
 #include "bench/ours/ours.h"
 
 #include "api/document/document_in.h"
@@ -12,8 +13,9 @@
 
 enum { SPLITS = 300000, PIECE = 65536 };
 
-/* Splits edges all over a copy of the mesh, with a delta for each; with `undone` all are undone,
- * and only memory stays allocated. The row `split` measures the growth of the mesh itself. */
+/* Splits edges all over a copy of the mesh and keeps a delta for each. With `undone` all splits are
+ * undone afterwards, so that the measurement is of the memory that stays allocated. The row `split`
+ * measures the growth of the mesh itself. */
 static void keep_history(bench_side *side, bool undone, bench_result *out)
 {
     he_mesh *m;

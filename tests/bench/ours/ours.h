@@ -1,5 +1,6 @@
-/* ours.h - the kernel's program of the benchmark. A row measures the work between two calls of
- * bench_seconds; preparation before and comparison afterwards are not measured. */
+/* ours.h - what the rows of the kernel's program in the benchmark share. A row measures the work
+ * between two calls of bench_seconds; preparation before and comparison afterwards are not
+ * measured. */
 #ifndef TESTS_BENCH_OURS_OURS_H
 #define TESTS_BENCH_OURS_OURS_H
 
@@ -20,18 +21,18 @@ extern const bench_row bench_memory_rows[];
 extern const bench_row bench_growth_rows[];
 extern const bench_row bench_stored_rows[];
 
-/* Ends the program with the status' title unless it is HE_OK. */
+/* Ends the program, and prints the title of the status, unless it is HE_OK. */
 void bench_require(he_status status);
-/* Returns the input as a soup that borrows its arrays: it must not be cleared. */
+/* Returns the input as a soup that borrows the arrays of the input, so it must not be cleared. */
 he_soup bench_soup(const bench_side *side);
 /* Returns the mesh of the input, which the first call makes. */
 he_mesh *bench_mesh(bench_side *side);
-/* Reads a file of the folder in pieces; the caller clears `out`. */
+/* Reads a file of the folder in pieces; the caller must clear `out`. */
 void bench_read(const bench_side *side, const char *format, const char *name, he_import *out);
-/* Writes a file; `encoding` may be empty. */
+/* Writes the mesh to a file of the folder; `encoding` may be empty. */
 void bench_write(const bench_side *side, const he_mesh *m, const char *format, const char *encoding,
                  const char *name);
-/* Hashes vertices, edges, faces and the corners of every face. */
+/* Returns a hash of the vertices, edges, faces and the corners of every face. */
 uint64_t bench_mesh_hash(const he_mesh *m);
 
 #endif

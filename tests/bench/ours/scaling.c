@@ -1,5 +1,5 @@
-/* Speedup by a second core: each row on the calling thread alone, and with helping threads. Wall
- * time is measured, since processor time adds up over threads. */
+/* Benchmark rows: the speedup by a second core. Each row is run on the calling thread alone and
+ * with helping threads. Wall time is measured, because processor time adds up over threads. */
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"
@@ -18,7 +18,7 @@ static double wall_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Lends the row's threads, which are made once. */
+/* Gives the work access to the helping threads, if `helped`; they are started once. */
 static void lend(he_watch *watch, bool helped)
 {
     static st_parallel *hands;
@@ -128,7 +128,7 @@ static void catmull_clark(bench_side *side, bool helped, bench_result *out)
     subdivide(side, HE_CATMULL_CLARK, helped, out);
 }
 
-/* Building uses helping threads, reading does not. */
+/* Imports a file. Building the mesh uses helping threads, reading the file does not. */
 static void import(bench_side *side, const char *format, const char *name, bool helped,
                    bench_result *out)
 {

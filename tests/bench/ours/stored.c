@@ -1,5 +1,5 @@
-/* The mesh and its edits as bytes (core/stored): the size of an edit's record, the time to apply
- * many of them, and whole contents. */
+/* Benchmark rows: a mesh and its edits as bytes (core/stored), with the size of an edit's record,
+ * the time to apply many of them, and whole contents. */
 #include "bench/ours/ours.h"
 
 #include "edit/local/collapse.h"
@@ -16,7 +16,8 @@
 
 enum { EDITS = 1000, SPLITS = 10000 };
 
-/* An edit at a half-edge of a mesh that records; returns false if it was refused. */
+/* A function that makes an edit at a half-edge of a mesh that records its changes; it returns false
+ * if the edit was refused. */
 typedef bool (*edit)(he_mesh *m, he_halfedge h);
 
 static bool move(he_mesh *m, he_halfedge h)
@@ -46,7 +47,7 @@ static bool collapse(he_mesh *m, he_halfedge h)
     return he_edge_collapse(m, h, 0.5, NULL, NULL, NULL) == HE_OK;
 }
 
-/* The bytes of a list of edits, one after another. */
+/* A list of encoded edits, whose bytes follow each other. */
 typedef struct coded {
     unsigned char *bytes;
     size_t size, capacity, count;
@@ -72,7 +73,7 @@ static void keep(coded *list, const he_delta *delta, const he_mesh *m)
     list->size += size;
 }
 
-/* Makes edits all over a copy of the mesh; refused ones are left out. */
+/* Makes edits all over a copy of the mesh and encodes them; refused ones are left out. */
 static coded *code_edits(bench_side *side, edit try, uint32_t count)
 {
     he_mesh *m;
@@ -133,14 +134,15 @@ static void stored_collapse(bench_side *side, bench_result *out)
     record(side, collapse, out);
 }
 
-/* Decodes splits and applies them to a mesh that has not issued any of their rows. */
+/* Decodes edge splits and applies them to a copy of the mesh as it was before them. */
 static void stored_forward(bench_side *side, bench_result *out)
 {
     he_mesh *m;
     coded *list = code_edits(side, split, SPLITS);
     he_delta **deltas = calloc(list->count, sizeof *deltas);
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
-    /* The first edit that enlarges the mesh moves all of it. */
+    /* The first edit has to enlarge the arrays of the mesh, which copies all of it, so it is not
+     * measured. */
     bench_require(he_stored_edit_forward(list->bytes, list->edit[0].size, list->edit[0].issued, m,
                                          &deltas[0], NULL));
     double start = bench_seconds();
@@ -158,7 +160,8 @@ static void stored_forward(bench_side *side, bench_result *out)
     he_mesh_free(m);
 }
 
-/* A block as large as the mesh whose pages are allocated. */
+/* Returns a block as large as the mesh, to which has been written, so that its pages are
+ * allocated. */
 static unsigned char *block_of(const he_mesh *m, size_t *size)
 {
     unsigned char *block = calloc(he_stored_content_bound(m), 1);

@@ -1,4 +1,4 @@
-/* Subdivision: one step of a copy of the input. */
+/* Benchmark rows: one step of subdivision of a copy of the input. */
 #include "bench/ours/ours.h"
 
 #include "algo/subdivide.h"

@@ -1,4 +1,4 @@
-/* Visiting a whole mesh: neighbours, normals, loops, components. */
+/* Benchmark rows: visiting a whole mesh, with neighbours, normals, loops and components. */
 #include "bench/ours/ours.h"
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
@@ -37,7 +37,8 @@ static double size_of(const he_vec3 *normals, size_t count)
     return sum;
 }
 
-/* The memory was written to, as that of the other programs: allocating pages is not measured. */
+/* Allocates memory for normals and writes to it, as the other programs do, so that the allocation
+ * of pages is not measured. */
 static he_vec3 *normals_new(size_t count)
 {
     he_vec3 *normals = malloc(count * sizeof *normals);

@@ -1,4 +1,4 @@
-/* cgal.h - CGAL's program of the benchmark: Surface_mesh with doubles. */
+/* cgal.h - what the rows of CGAL's program in the benchmark share: a Surface_mesh with doubles. */
 #ifndef TESTS_BENCH_PEERS_CGAL_H
 #define TESTS_BENCH_PEERS_CGAL_H
 
@@ -22,12 +22,12 @@ typedef Mesh::Halfedge_index Halfedge;
 typedef Mesh::Edge_index Edge;
 typedef Mesh::Face_index Face;
 
-/* Reserves space, since the counts are known. */
+/* Builds the mesh of the input, with space reserved, since the counts are known. */
 void cgal_fill(const bench_input &in, Mesh &mesh);
 /* Returns the mesh of the input, which the first call makes. */
 Mesh &cgal_mesh(bench_side *side);
 uint64_t cgal_hash(const Mesh &mesh);
-/* Counts, and the sum of the coordinates. */
+/* Reports the counts of a mesh and the sum of its coordinates. */
 void cgal_describe(const Mesh &mesh, bench_result *out);
 
 extern const bench_row cgal_kernel_rows[];

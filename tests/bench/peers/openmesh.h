@@ -1,5 +1,5 @@
-/* openmesh.h - OpenMesh's program of the benchmark. Positions and normals are doubles, as ours
- * are. */
+/* openmesh.h - what the rows of OpenMesh's program in the benchmark share. Positions and normals
+ * are doubles, as ours are. */
 #ifndef TESTS_BENCH_PEERS_OPENMESH_H
 #define TESTS_BENCH_PEERS_OPENMESH_H
 
@@ -17,7 +17,7 @@ extern "C" {
 typedef OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble> TriMesh;
 typedef OpenMesh::PolyMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble> PolyMesh;
 
-/* Reserves space, since the counts are known. */
+/* Builds the mesh of the input, with space reserved, since the counts are known. */
 template <class Mesh> void fill(const bench_input &in, Mesh &mesh)
 {
     size_t corners = static_cast<size_t>(in.faces) * in.degree;

@@ -15,7 +15,7 @@ static void *array(size_t count, size_t size)
     return memory;
 }
 
-/* xorshift64 (Marsaglia 2003) */
+/* Returns a pseudo-random number from 0 to n - 1: xorshift64 (Marsaglia 2003). */
 static uint32_t random_below(uint64_t *state, uint32_t n)
 {
     *state ^= *state << 13;
@@ -58,7 +58,7 @@ static void place(bench_input *in, uint32_t v, double x, double y, double z)
     in->positions[3 * v + 2] = (double)(float)z;
 }
 
-/* Adds a torus, shifted by `x`, whose first vertex and face are given. */
+/* Adds a torus, shifted by `x`; `vertex` and `face` are its first ones. */
 static void fill_torus(bench_input *in, uint32_t side, uint32_t vertex, uint32_t face, double x)
 {
     const double turn = 6.283185307179586 / side;
@@ -169,7 +169,8 @@ bench_pick *bench_picks(const bench_input *input, uint32_t *count)
     for (uint32_t i = 0; i < halfedges && picked < *count; i++) {
         uint32_t f = order[i] / input->degree, k = order[i] % input->degree;
         const uint32_t *corners = input->corners + f * input->degree;
-        /* Only one half-edge of each edge is taken: the one to the larger vertex. */
+        /* Each edge gives only one of its two half-edges, the one that leads to the larger
+         * vertex. */
         if (corners[k] < corners[(k + 1) % input->degree]) {
             picks[picked++] = (bench_pick){f, k};
         }

@@ -6,8 +6,9 @@
  *     holes    the grid less one face in a hundred
  *     pieces   64 tori, together about as many triangles as the torus
  *
- * Natural order is row by row; shuffled has vertex and face ids permuted. Coordinates are floats
- * widened to doubles, so that no file format rounds them. */
+ * In natural order the elements are numbered row by row; in shuffled order the ids of vertices and
+ * faces are permuted at random. Coordinates are floats widened to doubles, so that no file format
+ * rounds them. */
 #ifndef TESTS_BENCH_SIDE_INPUT_H
 #define TESTS_BENCH_SIDE_INPUT_H
 
@@ -17,7 +18,7 @@
 
 typedef struct bench_input {
     double *positions; /* three per vertex */
-    uint32_t *corners; /* of one face after another */
+    uint32_t *corners; /* of all faces, one face after the other */
     uint32_t *starts;  /* first corner of each face */
     uint32_t vertices, faces, degree;
 } bench_input;
@@ -26,9 +27,10 @@ typedef struct bench_input {
 void bench_input_make(const char *name, bool shuffled, uint32_t side, bench_input *out);
 void bench_input_clear(bench_input *input);
 
-/* Makes picks of half-edges, in random order that is equal in every program: a face and the index
- * of the corner that the half-edge leaves. No two are of one edge. `count` is the number for a mesh
- * of 1,048,352 faces; for a smaller one it is reduced in proportion. The caller frees. */
+/* Makes picks, the half-edges where edits are made, in a random order that is equal in every
+ * program: a pick is a face and the index of the corner that the half-edge leaves. No two are of
+ * one edge. `count` is the number for a mesh of 1,048,352 faces; for a smaller one it is reduced in
+ * proportion. The caller must free the list. */
 typedef struct bench_pick {
     uint32_t face, corner;
 } bench_pick;
@@ -38,7 +40,7 @@ bench_pick *bench_picks(const bench_input *input, uint32_t *count);
 /* Returns a hash of a face. The sum over all faces is equal for two meshes with equal faces,
  * whatever the order of the faces and the first corner of each. */
 uint64_t bench_face_hash(const uint32_t *vertices, size_t degree);
-/* Names a vertex by its position, where ids are not comparable. */
+/* Returns a hash of a vertex's position, to compare meshes whose vertex ids differ. */
 uint32_t bench_place_hash(double x, double y, double z);
 
 #endif

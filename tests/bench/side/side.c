@@ -7,14 +7,14 @@
 #include <sys/resource.h>
 #include <time.h>
 
-/* The quantity that a row measures. Since its work is between two calls of bench_seconds, these
- * also read the other meters. */
+/* The quantity that a row measures. A row's work is between two calls of bench_seconds, so these
+ * calls also read the memory if that is measured. */
 typedef enum measure { TIME, HEAP, PEAK } measure;
 
 static struct {
     measure by;
     bool began;
-    size_t before, after; /* bytes */
+    size_t before, after; /* memory in bytes */
     struct rusage first, last;
 } meter;
 
@@ -24,7 +24,7 @@ static size_t heap_bytes(void)
     return info.uordblks + info.hblkhd;
 }
 
-/* Returns a line of /proc/self/status in bytes. */
+/* Returns the number in a line of /proc/self/status, in bytes. */
 static size_t status_bytes(const char *name)
 {
     char line[256];
@@ -74,7 +74,7 @@ static void read_meters(void)
     }
 }
 
-/* Returns the time that the system spent for this program. */
+/* Returns the time that the kernel of the operating system has spent for this program. */
 static double system_seconds(void)
 {
     const struct timeval *from = &meter.first.ru_stime, *to = &meter.last.ru_stime;
@@ -136,7 +136,8 @@ static const bench_row *find(const bench_row *const *tables, const char *name)
     return NULL;
 }
 
-/* Returns the name of the row in a line, and sets the quantity if the line begins with one. */
+/* Returns the name of the row in an input line, and sets the quantity to be measured if the line
+ * begins with one. */
 static const char *set_meter(const char *line)
 {
     memset(&meter, 0, sizeof meter);

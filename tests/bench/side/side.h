@@ -1,4 +1,5 @@
-/* side.h - one program of the benchmark, which is driven by compare.mjs.
+/* side.h - the frame of one program in the benchmark; compare.mjs starts the programs and compares
+ * what they print.
  *
  *     PROGRAM INPUT natural|shuffled SIDE FOLDER
  *
@@ -19,8 +20,8 @@
  *     heap ROW    allocated on the heap at the second call minus those at the first
  *     peak ROW    the maximum of resident bytes between them minus those at the first
  *
- * Both need a process that has not freed much memory, because that would be used again. With
- * BENCH_SMALL_PAGES in the environment no huge pages are used. */
+ * Both need a process that has not freed much memory before, because freed memory would be used
+ * again. With BENCH_SMALL_PAGES in the environment no huge pages are used. */
 #ifndef TESTS_BENCH_SIDE_SIDE_H
 #define TESTS_BENCH_SIDE_SIDE_H
 
@@ -34,7 +35,7 @@ typedef struct bench_result {
     bool has_exact, has_near;
 } bench_result;
 
-/* The argument of a row. `mesh` is kept by the program between rows. */
+/* The argument of a row. The program keeps `mesh` between rows. */
 typedef struct bench_side {
     bench_input input;
     const char *folder;
@@ -46,19 +47,19 @@ typedef struct bench_row {
     void (*run)(bench_side *side, bench_result *out);
 } bench_row;
 
-/* Runs the program. `tables` and each table end in NULL. */
+/* Runs the program with these tables of rows; `tables` and each table end in NULL. */
 int bench_serve(int argc, char **argv, const bench_row *const *tables);
 
-/* Returns the processor time of this program in seconds, which other programs do not affect. Called
- * at the beginning and the end of a row's work. */
+/* Returns the processor time of this program in seconds, which does not depend on other programs.
+ * It is called at the beginning and the end of a row's work. */
 double bench_seconds(void);
 
 /* Writes the path of a file in the folder, at most `size` bytes. */
 void bench_path(const bench_side *side, const char *name, char *path, size_t size);
-/* Opens such a file; the program ends if that fails. */
+/* Opens a file of the folder; ends the program if that fails. */
 FILE *bench_open(const bench_side *side, const char *name, const char *mode);
 
-/* Sets the values that are compared. */
+/* Set the values of a row that are compared between programs. */
 void bench_exact(bench_result *out, uint64_t exact);
 void bench_near(bench_result *out, double near);
 /* Folds counts of vertices, edges and faces into a hash. */
