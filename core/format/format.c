@@ -108,7 +108,7 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c;
 }
 
-/* Compares a word with `text` up to its parameters, if it has any. */
+/* Returns true if `word` equals `text` up to the parameters of `text`, if it has any. */
 static bool same_word(const char *word, const char *text)
 {
     while (*word != '\0' && lower(*text) == *word) {
@@ -244,7 +244,7 @@ void he_reader_free(he_reader *reader)
     }
 }
 
-/* Keeps a failure for later calls, and passes it on. */
+/* Stores a failure, which all later calls of the reader will return, and returns `status`. */
 static he_status settle(he_reader *reader, he_status status, const he_error *failure, he_error *err)
 {
     if (status != HE_OK) {
@@ -305,7 +305,7 @@ he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
         reader->import.beside = NULL;
         *out = reader->import;
         reader->import = (he_import){0};
-        /* The reader's own memory is freed before the mesh is built. */
+        /* The state of the format's reader is freed before the mesh is built, to save memory. */
         reader->reading->close(reader->state);
         reader->state = NULL;
     }
@@ -317,7 +317,8 @@ struct he_writer {
     void *state;
     bool ended;
     he_notes notes;
-    /* Bytes that did not fit into the caller's last buffer. */
+    /* Bytes of the document that did not fit into the caller's last buffer; the next call returns
+     * them first. */
     size_t spare_from, spare_to;
     char spare[HE_WRITE_ROOM];
 };
@@ -351,7 +352,8 @@ void he_writer_free(he_writer *writer)
     }
 }
 
-/* Returns 0 only at the end. */
+/* Writes the next bytes of the document into the buffer. Returns 0 only at the end of the
+ * document. */
 static size_t fill(he_writer *writer, char *buffer, size_t room)
 {
     char *p = buffer, *end = buffer + room;

@@ -1,4 +1,4 @@
-/* he_glb_describe of glb_parts.h: the JSON. */
+/* glb_describe.c - writes the JSON of a GLB file, which describes the parts of its buffer. */
 #include "format/gltf/glb_parts.h"
 
 #include "format/gltf/gltf_asset.h"
@@ -137,7 +137,7 @@ static void put_extras(text *t, const he_glb_parts *g)
     put_text(t, columns > 0 ? "]}}" : "}}");
 }
 
-/* Writes the primitive of all faces, for the reader of hedge. */
+/* Writes the primitive that has all faces, from which hedge's own reader restores the mesh. */
 static void put_whole(text *t, const he_glb_parts *g)
 {
     size_t triangles;
@@ -173,7 +173,7 @@ static bool same_mesh(const he_glb_group *a, const he_glb_group *b)
            a->label[HE_GLB_GROUP] == b->label[HE_GLB_GROUP];
 }
 
-/* Is group i the first of its mesh? */
+/* Returns true if group i is the first group of its glTF mesh. */
 static bool begins_mesh(const he_glb_parts *g, size_t i)
 {
     return i == 0 || !same_mesh(&g->groups.list[i], &g->groups.list[i - 1]);
@@ -188,8 +188,8 @@ static size_t count_meshes(const he_glb_parts *g)
     return count == 0 ? 1 : count;
 }
 
-/* A node has the name of its object, a mesh that of its group; if one of them has no name, both
- * have the other's. */
+/* Returns the name of a node. A node has the name of the faces' object, and a mesh that of their
+ * group; if one of them has no name, both have the other's. */
 static const char *name_of_node(const he_glb_parts *g, const he_glb_group *group)
 {
     const char *object = he_glb_name(&g->groups, group, HE_GLB_OBJECT);
@@ -217,8 +217,8 @@ static void put_nodes(text *t, const he_glb_parts *g)
     put_text(t, mesh > 0 ? "]" : "{\"mesh\":0}]");
 }
 
-/* Writes one mesh of one primitive, if there is only one group; the extras of all faces are its
- * own. */
+/* Writes one mesh with one primitive, if all faces are in one group. The extras that describe all
+ * faces belong to this primitive then. */
 static void put_one_mesh(text *t, const he_glb_parts *g)
 {
     put_text(t, ",\"meshes\":[{");
@@ -281,7 +281,8 @@ static void put_color(text *t, const char *name, const double *numbers, size_t c
     put_text(t, "]");
 }
 
-/* Returns a power of two that no number of the emission exceeds: the factors are then exact. */
+/* Returns the smallest power of two that no component of the emission exceeds. Dividing by it is
+ * exact, so the factors in the file are exact. */
 static double strength_of(const he_look *look)
 {
     double strength = 1;
@@ -312,7 +313,7 @@ static void put_row(text *t, const he_material *row, bool *strong)
     put_text(t, look->two_sided ? ",\"doubleSided\":true}" : "}");
 }
 
-/* Writes the rows of the table, then names without a row. */
+/* Writes the materials: the rows of the table, then the names without a row. */
 static void put_materials(text *t, const he_glb_parts *g, bool *strong)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -335,7 +336,8 @@ static void put_materials(text *t, const he_glb_parts *g, bool *strong)
     put_text(t, any ? "]" : "");
 }
 
-/* Writes the names of materials, so that a reader notices if another program changed them. */
+/* Writes the names of the materials, so that a reader notices if another program has changed
+ * them. */
 static void put_names(text *t, const he_glb_parts *g)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -357,8 +359,8 @@ static void put_names(text *t, const he_glb_parts *g)
     put_text(t, "]");
 }
 
-/* Files with several groups of faces describe how to make one mesh of them again: see
- * gltf_whole.h. */
+/* Writes the extras at the root. In a file with several groups of faces they describe how to make
+ * one mesh of them again: see gltf_whole.h. */
 static void put_root_extras(text *t, const he_glb_parts *g)
 {
     size_t order;
@@ -396,7 +398,7 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
-/* Writes an accessor for each group's range of the triangles. */
+/* Writes for each group an accessor of its range of the triangles. */
 static void put_group_accessors(text *t, const he_glb_parts *g)
 {
     size_t triangles;

@@ -53,7 +53,7 @@ static uint32_t label_of(const he_column *column, uint32_t face)
     return label;
 }
 
-/* Returns false if there are too many. */
+/* Finds the group of a face, or makes it. Returns false if there are too many groups. */
 static bool find_group(finding *f, uint32_t face, uint32_t *out)
 {
     he_glb_groups *g = f->groups;
@@ -116,7 +116,8 @@ static int compare(const void *left, const void *right)
     return a->group < b->group ? -1 : a->group > b->group;
 }
 
-/* Puts the groups of an object and group together, each where its first face is. Sets rank[i]. */
+/* Sorts the groups so that those of one object and group follow each other, in the order of their
+ * first faces. Sets rank[i] to the new number of group i. */
 static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
 {
     placed *places = he_mem_array(NULL, g->count, sizeof *places);
@@ -153,7 +154,8 @@ static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
     return HE_OK;
 }
 
-/* Sorts the faces by groups, and finds where in the cuts their triangles are. */
+/* Sorts the faces by groups, and finds where in the list of cut triangles those of each face
+ * are. */
 static he_status order_faces(finding *f, const uint32_t *rank, he_error *err)
 {
     const he_mesh *m = f->mesh;

@@ -1,8 +1,9 @@
-/* glb_groups.h - groups the faces of a GLB: a mesh for each object and group, in it a primitive for
- * each material.
+/* glb_groups.h - groups the faces of a mesh for a GLB file: a glTF mesh for each object and group,
+ * and in it a primitive for each material.
  *
- * Primitives share all vertices; their triangles are stored one primitive after another. So faces
- * are written in the order of groups, and inside each in the order of their ids. */
+ * All primitives share the same vertices; their triangles are stored one primitive after another.
+ * So faces are written in the order of these groups, and inside each group in the order of their
+ * ids. */
 #ifndef HE_FORMAT_GLTF_GLB_GROUPS_H
 #define HE_FORMAT_GLTF_GLB_GROUPS_H
 
@@ -10,14 +11,15 @@
 #include "format/text/notes.h"
 #include "mesh/layout.h"
 
-/* Most primitives of a file. If there would be more, objects and groups are not separated, then
- * materials neither, with a note. */
+/* The most primitives of a file. If there would be more, objects and groups are not separated; if
+ * there still are too many, materials are not separated either. A warning says so. */
 enum { HE_GLB_PRIMITIVES = 4096 };
 
 enum { HE_GLB_OBJECT, HE_GLB_GROUP, HE_GLB_MATERIAL, HE_GLB_NAMES };
 
 typedef struct he_glb_group {
-    /* Labels of its faces; 0 for an attribute that is not separated. */
+    /* The labels that the group's faces have in the attributes object, group and material; 0 for an
+     * attribute by which the faces are not separated. */
     uint32_t label[HE_GLB_NAMES];
     uint64_t first, triangles; /* in the order of the file */
 } he_glb_group;
@@ -32,15 +34,16 @@ typedef struct he_glb_groups {
     he_ids only_names; /* labels of materials that have no row in the table */
 } he_glb_groups;
 
-/* Makes the groups.
+/* Groups the faces of a mesh by object, group and material.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_glb_groups_make(const he_mesh *mesh, he_notes *notes, he_glb_groups *out,
                                           he_error *err);
 void he_glb_groups_clear(he_glb_groups *groups);
-/* Returns the name that a group's faces have, "" for none. */
+/* Returns the name that the faces of a group have in attribute number `which`; "" if they have
+ * none. */
 const char *he_glb_name(const he_glb_groups *groups, const he_glb_group *group, size_t which);
-/* Returns the number of a group's material in the file: first the rows of the table, then names
- * without a row. HE_NONE if it has none. */
+/* Returns the number of a group's material in the file; HE_NONE if it has none. The file numbers
+ * first the rows of the table of materials, then the names without a row. */
 uint32_t he_glb_material(const he_mesh *mesh, const he_glb_groups *groups,
                          const he_glb_group *group);
 

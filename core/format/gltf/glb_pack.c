@@ -1,4 +1,4 @@
-/* Compresses the streams of glb_parts.h. */
+/* glb_pack.c - compresses the parts of a GLB file into streams of EXT_meshopt_compression. */
 #include "format/gltf/glb_parts.h"
 
 #include <string.h>
@@ -15,7 +15,8 @@ he_meshopt_stream he_glb_part_stream(const he_glb_part *part)
         stream.mode = HE_MESHOPT_INDICES;
         break;
     case HE_GLB_WORDS: {
-        /* a row is an element, because its words resemble those of the next row */
+        /* One whole row is an element of the stream, because its words resemble those of the next
+         * row. */
         uint32_t words = part->column->components * (part->column->type == HE_DOUBLE ? 2 : 1);
         stream.count /= words;
         stream.stride *= words;

@@ -5,9 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The largest 16-bit index is excluded: it restarts a strip. */
+/* A file with at most this many vertices has 16-bit indices. The largest index is excluded because
+ * it restarts a strip. */
 enum { SHORT_VERTICES = UINT16_MAX };
-/* Most attributes with one semantic. */
+/* The most attributes with one semantic, such as TEXCOORD_0 to TEXCOORD_7. */
 enum { MOST_NUMBERS = 8 };
 
 uint64_t he_glb_part_bytes(const he_glb_part *part)
@@ -53,7 +54,8 @@ static bool all_below(const he_column *column, double end)
     return true;
 }
 
-/* Is the column the attribute of this number of a semantic? Number 0 has no digit in its name. */
+/* Returns true if the column is the attribute for this number of a semantic: `uv` for TEXCOORD_0,
+ * `uv1` for TEXCOORD_1. */
 static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsigned number)
 {
     char name[HE_COLUMN_NAME];
@@ -62,7 +64,8 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
            column->components <= s->most;
 }
 
-/* Returns the type of a column under a semantic, or 0. */
+/* Returns the glTF component type with which a column is written under a semantic; 0 if it cannot
+ * be. */
 static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf_semantic *s)
 {
     uint64_t lost;
@@ -76,15 +79,16 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* Returns its type as the attribute of this number, or 0. */
+/* Returns the component type with which a column is written as the attribute of this number of a
+ * semantic; 0 if it cannot be. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {
     return column->labels == NULL && is_numbered(column, s, number) ? type_of(m, column, s) : 0;
 }
 
-/* Returns the column that is written as the attribute of this number, NULL if there is none. One of
- * corners takes precedence over one of vertices. */
+/* Returns the column that is written as the attribute of this number of a semantic, NULL if there
+ * is none. An attribute of corners takes precedence over one of vertices. */
 static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, unsigned number)
 {
     static const he_kind domains[] = {HE_HALFEDGE, HE_VERTEX};
@@ -100,7 +104,8 @@ static const he_column *find_shown(const he_mesh *m, const he_gltf_semantic *s, 
     return NULL;
 }
 
-/* Returns how many numbers of a semantic can be written: without a gap, and with their partners. */
+/* Returns how many attributes of a semantic can be written: their numbers may have no gap, and
+ * joints need weights. */
 static unsigned count_numbers(const he_mesh *m, const he_gltf_semantic *s)
 {
     const he_gltf_semantic *partner = &he_gltf_semantics[s->partner];
@@ -127,9 +132,9 @@ static bool has_corner_namesake(const he_mesh *m, const he_column *column)
     return he_mesh_find_column(m, HE_HALFEDGE, column->name) != NULL;
 }
 
-/* Finds the semantic of a column. One beyond the numbers of its semantic gets a name of its own,
- * such as _uv1, and so its old name when it is read back; joints, which are whole, are in extras
- * then. */
+/* Finds the semantic of a column. A column whose number cannot be written under its semantic gets a
+ * name of its own, such as _uv1, from which its old name is read back; joints, which are whole
+ * numbers, are then stored in extras. */
 static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANTICS],
                           const he_column *column, he_glb_part *part)
 {
@@ -160,7 +165,7 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
     return true;
 }
 
-/* Is each row read back with the same bits? */
+/* Returns true if each row of a part will be read back with equal bits. */
 static bool comes_back(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -177,7 +182,7 @@ static bool comes_back(const he_mesh *m, const he_glb_part *part)
     return true;
 }
 
-/* Does the reader make an equal column of it? */
+/* Returns true if a reader will make an equal column of this part. */
 static bool is_exact(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -220,7 +225,8 @@ static bool is_shown(const he_glb_parts *g, const he_column *column)
     return i < g->count;
 }
 
-/* Do meshes, primitives and materials represent it? */
+/* Returns true if meshes, primitives and materials of the file represent the column, which is an
+ * attribute of faces, completely. */
 static bool is_told_apart(const he_glb_parts *g, const he_column *column)
 {
     size_t i = 0;
@@ -249,7 +255,8 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                  (size_t)length, HE_PLACE_NONE, 0);
 }
 
-/* Adds the attributes for all programs, then, after the triangles, the rest. */
+/* Adds the attributes that all programs read; then, after the triangles, those that only hedge
+ * reads. */
 static void add_values(he_glb_parts *g, he_notes *notes)
 {
     const he_mesh *m = g->mesh;
@@ -274,7 +281,7 @@ static void add_values(he_glb_parts *g, he_notes *notes)
     }
 }
 
-/* Splits vertices whose corners have different values of the attributes for all programs. */
+/* Splits vertices whose corners have different values of the attributes that all programs read. */
 static he_status split(he_glb_parts *g, he_watch *watch, he_error *err)
 {
     const he_column *columns[HE_GLTF_SEMANTICS * MOST_NUMBERS];
@@ -300,7 +307,8 @@ static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
     }
 }
 
-/* Positions come first, and each part has an element for each vertex and copy. */
+/* Puts the positions first. Each of these parts has an element for each vertex and each copy of a
+ * vertex. */
 static void place_values(he_glb_parts *g, const he_column **used)
 {
     const he_mesh *m = g->mesh;
@@ -326,8 +334,8 @@ static void place_values(he_glb_parts *g, const he_column **used)
     }
 }
 
-/* Values of corners are in the order of corners, and a compressed triangle may begin at another
- * one. */
+/* Returns true if corners have attributes. Their values are in the order of corners, and a
+ * compressed triangle may begin at another corner. */
 static bool has_corner_values(const he_mesh *m)
 {
     for (size_t i = 0; i < he_mesh_columns(m); i++) {

@@ -1,8 +1,9 @@
-/* glb_parts.h - the contents of a GLB, computed before its first byte: the parts of its one buffer,
- * each with a buffer view and an accessor of one number, and the JSON that names them.
+/* glb_parts.h - the contents of a GLB file, which are computed before its first byte is written:
+ * the parts of its one buffer, and the JSON that describes them. Part i has a buffer view and an
+ * accessor of number i.
  *
- * With compression the parts are streams of EXT_meshopt_compression in the file's buffer, and the
- * views refer to its fallback, which has no bytes. */
+ * With compression each part is a stream of EXT_meshopt_compression in the file's buffer, and the
+ * views refer to a fallback buffer, which has no bytes. */
 #ifndef HE_FORMAT_GLTF_GLB_PARTS_H
 #define HE_FORMAT_GLTF_GLB_PARTS_H
 
@@ -55,7 +56,8 @@ typedef struct he_glb_parts {
     size_t json_length; /* a multiple of 4 */
 } he_glb_parts;
 
-/* Computes all but the JSON, and all but the streams if it `packs`. `watch` may be NULL.
+/* Computes the parts of the file, except the JSON and, if `packs` is set, the compressed streams.
+ * `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch,
@@ -64,18 +66,19 @@ void he_glb_parts_clear(he_glb_parts *parts);
 /* Returns the bytes of a part without its padding to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);
 
-/* Returns how a part is compressed. Indices are passed as uint32_t, see he_meshopt_encode. */
+/* Returns the layout of the stream into which a part is compressed. Indices are passed as uint32_t,
+ * see he_meshopt_encode. */
 he_meshopt_stream he_glb_part_stream(const he_glb_part *part);
-/* Compresses the next part, whose bytes these are.
+/* Compresses a part; `bytes` are its elements. Parts must be compressed in their order.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_glb_pack(he_glb_parts *parts, he_glb_part *part, const void *bytes,
                                    he_error *err);
 
-/* Writes the JSON, after everything else is complete.
+/* Writes the JSON, when all parts are complete.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_LIMIT if the length of the file does not fit its 32 bits. */
+ * Returns HE_LIMIT if the length of the file does not fit into 32 bits, as a GLB requires. */
 HE_NODISCARD he_status he_glb_describe(he_glb_parts *parts, he_error *err);
-/* Returns the bytes of the BIN chunk. */
+/* Returns the number of bytes of the BIN chunk. */
 uint64_t he_glb_bin_bytes(const he_glb_parts *parts);
 
 #endif

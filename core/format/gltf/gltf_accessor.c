@@ -1,4 +1,4 @@
-/* Accessors of gltf_asset.h. */
+/* gltf_accessor.c - finds the elements of accessors in an asset's buffers, and checks them. */
 #include "format/gltf/gltf_asset.h"
 
 #include <assert.h>
@@ -62,19 +62,19 @@ static size_t element_bytes(const he_gltf_accessor *a)
     if (!a->matrix) {
         return bytes * a->components;
     }
-    /* columns of a matrix begin at multiples of four bytes */
+    /* The columns of a matrix begin at multiples of four bytes. */
     size_t rows = a->components == 4 ? 2 : a->components == 9 ? 3 : 4;
     return rows * ((rows * bytes + 3) / 4 * 4);
 }
 
-/* The range of elements in a buffer: `object` has bufferView and byteOffset. */
+/* The range of elements in a buffer that an object with bufferView and byteOffset refers to. */
 typedef struct span {
     const unsigned char *bytes;
     size_t stride;
     uint64_t place;
 } span;
 
-/* Finds the bytes of a view, decompressed if necessary. */
+/* Finds the bytes of a buffer view, and decompresses them if necessary. */
 static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he_error *err)
 {
     uint32_t extension = he_gltf_meshopt(asset, view);
@@ -89,8 +89,8 @@ static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he
     return status;
 }
 
-/* Finds `count` elements of `size` bytes, in 64 bits without overflow: all numbers are below 2^53 +
- * 1, a stride below 2^8. */
+/* Finds the range of `count` elements of `size` bytes. 64 bits are enough without overflow: all
+ * numbers are below 2^53 + 1, and a stride is below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_t size,
                           size_t alignment, span *out, he_error *err)
 {
@@ -137,7 +137,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
     return HE_OK;
 }
 
-/* The indices must rise, so that a walk reaches each in its turn. */
+/* Checks the indices of the elements that a sparse accessor changes. They must rise, so that a walk
+ * over the elements reaches each in its turn. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {
@@ -198,7 +199,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
         return status;
     }
     a->changed_value = found.bytes;
-    /* they are visited whenever the accessor is used */
+    /* The changed elements are charged to the asset's limit, because they are visited whenever the
+     * accessor is used. */
     status = he_gltf_spend(asset, sparse, a->changed, err);
     return status == HE_OK ? check_changed(asset, a, sparse, err) : status;
 }

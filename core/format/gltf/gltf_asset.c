@@ -12,7 +12,8 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
                  he_json_place(&asset->json, place));
 }
 
-/* The amount of work is not known before; few files take less than a step for 16 bytes. */
+/* Reports progress. The amount of work is not known before; few files take less than a step for
+ * each 16 bytes. */
 he_status he_gltf_tell(he_gltf *asset, he_error *err)
 {
     asset->told = asset->steps;
@@ -45,7 +46,8 @@ he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const
                             what, (unsigned long long)index, list->count);
     }
     *item = list->ids[index];
-    /* the caller visits all its members */
+    /* The caller visits all members of the item, so their number is charged to the asset's
+     * limit. */
     return he_gltf_spend(asset, value, 8 * he_json_span(&asset->json, *item), err);
 }
 
@@ -131,7 +133,8 @@ static bool begins_with_any(const he_json *json, uint32_t name, const char *cons
 
 static he_status check_extensions(he_gltf *asset, he_error *err)
 {
-    /* prefixes of extensions that change how a surface looks, not where it is */
+    /* The prefixes of extensions that change how a surface looks, not its geometry: they may be
+     * ignored even if they are required. */
     static const char *const looks[] = {"KHR_materials_",
                                         "KHR_texture_",
                                         "EXT_texture_",
@@ -175,8 +178,8 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     return HE_OK;
 }
 
-/* Marks the files of images as used, so that they are not noted again as files that nothing
- * names. */
+/* Marks the files of images as used, so that there is no second warning that nothing refers to
+ * them. */
 static void note_images(he_gltf *asset)
 {
     const he_json *json = &asset->json;
@@ -194,7 +197,7 @@ static void note_images(he_gltf *asset)
     }
 }
 
-/* Notes everything that a mesh cannot store. */
+/* Adds warnings about everything in the asset that a mesh cannot store. */
 static void note_rest(he_gltf *asset)
 {
     static const struct {

@@ -47,16 +47,16 @@ typedef struct he_gltf {
     uint64_t steps, told;     /* steps of work; steps when the watch was last stepped */
 } he_gltf;
 
-/* The BIN chunk of a GLB; bytes is NULL if there is none. */
+/* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */
 typedef struct he_gltf_bin {
     const unsigned char *bytes;
     uint64_t length, place;
 } he_gltf_bin;
 
-/* Parses the asset and checks its version, extensions and buffers. `text` and `bin` must outlive
- * it.
- * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if it is not valid.
- * Returns HE_LIMIT if it is too large.
+/* Parses a glTF asset and checks its version, extensions and buffers. `text` and `bin` must outlive
+ * the asset.
+ * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if the asset is not valid.
+ * Returns HE_LIMIT if the asset is too large.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text,
@@ -64,53 +64,57 @@ HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char 
                                     he_error *err);
 void he_gltf_close(he_gltf *asset);
 
-/* --- functions for the files that include this header --- */
+/* --- functions that the readers of accessors, materials and scenes share --- */
 
 /* Opens the buffers. */
 HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *bin, he_error *err);
-/* Decompresses a view (a value of the JSON); the object `extension` says how.
- * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if it is not valid.
- * Returns HE_LIMIT if the asset would decompress to too much.
+/* Decompresses a buffer view, which is a value of the JSON; the object `extension` says how it is
+ * compressed.
+ * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if the view is not valid.
+ * Returns HE_LIMIT if the asset would decompress to too many bytes.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t extension,
                                       const he_gltf_buffer **out, he_error *err);
-/* Finds the bytes that `object` names by buffer, byteOffset and byteLength.
- * Returns HE_BAD_INDEX or HE_BAD_VALUE if there are none. */
+/* Finds the bytes to which `object` refers by its members buffer, byteOffset and byteLength.
+ * Returns HE_BAD_INDEX or HE_BAD_VALUE if there are no such bytes. */
 HE_NODISCARD he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *out,
                                            he_error *err);
-/* Lists the objects in an array that is a member of the root. */
+/* Lists the objects in an array that is a member of the root of the JSON. */
 HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
-/* Adds a note about `place`; its subject is the string `subject`, or HE_NONE. */
+/* Adds a warning about the value at `place`. Its subject is the string value `subject`; HE_NONE is
+ * no subject. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 
-/* Steps the watch.
- * Returns HE_CANCELLED if it gave up. */
+/* Reports progress to the watch.
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
-/* To be called for each element that is visited: steps the watch once in HE_WATCH_STRIDE calls.
- * Returns HE_CANCELLED if it gave up. */
+/* Must be called for each element that is visited; reports progress to the watch once in
+ * HE_WATCH_STRIDE calls.
+ * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
 {
     return ++asset->steps - asset->told < HE_WATCH_STRIDE ? HE_OK : he_gltf_tell(asset, err);
 }
-/* Counts `bytes` that the asset makes.
- * Returns HE_LIMIT, naming `value`, if it may not make so many. */
+/* Charges `bytes` of memory that reading the asset takes against the asset's limit.
+ * Returns HE_LIMIT, naming `value`, if the asset may not take so many. */
 HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err);
-/* Finds the item of `list` that the number at `value` names. `what` is the name of an item.
- * Returns HE_BAD_INDEX if there is none. */
+/* Finds the item of `list` whose index is the number at `value`. `what` is the name of such an
+ * item, for messages.
+ * Returns HE_BAD_INDEX if there is no such item. */
 HE_NODISCARD he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value,
                                     const char *what, uint32_t *item, he_error *err);
-/* Reads the whole number of a member that must exist.
- * Returns HE_BAD_VALUE if it does not, or is out of range. */
+/* Reads a member that must exist and be a whole number in a range.
+ * Returns HE_BAD_VALUE if the member does not exist or is not in the range. */
 HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name,
                                     uint64_t least, uint64_t most, uint64_t *out, he_error *err);
-/* Reads the whole number of a member, 0 if it is missing.
- * Returns HE_BAD_VALUE if it is out of range. */
+/* Reads a member that is a whole number in a range, or 0 if the member is missing.
+ * Returns HE_BAD_VALUE if the number is out of range. */
 HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,
                                    uint64_t most, uint64_t *out, he_error *err);
-/* Finds the array that is a member; HE_NONE if there is no such member.
- * Returns HE_BAD_VALUE if it is no array. */
+/* Finds an array that is a member of `object`; HE_NONE if there is no such member.
+ * Returns HE_BAD_VALUE if the member is no array. */
 HE_NODISCARD he_status he_gltf_array(const he_gltf *asset, uint32_t object, const char *name,
                                      uint32_t *out, he_error *err);
 
@@ -125,7 +129,7 @@ typedef enum he_gltf_type {
 
 size_t he_gltf_type_bytes(he_gltf_type type);
 
-/* Elements of numbers, checked to be inside their buffers. */
+/* An accessor: elements of numbers, which were checked to be inside their buffers. */
 typedef struct he_gltf_accessor {
     uint32_t value; /* its value in the JSON */
     he_gltf_type type;
@@ -141,12 +145,13 @@ typedef struct he_gltf_accessor {
     he_gltf_type changed_type; /* type of their indices, which rise */
 } he_gltf_accessor;
 
-/* Returns the value of the extension in a view or buffer, HE_NONE if it has none. */
+/* Returns the value of the extension EXT_meshopt_compression in a view or buffer, HE_NONE if it has
+ * none. */
 #define HE_GLTF_MESHOPT "EXT_meshopt_compression"
 uint32_t he_gltf_meshopt(const he_gltf *asset, uint32_t object);
 
-/* Finds the accessor that the number at `value` names.
- * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if it is not valid. */
+/* Finds the accessor whose index is the number at `value`, and checks it.
+ * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if the accessor is not valid. */
 HE_NODISCARD he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor *out,
                                             he_error *err);
 
@@ -156,12 +161,13 @@ typedef struct he_gltf_walk {
     uint64_t next, changed;
 } he_gltf_walk;
 
-/* Returns the bytes of the next element. */
+/* Returns the bytes of the walk's next element. */
 const unsigned char *he_gltf_next(he_gltf_walk *walk);
-/* Returns a component as the number it stands for: -1 to 1 or 0 to 1 if it is normalized. */
+/* Returns a component of an element as the number it stands for. A normalized integer stands for a
+ * fraction from 0 to 1, or from -1 to 1 if it is signed. */
 double he_gltf_number(const he_gltf_accessor *accessor, const unsigned char *element,
                       uint32_t component);
-/* Reads a whole number of an unsigned type. */
+/* Reads a whole number of an unsigned type at the address `at`. */
 uint32_t he_gltf_whole(he_gltf_type type, const unsigned char *at);
 
 #endif

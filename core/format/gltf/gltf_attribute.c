@@ -41,7 +41,7 @@ he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *co
     return status == HE_OK ? he_column_extend(column, rows, err) : status;
 }
 
-/* Reads a number to the end of the text: at most three digits, and no leading 0. */
+/* Reads a number that is the rest of a name: at most three digits, and no leading 0. */
 static bool read_number(const char *p, unsigned *number)
 {
     unsigned value = 0;
@@ -53,7 +53,7 @@ static bool read_number(const char *p, unsigned *number)
     return p > begin && *p == '\0' && (*begin != '0' || p == begin + 1);
 }
 
-/* Finds the attribute's name for a semantic. Returns false if it has none. */
+/* Finds the name of the mesh's attribute for a semantic of glTF. Returns false if there is none. */
 static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
                            const he_gltf_semantic **known)
 {
@@ -97,8 +97,9 @@ static he_type column_type(const he_gltf_accessor *a, const he_gltf_semantic *kn
 
 /* --- directions --- */
 
-/* Normals are transformed by the cofactors of the frame, which are its inverse transpose up to a
- * factor; tangents by the frame. */
+/* Transforms a normal or tangent by the transformation of its node. Normals are transformed by its
+ * cofactors, which are its inverse transpose up to a factor; tangents by the transformation
+ * itself. */
 static void turn(const he_gltf_primitive *p, bool normal, double *v)
 {
     const double(*m)[4] = p->frame->row;
@@ -188,7 +189,8 @@ static bool is_direction(const he_gltf_semantic *known)
     return role_of(known) == HE_GLTF_NORMAL || role_of(known) == HE_GLTF_TANGENT;
 }
 
-/* Directions must be floats, or what the extension allows for them. */
+/* Checks the component type of directions: they must be floats, or a type that
+ * KHR_mesh_quantization allows. */
 static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                             const he_gltf_semantic *known, he_error *err)
 {
@@ -202,7 +204,7 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                         (int)a->type);
 }
 
-/* Finds or makes the column for the rows; NULL if there can be none. */
+/* Finds or makes the column into which an attribute is read; NULL if there can be none. */
 static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, const char *semantic,
                              const he_gltf_accessor *a, const he_gltf_semantic **known,
                              he_column **out, he_error *err)

@@ -33,7 +33,8 @@ typedef struct he_gltf_primitive {
     uint32_t first_vertex, first_face, first_corner; /* first rows in the soup */
 } he_gltf_primitive;
 
-/* Returns the vertex of an index, which is below the count of positions. */
+/* Returns the vertex of the mesh for an index of the primitive, which must be below its number of
+ * positions. */
 static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index)
 {
     return index < p->vertices
@@ -41,17 +42,18 @@ static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index
                : he_gltf_whole(HE_GLTF_UINT32,
                                p->copies.bytes + (index - p->vertices) * p->copies.stride);
 }
-/* Returns the place of element i in the input; if its bytes are not in the file, that of
- * `value`. */
+/* Returns the place of element i in the input; if its bytes are not in the input itself, the place
+ * of the JSON value `value`. */
 uint64_t he_gltf_element_place(const he_gltf *asset, const he_gltf_accessor *a, uint32_t value,
                                uint64_t i);
 HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he_gltf_primitive *p,
                                               he_error *err);
-/* Notes which vertices have no value of an attribute that others have. */
+/* Adds warnings about vertices that have no value of an attribute that other vertices have. */
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
-/* Extends a column to rows up to `end`, with defaults before `begin`, the first row to be written.
+/* Extends a column so that it has `end` rows. The rows before `begin`, which is the first row to be
+ * written, get defaults.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
@@ -67,7 +69,8 @@ typedef enum he_gltf_role {
     HE_GLTF_SEMANTICS
 } he_gltf_role;
 
-/* The semantic of an attribute, for reader and writer: a row of he_gltf_semantics, at its role. */
+/* What glTF calls the semantic of an attribute (such as NORMAL), and how it maps to an attribute of
+ * a mesh. Reader and writer share the table he_gltf_semantics, whose index is the role. */
 typedef struct he_gltf_semantic {
     const char *semantic, *attribute;
     uint32_t least, most; /* components */
@@ -77,7 +80,8 @@ typedef struct he_gltf_semantic {
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 
-/* Converts component i of a value, from a mesh to glTF or back. */
+/* Converts component i of an attribute's value from a mesh to glTF or back; the conversion is its
+ * own inverse. */
 static inline double he_gltf_convert(he_gltf_role role, uint32_t i, double value)
 {
     return role == HE_GLTF_UV && i == 1 ? 1 - value : value;

@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-/* Characters of base64 between two steps of the watch; a multiple of four. */
+/* The number of base64 characters between two steps of the watch; a multiple of four. */
 enum { PIECE = 1 << 16 };
 
-/* Decodes `length` characters to `to`, which has room. */
+/* Decodes `length` characters of base64 to `to`, whose bytes were allocated for them. */
 static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
                         he_gltf_buffer *to, he_error *err)
 {
@@ -27,8 +27,8 @@ static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t l
     return status;
 }
 
-/* Returns the characters of a string with its escapes decoded, if it has any: then the caller frees
- * `own`. */
+/* Gets the characters of a JSON string. If it has escapes, they are decoded into memory at `own`,
+ * which the caller frees. */
 static he_status plain_text(const he_json *json, uint32_t value, const char **text, size_t *length,
                             char **own, he_error *err)
 {
@@ -45,7 +45,7 @@ static he_status plain_text(const he_json *json, uint32_t value, const char **te
     return HE_OK;
 }
 
-/* Finds a buffer in a file that came with this one. */
+/* Finds the bytes of a buffer in a file that came together with the asset. */
 static he_status find_beside(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, const char *name,
                              size_t length, he_error *err)
 {
@@ -108,14 +108,16 @@ static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, 
     return status;
 }
 
-/* Is the buffer only for readers without the extension? Then its file may be missing. */
+/* Returns true if the buffer is only a fallback for readers without the compression extension. Then
+ * its file may be missing. */
 static bool is_fallback(const he_gltf *asset, uint32_t value)
 {
     uint32_t flag = he_json_find(&asset->json, he_gltf_meshopt(asset, value), "fallback");
     return he_json_type(&asset->json, flag) == 't';
 }
 
-/* A fallback buffer that did not come is allowed if all its views are compressed. */
+/* Handles a fallback buffer whose file did not come: that is allowed if all its views are
+ * compressed. */
 static he_status find_fallback(he_gltf *asset, size_t i, uint32_t value, he_error *err)
 {
     uint32_t uri = he_json_find(&asset->json, value, "uri");

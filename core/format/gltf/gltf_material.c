@@ -12,7 +12,7 @@ static void note(he_gltf *asset, uint32_t value, const char *code, const char *t
 
 /* --- names --- */
 
-/* Adds a name that no material before has. */
+/* Adds a material's name, changed if an earlier material has it. */
 static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[HE_GLTF_NAME],
                           he_error *err)
 {

@@ -12,9 +12,9 @@
 
 enum { HE_GLTF_NAME = 1024 };
 
-/* Fills the table, and *names, which the caller owns, with a name for each material in order: its
- * own, material_N if it has none, and NAME_2 and so on if another has that name. Beyond
- * HE_MATERIALS there are names without rows, with a note.
+/* Fills the soup's table of materials. *names, which the caller owns, gets a name for each material
+ * in order: its own, material_N if it has none, and NAME_2 and so on if another material has that
+ * name. Materials beyond HE_MATERIALS have names but no rows, with a warning.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */

@@ -21,8 +21,8 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
                  HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
 }
 
-/* Is the failure about memory, limits or cancellation? Any other only means that the extras are not
- * valid. */
+/* Returns true if a failure is about memory, limits or cancellation and must be reported. Any other
+ * failure only means that the extras are not valid, and they are ignored. */
 static bool is_serious(he_status status)
 {
     return status == HE_NO_MEMORY || status == HE_LIMIT || status == HE_CANCELLED;
@@ -36,8 +36,8 @@ static he_status get_words(he_gltf *asset, uint32_t object, const char *name, he
     if (value == HE_NONE) {
         return HE_OK;
     }
-    /* The error has no text, because finding the path of the place would cost more than reading
-     * it. */
+    /* No error is recorded, because finding the path of the value would cost more than reading it,
+     * and the error would not be reported. */
     he_status status = he_gltf_accessor_get(asset, value, out, NULL);
     if (status == HE_OK) {
         *fits = out->components == 1 && out->type == HE_GLTF_UINT32 && out->bytes != NULL;
@@ -57,8 +57,8 @@ typedef struct polygons {
     he_gltf_accessor degrees, corners;
 } polygons;
 
-/* Are the triangles of each polygon at its corners, degree - 2 of them, and its corners different?
- * `marks` has a word for each vertex. Fails if the watch cancelled the work. */
+/* Checks that the degree - 2 triangles of each polygon lie at its corners, and that its corners
+ * differ. `marks` has a word for each vertex. Fails if the watch cancelled the work. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -214,7 +214,8 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-/* Each label must be unique: a repeated one would shift the indices of all after it. */
+/* Reads the labels of a column. Each must be unique, because a repeated label would shift the
+ * indices of all after it. */
 static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, bool *fits,
                              he_error *err)
 {
@@ -255,7 +256,8 @@ static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, boo
     return HE_OK;
 }
 
-/* Writes one component from its words. Returns false if it is no value of the type. */
+/* Writes one component of a value from its words. Returns false if the words are no value of the
+ * type. */
 static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
 {
     uint32_t word = next_word(walk);
@@ -285,8 +287,8 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Is every word a value of the type, and the index of a label if there are any? Fails if the watch
- * gave up. */
+/* Checks that every word is a value of the type, and the index of a label if the column has labels.
+ * Fails if the watch cancelled the work. */
 static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
                               he_error *err)
 {
@@ -312,8 +314,8 @@ static he_status check_values(he_gltf *asset, const description *d, size_t label
     return HE_OK;
 }
 
-/* Is there a column that can take the values, or room for a new one? Checked before they are read,
- * so that each value of a file is read for one column. */
+/* Returns true if there is a column that can take the values, or room for a new one. This is
+ * checked before the values are read, so that each value of a file is read for one column. */
 static bool has_place(const he_gltf_surface *s, const description *d)
 {
     he_soup *soup = &s->asset->into->soup;
@@ -325,7 +327,8 @@ static bool has_place(const he_gltf_surface *s, const description *d)
            column->rows <= d->first && (column->labels == NULL) == (d->labels == HE_NONE);
 }
 
-/* Replaces indices of labels by those that a column has for them. */
+/* Replaces the indices of labels, from row `first` on, by the indices that these labels have in the
+ * column. */
 static he_status renumber(he_column *column, size_t first, const he_labels *labels, he_error *err)
 {
     size_t count = he_labels_count(labels);
@@ -347,7 +350,7 @@ static he_status renumber(he_column *column, size_t first, const he_labels *labe
     return status;
 }
 
-/* Lists the faces whose names come from extras and not from nodes and materials. */
+/* Lists the faces whose names come from the extras and not from nodes and materials. */
 static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
 {
     he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
@@ -414,7 +417,8 @@ static he_status read_column(he_gltf_surface *s, const he_gltf_primitive *p, uin
     he_status status = d.domain == HE_KIND_COUNT ? HE_OK : describe(s, object, &d, &fits, err);
     fits = fits && has_place(s, &d);
     if (status == HE_OK && fits) {
-        /* they are visited even if they are not used */
+        /* The values are charged to the asset's limit, because they are visited even if they are
+         * not used. */
         status = he_gltf_spend(s->asset, object, d.words.count * sizeof(uint32_t), err);
     }
     if (status == HE_OK && fits && d.labels != HE_NONE) {
@@ -440,7 +444,7 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Is each copy at the position of its vertex? Fails if the watch cancelled the work. */
+/* Checks that each copy is at the position of its vertex. Fails if the watch cancelled the work. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

@@ -1,4 +1,5 @@
-/* gltf_private.h - data of a primitive beyond glTF, in extras of files written by hedge.
+/* gltf_private.h - data of a primitive that glTF cannot represent, in the `extras` of files written
+ * by hedge.
  *
  *     "extras": {"hedge": {
  *         "copies": 2,
@@ -24,12 +25,14 @@
 #include "format/gltf/gltf_attribute.h"
 
 bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive);
-/* To be called before the vertices are added: finds which of them are copies; p->private says
- * whether the extras are valid so far. Fails only if memory, limits or the watch do. */
+/* Finds which vertices of a primitive are copies, from its extras. Must be called before the
+ * vertices are added. p->private says whether the extras are valid so far. Fails only for lack of
+ * memory, a limit or cancellation. */
 HE_NODISCARD he_status he_gltf_open_private(he_gltf_surface *surface, he_gltf_primitive *p,
                                             he_error *err);
-/* To be called after that, if p->private: adds the columns and the polygons, in place of the
- * triangles; p->exact and p->polygons say which. Fails as he_gltf_open_private does. */
+/* Adds the attributes and the polygons from the extras, in place of the triangles. Must be called
+ * after the vertices are added, and only if p->private is set; p->exact and p->polygons say what
+ * was added. Returns the errors of he_gltf_open_private. */
 HE_NODISCARD he_status he_gltf_read_private(he_gltf_surface *surface, he_gltf_primitive *p,
                                             he_error *err);
 

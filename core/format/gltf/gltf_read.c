@@ -8,7 +8,7 @@ enum { HEADER = 12, CHUNK = 8 };
 
 static const uint32_t JSON_CHUNK = 0x4E4F534A, BIN_CHUNK = 0x004E4942;
 
-/* Bytes that are kept completely, because numbers in them are read in any order. */
+/* A chunk of bytes that is kept as a whole, because its contents are read in any order. */
 typedef struct block {
     char *bytes;
     size_t length, capacity;
@@ -23,14 +23,14 @@ typedef struct glb {
     uint64_t length; /* length of the file, as its header says */
     uint64_t left;   /* bytes of the chunk still to come */
     size_t chunks;   /* chunks that have begun */
-    /* Bytes of padding that may follow the chunk, whose length is no multiple of 4. */
+    /* The number of bytes of padding that may follow a chunk whose length is no multiple of 4. */
     size_t padding;
     bool begun, has_bin;
     block json, bin;
     block *chunk; /* where its bytes are stored; NULL: nowhere */
 } glb;
 
-/* `most` is the most that will come. */
+/* Appends bytes to a block. `most` is the largest size that it will have. */
 static he_status keep(block *b, const void *bytes, size_t n, uint64_t most, uint64_t limit,
                       he_error *err)
 {
@@ -107,9 +107,9 @@ static he_status take_header(glb *g, he_error *err)
     return HE_OK;
 }
 
-/* After a chunk whose length is no multiple of 4 the next one follows directly, or after padding.
- * Do the bytes read as the header of a chunk begin with such padding? It is then skipped, and the
- * rest of the header is still to come. */
+/* Skips padding. After a chunk whose length is no multiple of 4, the next chunk follows directly,
+ * or after padding. Returns true if the bytes that were read as the header of a chunk begin with
+ * such padding; it is then skipped, and the rest of the header is still to come. */
 static bool skip_padding(glb *g)
 {
     size_t n = g->padding;
@@ -303,7 +303,8 @@ static he_status gltf_open(he_import *into, void **state, he_error *err)
 
 const he_reading he_gltf_reading = {gltf_open, gltf_feed, gltf_finish, gltf_close, true};
 
-/* Recognises an object with a member "asset", which is near the beginning of nearly all files. */
+/* Recognises a JSON object with a member "asset", which is near the beginning of nearly all
+ * files. */
 bool he_gltf_sniff(const char *bytes, size_t n)
 {
     static const char member[] = "\"asset\"";

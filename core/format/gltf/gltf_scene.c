@@ -36,7 +36,7 @@ static he_gltf_frame multiply(const he_gltf_frame *a, const he_gltf_frame *b)
     return out;
 }
 
-/* Reads `count` numbers of a member; leaves `out` alone if it is missing. */
+/* Reads `count` numbers of a member of a node; if the member is missing, `out` is not changed. */
 static he_status get_numbers(const he_json *json, uint32_t node, const char *name, size_t count,
                              double *out, bool *found, he_error *err)
 {
@@ -57,10 +57,11 @@ static he_status get_numbers(const he_json *json, uint32_t node, const char *nam
     return status;
 }
 
-/* A difference of the length to 1 up to this is taken for rounding. */
+/* If the length of a quaternion differs from 1 by no more than this, the difference is taken for
+ * rounding. */
 static const double UNIT = 1e-4;
 
-/* Normalises a quaternion: one of another length than 1 would scale, too. */
+/* Normalises a quaternion, because one of another length than 1 would scale, too. */
 static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error *err)
 {
     const he_json *json = &asset->json;
@@ -184,7 +185,7 @@ static he_status push(scene *s, const he_gltf_frame *frame, uint32_t children, u
     return HE_OK;
 }
 
-/* Visits node `index`; `value` is the number that named it. */
+/* Visits node `index`; `value` is the JSON number that refers to it, for errors. */
 static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_frame *parent,
                        he_error *err)
 {
@@ -218,7 +219,7 @@ static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_f
     return status;
 }
 
-/* Visits the node that the number at `value` names. */
+/* Visits the node whose index is the JSON number at `value`. */
 static he_status visit_named(scene *s, uint32_t value, const he_gltf_frame *parent, he_error *err)
 {
     uint32_t node;
@@ -230,7 +231,7 @@ static he_status visit_named(scene *s, uint32_t value, const he_gltf_frame *pare
     return status == HE_OK ? visit(s, index, value, parent, err) : status;
 }
 
-/* Visits everything below the nodes that were visited. */
+/* Visits everything below the nodes that were visited so far. */
 static he_status visit_rest(scene *s, he_error *err)
 {
     he_status status = HE_OK;
@@ -291,7 +292,8 @@ static he_status visit_scene(scene *s, uint32_t value, he_error *err)
     return status;
 }
 
-/* The value that names a node as a child, and the node that contains it; HE_NONE: none. */
+/* The parent of a node: the JSON value that refers to the node as a child, and the node that
+ * contains this value; HE_NONE if there is none. */
 typedef struct parent {
     uint32_t value, node;
 } parent;
@@ -316,8 +318,8 @@ static he_status find_parents(he_gltf *asset, parent *parents, he_error *err)
     return status;
 }
 
-/* A node that is below no root has a parent, and so has that one: following them leads round a
- * cycle. */
+/* Reports a cycle of nodes. A node that is below no root has a parent, and so has that parent:
+ * following them leads round a cycle. */
 static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t node, he_error *err)
 {
     for (size_t i = 0; i < s->asset->nodes.count; i++) {
@@ -327,7 +329,7 @@ static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t no
                         "node %u is inside itself", node);
 }
 
-/* Visits the nodes that are no children, if there are no scenes. */
+/* Visits the nodes that are no children of others, if the file has no scenes. */
 static he_status visit_roots(scene *s, he_error *err)
 {
     const he_ids *nodes = &s->asset->nodes;

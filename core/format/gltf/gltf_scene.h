@@ -6,11 +6,12 @@
 
 enum { HE_GLTF_DEPTH = 1 << 16 }; /* most levels of nodes inside nodes */
 
-/* Fills the import with the meshes of the scene that `scene` names, else of the first one, else of
- * the nodes that are no children, else with all meshes. A node's mesh comes before its children's,
- * in the order of the file. Fails as he_gltf_add_mesh does, too.
+/* Fills the import with meshes: those of the scene that the asset's member `scene` names, else of
+ * the first scene, else of all nodes that are no children, else all meshes. The mesh of a node
+ * comes before those of its children, in the order of the file. Returns the errors of
+ * he_gltf_add_mesh, too.
  * Returns HE_BAD_VALUE if a node is reached twice or is inside itself.
- * Returns HE_BAD_INDEX if a reference names nothing.
+ * Returns HE_BAD_INDEX if a reference is to nothing that exists.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_read_scene(he_gltf *asset, he_error *err);

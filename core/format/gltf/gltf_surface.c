@@ -32,7 +32,8 @@ static he_status get_mode(const he_gltf *asset, uint32_t primitive, uint64_t *mo
     return value == HE_NONE ? HE_OK : he_json_whole(&asset->json, value, POINTS, FAN, mode, err);
 }
 
-/* A primitive whose data exists only compressed looks like one without data. */
+/* Gets an accessor that must have all its data. A primitive whose data exists only in compressed
+ * form looks like one without data, which gets its own message. */
 static he_status get_whole(he_gltf *asset, uint32_t primitive, uint32_t value,
                            he_gltf_accessor *out, he_error *err)
 {
@@ -113,8 +114,8 @@ static he_status located(he_status status, uint64_t at, he_error *err)
 
 /* --- vertices and faces --- */
 
-/* Counts the memory of the soup, and of a place for each element whose distance from the last
- * differs. */
+/* Charges the memory of the soup to the asset's limit, and that of a place for each element whose
+ * distance from the one before differs. */
 static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     he_import *into = s->asset->into;
@@ -191,8 +192,8 @@ static he_status bad_index(const he_gltf_surface *s, const he_gltf_primitive *p,
     return status;
 }
 
-/* Finds the corners of triangle i of a strip or fan that has been read up to them: `held` has the
- * first corner, and the last ones. */
+/* Finds the corners of triangle i of a strip or fan that is being read: `held` has the first
+ * corner, and the last ones. */
 static void corners_of(uint64_t mode, uint64_t i, const uint32_t held[4], uint32_t corners[3])
 {
     bool odd = i % 2 == 1;
@@ -382,7 +383,8 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
     return status;
 }
 
-/* Names from extras, for some faces, take precedence over those from nodes and materials. */
+/* Sets the names of faces. Names from extras, which some faces have, take precedence over those
+ * from nodes and materials. */
 static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const he_ids *own,
                               const char *name, he_error *err)
 {

@@ -7,14 +7,16 @@
 
 enum { HE_GLTF_ATTRIBUTES = 256 };
 
-/* The transformation of a node: p becomes (row 0 . p + the last number of row 0, ...). */
+/* The transformation of a node: the first coordinate of point p becomes the product of row 0 with
+ * p, plus the last number of row 0, and so on. */
 typedef struct he_gltf_frame {
     double row[3][4];
 } he_gltf_frame;
 
 extern const he_gltf_frame he_gltf_no_frame; /* the identity, bit by bit */
 
-/* {.asset = ..., .names = ...} is empty; names are borrowed. */
+/* The soup that is filled with primitives, and the state of filling it. {.asset = ..., .names =
+ * ...} is empty; the names are borrowed. */
 typedef struct he_gltf_surface {
     he_gltf *asset;
     he_labels *names; /* names of materials, in their order */
@@ -27,15 +29,15 @@ typedef struct he_gltf_surface {
 } he_gltf_surface;
 
 void he_gltf_surface_clear(he_gltf_surface *surface);
-/* Adds all primitives of a mesh (a value of the JSON). `name` is the object's, HE_NONE if it has
- * none. After a failure the soup has a part of them. */
+/* Adds all primitives of a glTF mesh (a value of the JSON). `name` is the name of the object,
+ * HE_NONE if it has none. After a failure the soup contains some of them. */
 HE_NODISCARD he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t name,
                                         const he_gltf_frame *frame, he_error *err);
-/* Adds one primitive as he_gltf_add_mesh does. */
+/* Adds one primitive of a glTF mesh, with the parameters of he_gltf_add_mesh. */
 HE_NODISCARD he_status he_gltf_add_primitive(he_gltf_surface *surface, uint32_t primitive,
                                              uint32_t name, const he_gltf_frame *frame,
                                              he_error *err);
-/* Makes the attributes of faces. */
+/* Makes the attributes of faces, after all primitives are added. */
 HE_NODISCARD he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* Buffer views of gltf_asset.h: finds their bytes, and decompresses those of
+/* gltf_unpack.c - finds the bytes of buffer views, and decompresses those of
  * EXT_meshopt_compression. */
 #include "format/gltf/gltf_asset.h"
 
@@ -50,7 +50,7 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
 
 /* --- compressed views --- */
 
-/* Finds a string in a list of `count` words; `absent` if there is no string. */
+/* Finds which of `count` words a string is; `absent` if there is no string. */
 static he_status find_word(const he_gltf *asset, uint32_t object, const char *name,
                            const char *const *words, int count, int absent, int *out, he_error *err)
 {
@@ -99,7 +99,8 @@ static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_s
                          : he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "%s", wrong);
 }
 
-/* Can the bytes be such a stream? If not, no memory is allocated for it. */
+/* Checks whether the bytes can be a stream of this layout. If not, no memory is allocated for its
+ * elements. */
 static he_status check_stream(const he_gltf *asset, uint32_t object,
                               const he_meshopt_stream *stream, const he_gltf_buffer *packed,
                               he_error *err)
@@ -177,7 +178,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     return he_gltf_tell(asset, err);
 }
 
-/* Returns its index in the list of views, whose values rise. */
+/* Returns the index of a view in the list of views, whose values rise. */
 static size_t number_of(const he_ids *views, uint32_t view)
 {
     size_t from = 0, to = views->count;

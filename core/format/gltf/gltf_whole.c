@@ -18,9 +18,9 @@ static void note_stale(he_gltf *asset, uint32_t value)
                  HE_PLACE_BYTE, he_json_place(&asset->json, value));
 }
 
-/* --- is the scene as it was written? --- */
+/* --- checking whether the scene is as hedge wrote it --- */
 
-/* Returns the description of the accessor that the number at `value` names, HE_NONE if there is
+/* Returns the JSON object of the accessor whose index is the number at `value`, HE_NONE if there is
  * none. */
 static uint32_t accessor_of(const he_gltf *asset, uint32_t value)
 {
@@ -56,7 +56,7 @@ static bool read_indices(const he_gltf *asset, uint32_t primitive, indices *out)
            is_member(json, accessor, "count", &out->count);
 }
 
-/* Do both objects have equal names in one order, with equal numbers? */
+/* Returns true if both objects have the same names in the same order, with equal numbers. */
 static bool same_attributes(const he_json *json, uint32_t a, uint32_t b)
 {
     uint32_t i = he_json_first(json, a), k = he_json_first(json, b);
@@ -142,7 +142,8 @@ static bool same_names(const he_gltf_surface *surface, uint32_t list)
     return item == HE_NONE && i == count;
 }
 
-/* Each test is charged the values of the JSON that it visits. */
+/* Checks whether the scene is as hedge wrote it. Each test is charged for the values of the JSON
+ * that it visits. */
 static he_status check_scene(he_gltf_surface *surface, uint32_t value, uint32_t private, bool *fits,
                              he_error *err)
 {
@@ -193,7 +194,7 @@ he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whol
 
 /* --- the order of faces --- */
 
-/* Does each number below the count occur once? */
+/* Reads the order of faces, and checks that each number below the count occurs once. */
 static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t *order, bool *fits,
                             he_error *err)
 {
@@ -216,7 +217,7 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
     return status;
 }
 
-/* Reorders the places of faces in the input. */
+/* Sorts the places of faces in the input into the given order. */
 static he_status order_places(he_places *places, const uint32_t *order, size_t count, he_error *err)
 {
     he_places made;

@@ -15,12 +15,13 @@
 
 #include "format/gltf/gltf_surface.h"
 
-/* Adds the primitive to an empty soup, if the scene (a value of the JSON, or HE_NONE) is as it was
- * written; *whole says so. Fails as he_gltf_add_primitive does. */
+/* Adds the one primitive of all faces to an empty soup, if the scene (a value of the JSON, or
+ * HE_NONE) is as hedge wrote it; *whole says whether it is. Returns the errors of
+ * he_gltf_add_primitive. */
 HE_NODISCARD he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whole,
                                          he_error *err);
-/* To be called after he_gltf_surface_finish: sorts the faces. An order that is not valid leaves
- * them as they are, with a note.
+/* Sorts the faces into their original order; must be called after he_gltf_surface_finish. If the
+ * stored order is not valid, the faces stay as they are, with a warning.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */

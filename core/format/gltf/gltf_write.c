@@ -7,10 +7,10 @@
 #include <assert.h>
 #include <string.h>
 
-/* The parts of the document, in order. */
+/* The parts of a GLB document, in the order in which they are written. */
 typedef enum stage { HEADER, JSON, BIN_HEADER, PARTS, END } stage;
 
-/* Room for one element of any part: sixteen doubles. */
+/* Room for one element of any part; the largest has sixteen doubles. */
 enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
@@ -97,9 +97,10 @@ static uint32_t number_of(const glb_writer *w, uint32_t vertex)
     return w->g.numbers != NULL ? w->g.numbers[vertex] : vertex;
 }
 
-/* --- walks over the elements of a part; HE_NONE after the last --- */
+/* --- walks over the elements of a part, which return HE_NONE after the last --- */
 
-/* Copies follow the vertices; returns a half-edge for each. */
+/* Walks over the copies of vertices, which follow the vertices; returns for each the half-edge
+ * whose corner it stands for. */
 static uint32_t next_copy(glb_writer *w)
 {
     return w->copy < w->g.splits.copies.count ? w->g.splits.copies.ids[w->copy++] : HE_NONE;
@@ -146,7 +147,7 @@ static uint32_t next_row(glb_writer *w, he_kind domain)
     return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
 }
 
-/* Fills in the numbers that vertices have in a face, if they are split. */
+/* Finds the numbers that vertices have in a face, if vertices are split. */
 static void enter_face(const glb_writer *w, uint32_t face)
 {
     const he_content *c = &w->g.mesh->c;
@@ -188,8 +189,8 @@ static char *put_position(const glb_writer *w, uint32_t vertex, char *p)
     return p;
 }
 
-/* Writes the part's value for the next vertex, or the next copy; nothing after the last. A copy has
- * the values of the corner it stands for. */
+/* Writes a part's value for the next vertex, or the next copy of a vertex; nothing after the last.
+ * A copy has the values of the corner it stands for. */
 static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_content *c = &w->g.mesh->c;
@@ -248,7 +249,7 @@ static void begin_part(glb_writer *w)
     w->written = 0;
 }
 
-/* Collects all elements of a part for compression: indices are words then. */
+/* Collects all elements of a part for compression; indices are stored as 32-bit words for that. */
 static he_status pack_part(glb_writer *w, he_glb_part *part, he_error *err)
 {
     he_glb_part plain = *part;

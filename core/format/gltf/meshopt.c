@@ -7,11 +7,11 @@ const char *const he_meshopt_modes[HE_MESHOPT_MODES] = {"ATTRIBUTES", "TRIANGLES
 const char *const he_meshopt_filters[HE_MESHOPT_FILTERS] = {"NONE", "OCTAHEDRAL", "QUATERNION",
                                                             "EXPONENTIAL"};
 
-/* A stream begins with this byte, combined with its version. */
+/* The first byte of a stream in each mode; it is combined with the version. */
 static const unsigned char marks[HE_MESHOPT_MODES] = {0xA0, 0xE0, 0xD0};
 
-/* The extension uses version 1 of the index coding. The library sets it for the whole process, so
- * it is set before other threads start. */
+/* Chooses version 1 of the index coding, which the extension uses. The library stores the version
+ * for the whole process, so it is set before other threads start. */
 __attribute__((constructor)) static void choose_version(void)
 {
     meshopt_encodeVertexVersion(HE_MESHOPT_ATTRIBUTES_VERSION);
@@ -39,9 +39,9 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
     return NULL;
 }
 
-/* After a byte of mode and version a stream needs: for attributes at least two bits for 16 values
- * of each byte of an element, and the first element; for triangles one byte each and a table of 16;
- * for indices one byte each and 4. */
+/* Returns the fewest bytes a stream can have. After a byte of mode and version, attributes need at
+ * least two bits for 16 values of each byte of an element, and the first element; triangles need
+ * one byte each and a table of 16; indices need one byte each and 4. */
 uint64_t he_meshopt_least(const he_meshopt_stream *s)
 {
     switch (s->mode) {

@@ -27,7 +27,7 @@ typedef enum he_meshopt_filter {
     HE_MESHOPT_FILTERS
 } he_meshopt_filter;
 
-/* The names of the extension. */
+/* The names that the extension has for the modes and filters of streams. */
 extern const char *const he_meshopt_modes[HE_MESHOPT_MODES];
 extern const char *const he_meshopt_filters[HE_MESHOPT_FILTERS];
 
@@ -43,23 +43,24 @@ const char *he_meshopt_fits(const he_meshopt_stream *stream);
 /* Returns the fewest bytes that a stream of this layout can have: a shorter one is refused before
  * memory is allocated for its elements. */
 uint64_t he_meshopt_least(const he_meshopt_stream *stream);
-/* Returns the version of the codec that a stream names, -1 if it is no stream of this mode. */
+/* Returns the version of the codec that a stream states; -1 if the bytes are no stream of this
+ * mode. */
 int he_meshopt_version(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length);
 enum {
     HE_MESHOPT_ATTRIBUTES_VERSION = 0,
     HE_MESHOPT_INDEX_VERSION = 1
 }; /* the latest versions that are read */
 
-/* Decodes to `to`, which has room for all elements. Returns false if the bytes are no such stream.
- * Indices are not checked. */
+/* Decodes a stream to `to`, which must have room for all elements. Returns false if the bytes are
+ * no such stream. Whether decoded indices are in range is not checked. */
 bool he_meshopt_decode(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length,
                        void *to);
 
-/* Returns the most bytes that he_meshopt_encode may write. No filter is applied. */
+/* Returns the most bytes that he_meshopt_encode may write. Encoding applies no filter. */
 size_t he_meshopt_bound(const he_meshopt_stream *stream);
-/* Encodes the elements to `to`, where `room` is he_meshopt_bound, and returns the bytes written.
- * Elements of attributes are as in memory; triangles and indices are uint32_t, whatever the stride,
- * which only matters to decoders. */
+/* Encodes elements to `to`, where `room` must be what he_meshopt_bound returns; returns the number
+ * of bytes written. Elements of attributes are passed as they are in memory; triangles and indices
+ * are passed as uint32_t, whatever the stride, which only matters to decoders. */
 size_t he_meshopt_encode(const he_meshopt_stream *stream, const void *elements, unsigned char *to,
                          size_t room);
 

@@ -29,7 +29,8 @@ static he_beside_file *find_exact(he_beside *beside, const char *name, size_t le
     return NULL;
 }
 
-/* Returns NULL also if several files in different folders have this name. */
+/* Finds a file by the last part of its name. Returns NULL if there is none, or if several files in
+ * different folders have this name. */
 static he_beside_file *find_base(he_beside *beside, const char *name, size_t length)
 {
     size_t base = base_of(name, length);
@@ -71,7 +72,8 @@ static int digit(char c)
                                   : -1;
 }
 
-/* Decodes percent escapes; anything else stays as it is. Returns false if the name is too long. */
+/* Decodes the percent escapes of a URI; all else stays as it is. Returns false if the name is too
+ * long. */
 static bool unescape(const char *uri, size_t length, char name[HE_BESIDE_NAME], size_t *used)
 {
     *used = 0;

@@ -1,4 +1,4 @@
-/* beside.h - files that came together with the one that is read: the buffers of a glTF asset, the
+/* beside.h - files that came together with the file that is read: the buffers of a glTF asset, the
  * material library of an OBJ file.
  *
  * A reader looks them up by the names in its file; nothing is ever opened. A name finds the file
@@ -20,21 +20,23 @@ typedef struct he_beside_file {
     bool used; /* a reader has looked it up */
 } he_beside_file;
 
-/* Filled and kept by the caller of the reader. */
+/* The files that came together with the one that is read. The caller of the reader fills and keeps
+ * this. */
 typedef struct he_beside {
     he_beside_file *files;
     size_t count;
 } he_beside;
 
-/* Finds the file of a name of `length` bytes, and marks it as used. Returns NULL if there is none.
- * `beside` may be NULL: no files came. */
+/* Finds a file by its name of `length` bytes, and marks it as used. Returns NULL if there is none.
+ * `beside` may be NULL, which means that no files came. */
 const he_beside_file *he_beside_find(he_beside *beside, const char *name, size_t length);
-/* he_beside_find for a URI reference (RFC 3986): the file of exactly this name, or else of the name
- * with its percent escapes decoded. */
+/* Finds a file like he_beside_find, but by a URI reference (RFC 3986): the file of exactly this
+ * name, or else the file of the name with its percent escapes decoded. */
 const he_beside_file *he_beside_find_uri(he_beside *beside, const char *uri, size_t length);
-/* Returns the sum of all sizes. */
+/* Returns the sum of the sizes of all files. */
 size_t he_beside_bytes(const he_beside *beside);
-/* Lists the names for a message: "a.bin, b.bin", cut to fit with "...". Printable ASCII. */
+/* Lists the names of the files for a message, in printable ASCII: "a.bin, b.bin"; if they do not
+ * fit, the list ends with "...". */
 void he_beside_list(const he_beside *beside, char *text, size_t size);
 
 #endif

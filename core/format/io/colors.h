@@ -25,8 +25,8 @@ typedef struct he_colors {
 } he_colors;
 
 void he_colors_clear(he_colors *colors);
-/* Adds the colour of an element; elements come in order, and some may be left out. `count` is 3 or
- * 4.
+/* Adds the colour of an element. Elements must come in order, and some may be left out. `count` is
+ * the number of values, 3 or 4.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_colors_add(he_colors *colors, size_t element, const double *values,
                                      size_t count, he_error *err);
@@ -34,14 +34,15 @@ HE_NODISCARD he_status he_colors_add(he_colors *colors, size_t element, const do
 HE_NODISCARD he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *notes,
                                         he_kind domain, size_t elements, he_error *err);
 
-/* Finds the colours to write: an attribute of floats or doubles with three or four components, else
- * NULL. */
+/* Finds the attribute of colours to write; NULL unless it has floats or doubles in three or four
+ * components. */
 const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_notes *notes);
-/* Returns the byte nearest to a component. */
+/* Returns the byte that is nearest to a colour component between 0 and 1. */
 uint32_t he_color_byte(double component);
-/* Is the component exactly that byte, to the precision of a float? */
+/* Returns true if the component equals its nearest byte, to the precision of a float. */
 bool he_color_is_byte(double component);
-/* Can bytes represent all of the colours? `lost` counts the rows that they cannot. */
+/* Returns true if bytes can represent all colours exactly. `lost` gets the number of rows that they
+ * cannot represent. */
 bool he_colors_are_bytes(const he_mesh *mesh, const he_column *column, uint64_t *lost);
 
 #endif

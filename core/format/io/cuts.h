@@ -1,4 +1,4 @@
-/* cuts.h - the triangles of all faces, for formats that only have triangles.
+/* cuts.h - cuts all faces into triangles, for formats that only have triangles.
  *
  * A polygon is cut as triangulation.h says, with diagonals that avoid existing edges if possible: a
  * doubled edge would have more than two faces when the file is read again. */
@@ -15,16 +15,17 @@ typedef struct he_cuts {
     uint64_t steps;            /* steps of cutting them */
 } he_cuts;
 
-/* Cuts all faces. Borrows the mesh, which must not change meanwhile. `watch` may be NULL.
+/* Cuts all faces. The mesh is borrowed and must not change until the cuts are cleared. `watch` may
+ * be NULL.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_cuts_make(const he_mesh *mesh, he_watch *watch, he_cuts *out,
                                     he_error *err);
 void he_cuts_clear(he_cuts *cuts);
-/* Returns the number of triangles in all. */
+/* Returns the number of triangles of all faces together. */
 uint64_t he_cuts_count(const he_cuts *cuts);
 
-/* A walk over the triangles, face by face; {0} begins it. */
+/* A walk over all triangles, face by face. It begins with {0}. */
 typedef struct he_cut_walk {
     uint32_t face; /* the next face, or the one being visited */
     uint32_t left; /* its triangles still to come */
@@ -32,7 +33,7 @@ typedef struct he_cut_walk {
     size_t corner; /* next corner of cuts */
 } he_cut_walk;
 
-/* Gets the vertices of the next triangle. Returns false after the last. */
+/* Gets the three vertices of the next triangle of the walk. Returns false after the last one. */
 bool he_cuts_next(const he_cuts *cuts, he_cut_walk *walk, uint32_t vertices[3]);
 
 #endif

@@ -164,7 +164,8 @@ char *he_export_row(const he_column *column, size_t row, char *to)
     return to;
 }
 
-/* Without the seed nobody can choose many values whose hashes are close together. */
+/* Hashes bytes onto h. The seed is secret, so a client cannot choose many values whose hashes are
+ * close together. */
 static uint64_t hash(uint64_t h, const void *bytes, size_t length)
 {
     const unsigned char *p = bytes;
@@ -199,7 +200,8 @@ static bool say_the_same(const table *t, uint32_t h, uint32_t k)
     return same;
 }
 
-/* Returns the slot of the values of half-edge h, or the free one where they belong. */
+/* Returns the slot of the hash table that holds the values of half-edge h, or the free slot where
+ * they belong. */
 static size_t slot_of(const table *t, const he_ids *first, uint32_t h)
 {
     uint64_t sum = (uint64_t)(uintptr_t)t->slots * 0x94D049BB133111EB;

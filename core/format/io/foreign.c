@@ -47,7 +47,8 @@ static const struct {
 #undef SIGNATURE
 };
 
-/* Markup may begin with a UTF-8 byte order mark and blanks, in any letter case. */
+/* Beginnings of text formats. Markup may begin with a UTF-8 byte order mark and blanks, and its
+ * letter case does not matter. */
 static const struct {
     const char *text, *name;
 } markups[] = {

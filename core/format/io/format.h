@@ -12,12 +12,12 @@
  * If a file refers to other files, the caller gives those that came with it before it finishes
  * (he_reader_beside).
  *
- * An import is a polygon soup, notes on what was ignored, and the place of each vertex and face in
- * the input. A reader refuses errors of the text itself (syntax, indices, numbers, counts). Faces
- * that only a half-edge mesh cannot represent, such as those of two corners, are left for he_build
- * to refuse or for a repair, and he_import_locate then adds the line. Memory is proportional to the
- * bytes fed and bounded by the limits; no count in a file makes the reader allocate before the
- * bytes for it have come.
+ * An import, the result of a reader, is a polygon soup, warnings about what was ignored, and the
+ * place of each vertex and face in the input. A reader refuses errors of the text itself (syntax,
+ * indices, numbers, counts). Faces that only a half-edge mesh cannot represent, such as those of
+ * two corners, are left for he_build to refuse or for a repair, and he_import_locate then adds the
+ * line. Memory is proportional to the bytes fed and bounded by the limits; no count in a file makes
+ * the reader allocate before the bytes for it have come.
  *
  * WRITING pulls from a mesh, which must not change meanwhile:
  *
@@ -44,11 +44,12 @@ typedef struct he_import {
 } he_import;
 
 void he_import_clear(he_import *import);
-/* Adds the place in the input to an error that names a vertex or face, such as he_build's. */
+/* Adds the place in the input (a line or a byte) to an error that names a vertex or face, such as
+ * an error of he_build. */
 void he_import_locate(const he_import *import, he_error *err);
 
-/* The functions of a format's reader; `state` is its own. `into` is the import to fill, which
- * outlives the state. After a failed call only close is called. */
+/* The functions of a format's reader, to which `state` belongs. `into` is the import that the
+ * reader fills; it outlives the state. After a call has failed, only `close` is called. */
 typedef struct he_reading {
     he_status (*open)(he_import *into, void **state, he_error *err);
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
@@ -57,8 +58,8 @@ typedef struct he_reading {
     bool at_end; /* feed only stores the bytes: finish parses them, and steps the soup's watch */
 } he_reading;
 
-/* The functions of a format's writer. `step` writes the next bytes at `*p`, from where at least
- * HE_WRITE_ROOM bytes are free up to `end`, and advances it. It returns false after the last. */
+/* The functions of a format's writer. `step` writes the next bytes at `*p` and advances it; at
+ * least HE_WRITE_ROOM bytes are free there, up to `end`. It returns false after the last bytes. */
 enum { HE_WRITE_ROOM = 512 };
 
 typedef struct he_writing {
@@ -78,63 +79,66 @@ typedef struct he_format {
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
     const char *const *carries; /* what is preserved: "polygons", or an attribute as "face color" */
-    /* Could these be the first bytes of such a file? */
+    /* Returns true if these could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
     const he_reading *reading; /* NULL: the format cannot be read */
     const he_writing *writing; /* NULL: the format cannot be written */
 } he_format;
 
-/* Returns the rows, in the order in which unknown bytes are tried; NULL beyond the last. */
+/* Returns the i-th format of the table; NULL after the last. Files of unknown format are tried in
+ * this order. */
 const he_format *he_format_at(size_t i);
-/* Find a format; NULL if there is none. A media type may be followed by parameters; letter case
- * does not matter in either. An extension has no dot. */
+/* Find a format by its name, media type or file extension; NULL if there is none. A media type may
+ * be followed by parameters. Letter case does not matter, and an extension has no dot. */
 const he_format *he_format_find(const char *name);
 const he_format *he_format_of_media_type(const char *type);
 const he_format *he_format_of_extension(const char *extension);
 const he_format *he_format_sniff(const void *bytes, size_t n);
-/* Returns the number of an encoding of a format, -1 if there is none. */
+/* Returns the index of an encoding in the format's list of encodings, -1 if it is not there. */
 int he_format_encoding(const he_format *format, const char *encoding);
 
 typedef struct he_reader he_reader;
 
-/* Makes a reader. `limits` may be NULL.
+/* Makes a reader for a format. `limits` may be NULL.
  * Returns HE_UNSUPPORTED if the format cannot be read.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reader_new(const he_format *format, const he_limits *limits,
                                      he_reader **out, he_error *err);
 void he_reader_free(he_reader *reader);
-/* Feeds a piece. Errors of the input name a line or byte. After a failure every further call fails
- * with the same error.
+/* Feeds a piece of the input to a reader. Errors of the input name a line or byte. After a failure
+ * every further call fails with the same error.
  * Returns HE_SYNTAX, HE_BAD_INDEX, HE_BAD_VALUE, HE_NOT_FINITE or HE_UNSUPPORTED if the input is
  * not valid.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size_t n,
                                       he_error *err);
-/* Sets the files that came with this one, before finish; they must stay as long as the reader.
- * Those that it does not name are noted as ignored_file. `beside` may be NULL. */
+/* Sets the files that came together with the input, before he_reader_finish is called; they must
+ * stay as long as the reader. For each file that the input does not name, a warning `ignored_file`
+ * is added. `beside` may be NULL. */
 void he_reader_beside(he_reader *reader, he_beside *beside);
-/* Does finishing take about as long as reading the bytes? Then it should have a watch. */
+/* Returns true if he_reader_finish takes about as long as feeding the bytes. It should then have a
+ * watch. */
 bool he_reader_reads_at_end(const he_reader *reader);
 void he_reader_watch(he_reader *reader, he_watch *watch);
-/* Ends the input. The caller clears the import; the reader can then only be freed. Fails as
- * he_reader_feed does.
+/* Ends the input and gets the import, which the caller clears; after this the reader can only be
+ * freed. Returns the errors of he_reader_feed, too.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err);
 
 typedef struct he_writer he_writer;
 
-/* Makes a writer. `encoding` is an index into the format's list. Work before the first byte, which
- * costs as much as the mesh, steps `watch` (NULL: none).
+/* Makes a writer of a mesh in a format. `encoding` is an index into the format's list of encodings.
+ * The work before the first byte takes time linear in the mesh, and steps `watch` (NULL: none).
  * Returns HE_UNSUPPORTED if the format cannot be written.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
                                      he_watch *watch, he_writer **out, he_error *err);
 void he_writer_free(he_writer *writer);
-/* Writes the next bytes of the document, at most `size`. Returns their number, 0 at the end. */
+/* Writes the next bytes of the document, at most `size`. Returns their number; 0 at the end. */
 size_t he_writer_read(he_writer *writer, void *buffer, size_t size);
-/* Returns notes of what the document does not contain. */
+/* Returns the warnings about content of the mesh that the document does not contain. */
 const he_notes *he_writer_notes(const he_writer *writer);
 
 #endif

@@ -1,4 +1,5 @@
-/* pool.h - values that the corners of a text file name by index: texture coordinates, normals.
+/* pool.h - pools of values, such as texture coordinates and normals, that the corners of faces in a
+ * text file refer to by index.
  *
  * A corner may name a value that comes later, so the attribute is made at the end. */
 #ifndef HE_FORMAT_IO_POOL_H
@@ -10,32 +11,34 @@
 typedef struct he_pool {
     double (*values)[3];
     size_t count, capacity;
-    /* for each corner the index of its value, HE_NONE if it has none; may be shorter than the
-     * corners */
+    /* The index of the value of each corner, HE_NONE if it has none. The list may be shorter than
+     * the number of corners. */
     he_ids of;
     size_t named;     /* corners that have one */
     uint32_t highest; /* highest index named */
 } he_pool;
 
 void he_pool_clear(he_pool *pool);
-/* Adds a value. `limit` bounds the bytes of the pool, 0 for no bound.
+/* Adds a value to the pool. `limit` is the most bytes that the pool may have, 0 for no limit.
  * Returns HE_LIMIT if the pool would be larger.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_pool_add(he_pool *pool, const double value[3], uint64_t limit,
                                    he_error *err);
-/* Sets the value of a corner. Corners come in order, those without a value are left out.
+/* Sets which value a corner refers to. Corners must come in order; those without a value are left
+ * out.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_pool_name(he_pool *pool, size_t corner, uint32_t value, he_error *err);
-/* Returns the first corner from `corner` on that names a value beyond the last one; SIZE_MAX if
- * there is none. */
+/* Returns the first corner, from `corner` on, that refers to a value beyond the last one; SIZE_MAX
+ * if there is none. */
 size_t he_pool_next_bad(const he_pool *pool, size_t corner);
-/* Removes the value of a corner. */
+/* Makes a corner refer to no value. */
 void he_pool_forget(he_pool *pool, size_t corner);
-/* Counts the values that no corner names; all indices must be valid.
+/* Counts the values that no corner refers to. All indices must be valid.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_pool_unused(const he_pool *pool, size_t *out, he_error *err);
-/* Makes the half-edge attribute `name`, if any corner has a value; all indices must be valid. It
- * has three components, or `least` if the third is 0 in all of them. */
+/* Makes the half-edge attribute `name` from the values, if any corner has one; all indices must be
+ * valid. The attribute has three components, or only `least` if the third component is 0 in all
+ * values. */
 HE_NODISCARD he_status he_pool_finish(const he_pool *pool, he_soup *soup, const char *name,
                                       uint32_t least, he_error *err);
 

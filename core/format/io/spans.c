@@ -31,7 +31,7 @@ he_status he_spans_set(he_spans *spans, size_t face, uint32_t value, he_error *e
     return status;
 }
 
-/* Converts Latin-1 to UTF-8; `to` has room for twice the bytes. */
+/* Converts Latin-1 to UTF-8; `to` must have room for twice the bytes. */
 static size_t widen(const char *from, size_t size, char *to)
 {
     size_t length = 0;
@@ -47,7 +47,8 @@ static size_t widen(const char *from, size_t size, char *to)
     return length;
 }
 
-/* Copies [p, end) with each continuation as one blank and without blanks at the end. */
+/* Copies [p, end) with each continuation (backslash and line end) as one blank, and without blanks
+ * at the end. */
 static size_t join(const char *p, const char *end, char *to)
 {
     size_t length = 0;
@@ -73,7 +74,8 @@ he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, siz
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
         }
     }
-    /* the default row is 0, so label 0 must be the empty name, even after a failed attempt */
+    /* Faces without a name have the value 0, so label 0 must be the empty name, even after a failed
+     * attempt. */
     if (he_labels_count(spans->labels) == 0) {
         status = he_labels_add(spans->labels, "", 0, &value, err);
     }

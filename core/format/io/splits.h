@@ -12,14 +12,15 @@
 
 #include "format/io/export.h"
 
-/* {0} is empty: no columns, no copies. */
+/* The vertices of a file after splitting. {0} is empty: no columns, no copies. */
 typedef struct he_splits {
     uint32_t *number; /* vertex that stands for each half-edge with a face */
     uint32_t *own;    /* for each vertex the half-edge whose values it has; HE_NONE */
     he_ids copies;    /* for each copy a half-edge whose origin is the vertex */
 } he_splits;
 
-/* Splits the vertices. `numbers` are those of he_export_numbers; `watch` may be NULL.
+/* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `watch`
+ * may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_splits_make(const he_mesh *mesh, const uint32_t *numbers,

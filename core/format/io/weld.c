@@ -10,7 +10,8 @@ void he_weld_clear(he_weld *weld)
     *weld = (he_weld){0};
 }
 
-/* Slots are in the order of the hash, so that growing moves each entry to about twice its index. */
+/* Returns the slot where the search for a hash begins. Slots are in the order of the hash, so when
+ * the table doubles, each entry moves to about twice its index. */
 static size_t first_slot(const he_weld *weld, uint32_t h)
 {
     return h >> (32 - weld->bits);

@@ -21,10 +21,10 @@ typedef struct he_weld {
 } he_weld;
 
 void he_weld_clear(he_weld *weld);
-/* Prefetches the slot of a position that will be looked up soon. */
+/* Prefetches the slot of the hash table for a position that will be looked up soon. */
 void he_weld_expect(const he_weld *weld, he_vec3 position);
-/* Finds the vertex of the soup at `position`, or adds one. All vertices of the soup must be added
- * by this function.
+/* Finds the vertex of the soup that lies at `position`, or adds one. All vertices of the soup must
+ * have been added by this function.
  * Returns HE_NOT_FINITE if a coordinate is not finite.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */

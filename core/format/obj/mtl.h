@@ -1,5 +1,5 @@
-/* mtl.h - the material library of OBJ files (MTL): the functions of its row in format.c, and a
- * reader that fills a table of materials.
+/* mtl.h - the material library of OBJ files (MTL): the functions of the format's row in format.c,
+ * and a reader that fills a table of materials. What is "noted" is reported as a warning (notes.h).
  *
  * Read:
  *   newmtl NAME         a material; the name is the rest of the line
@@ -23,21 +23,23 @@
 
 #include "format/io/format.h"
 
-/* Adds the materials of a library to those of an import. Notes have no lines, because lines of the
- * library would be taken for lines of the import. After a failure the materials read so far stay.
- * Returns HE_SYNTAX with the line if a line is none of a library's, or if a library that is not
- * empty has no newmtl.
+/* Adds the materials of a library to those of an import. Warnings about it name no lines, because
+ * lines of the library would be taken for lines of the import. After a failure the materials read
+ * so far stay.
+ * Returns HE_SYNTAX, with the line, if a line cannot occur in a library, or if a library that is
+ * not empty has no newmtl.
  * Returns HE_LIMIT if there are too many materials.
  * Returns HE_UNSUPPORTED if the text is UTF-16.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mtl_read(const char *bytes, size_t n, he_import *into, he_error *err);
 
-/* The attribute of a mesh with the names by which its OBJ file called its libraries: uint32 with
- * labels, a component for each line of mtllib, at most HE_COLUMN_COMPONENTS. */
+/* The attribute of a mesh that keeps the names by which its OBJ file called its material libraries:
+ * uint32 with labels, a component for each line of mtllib, at most HE_COLUMN_COMPONENTS. */
 #define HE_OBJ_LIBRARY "mtllib"
 
-/* Lists the names by which an OBJ file of the mesh calls its library: those of the attribute, else
- * "materials.mtl"; none if the mesh has no table of materials either. Returns how many. */
+/* Lists the names by which an OBJ file written from the mesh calls its material library: those of
+ * the attribute mtllib, else "materials.mtl"; none if the mesh has no table of materials either.
+ * Returns how many there are. */
 size_t he_mtl_names(const he_mesh *mesh, const char *names[HE_COLUMN_COMPONENTS]);
 
 /* Returns false: a library is read only beside the file it belongs to, so its bytes are never

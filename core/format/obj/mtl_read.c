@@ -23,7 +23,7 @@ static void note(library *l, const char *code, const char *text, const char *sub
     he_notes_add(&l->into->notes, code, text, subject, length, HE_PLACE_NONE, 0);
 }
 
-/* Finds the name's number; *fresh says whether the name is new. */
+/* Finds the number of the material with this name; *fresh says whether the name is new. */
 static he_status number_name(library *l, const char *name, size_t length, uint32_t *number,
                              bool *fresh, he_error *err)
 {
@@ -70,7 +70,7 @@ static he_status add_row(library *l, uint32_t number, bool fresh, he_error *err)
     return status;
 }
 
-/* The present material is complete. */
+/* Ends the material whose lines were read: checks it and adds it to the table. */
 static he_status end_material(library *l, he_error *err)
 {
     uint32_t number = 0;
@@ -127,7 +127,8 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
     return status;
 }
 
-/* Reads one number, or three; a colour given by a spectrum or in other terms is noted. */
+/* Reads a colour: one number, which stands for three, or three. A colour given by a spectrum or in
+ * other terms gets a warning. */
 static he_status read_color(library *l, const he_line *line, const char *keyword, const char *p,
                             double *out, he_error *err)
 {
@@ -205,8 +206,8 @@ static bool is_texture(const char *p, size_t length)
            is_any(p, length, words);
 }
 
-/* Options come before the name of the file, which may contain blanks, so the name cannot be
- * separated from the last option: the note has the whole line. */
+/* Warns about a texture. Options come before the name of its file, which may contain blanks, so the
+ * name cannot be separated from the last option: the warning quotes the whole line. */
 static void note_texture(library *l, const he_line *line, const char *keyword)
 {
     const char *end = line->end;
@@ -221,7 +222,7 @@ static void note_texture(library *l, const he_line *line, const char *keyword)
     note(l, "ignored_texture", "not held: the texture", keyword, (size_t)(end - keyword));
 }
 
-/* Keywords of the format that a material cannot store. */
+/* Keywords of the format whose values a material of a mesh cannot store. */
 static const char *const passed_over[] = {"Ka",  "Ks",    "Ns",     "Ni",        "Tf", "Ps", "Pc",
                                           "Pcr", "aniso", "anisor", "sharpness", "Km", "Tm", NULL};
 
@@ -272,7 +273,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     return he_line_locate(read_keyword(l, line, p, length, err), line, err);
 }
 
-/* Lists the names that the table has already. */
+/* Lists the names of the materials that the table has already. */
 static he_status list_names(library *l, he_error *err)
 {
     const he_materials *table = &l->into->soup.materials;

@@ -1,4 +1,5 @@
-/* obj.h - Wavefront OBJ, the functions of its row in format.c.
+/* obj.h - Wavefront OBJ: the functions of the format's row in format.c. What is "noted" is reported
+ * as a warning (notes.h).
  *
  * Read                      as
  *   v x y z                   a vertex

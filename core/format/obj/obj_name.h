@@ -6,8 +6,9 @@
 
 #include <stdbool.h>
 
-/* Returns '_' for a byte that would end the line, join the next one, or not read back, else the
- * byte. `first` says whether *p is the name's first byte. */
+/* Returns '_' in place of a byte that would end the line, join it with the next one, or not read
+ * back; any other byte is returned as it is. `first` says whether *p is the first byte of the
+ * name. */
 static inline char he_obj_printable(const char *p, bool first)
 {
     bool last = p[1] == '\0';
@@ -18,17 +19,17 @@ static inline char he_obj_printable(const char *p, bool first)
     return (blank && (first || last)) || (*p == '\\' && last) ? '_' : *p;
 }
 
-/* Notes a name that is not written as it is. */
+/* Adds a warning about a name that is changed when it is written. */
 void he_obj_note_name(const char *name, he_notes *notes);
 
-/* A name of any length while it is written; {0} is none. */
+/* A name of any length that is being written; {0} is none. */
 typedef struct he_obj_name {
     const char *rest; /* NULL: none */
     bool begun;
 } he_obj_name;
 
-/* Writes as much as fits, and after the whole name a line feed: rest is then NULL. At least one
- * byte must be free. */
+/* Writes as much of the name as fits, and after the whole name a line feed: then the member `rest`
+ * becomes NULL. At least one byte must be free. */
 char *he_obj_name_write(he_obj_name *name, char *p, const char *end);
 
 #endif

@@ -30,8 +30,8 @@ static void note(obj *o, const char *code, const char *text, const char *subject
     he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
 }
 
-/* Reads the numbers of a line; the first `most` are stored, and the first `finite` of them must be
- * finite. */
+/* Reads the numbers of a line. The first `most` of them are stored; the first `finite` of them must
+ * be finite. */
 static he_status read_numbers(obj *o, const he_line *line, const char *p, double *values,
                               size_t most, size_t finite, size_t *count, he_error *err)
 {
@@ -113,9 +113,9 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
     return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
 }
 
-/* Turns an index of the file into one that counts from 0. `count` elements were read so far;
- * whether a positive index is too large is only known at the end. On HE_BAD_INDEX `*p` is after the
- * number. */
+/* Reads an index of the file and converts it to one that counts from 0. `count` elements were read
+ * so far; whether a positive index is too large is only known at the end of the file. If it returns
+ * HE_BAD_INDEX, `*p` is behind the number. */
 static he_status read_index(const he_line *line, const char **p, const char *what, size_t count,
                             uint32_t *index, he_error *err)
 {
@@ -145,8 +145,8 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
                         text, count);
 }
 
-/* A wrong number of a texture coordinate or normal costs the corner only that value, because it is
- * no part of the shape. 0 means no number. */
+/* Warns about a wrong index of a texture coordinate or normal: the corner then has no such value,
+ * but the shape is not affected. An index of 0 means none. */
 static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
     he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
@@ -177,7 +177,7 @@ static he_status read_value(obj *o, const he_line *line, const char **p, he_pool
     return status;
 }
 
-/* Reads v, v/vt, v//vn or v/vt/vn; a slash with nothing after it is ignored. */
+/* Reads a corner: v, v/vt, v//vn or v/vt/vn. A slash with nothing after it is ignored. */
 static he_status read_corner(obj *o, const he_line *line, const char **p, he_error *err)
 {
     he_soup *soup = &o->into->soup;
@@ -255,7 +255,8 @@ static bool is_word(const char *p, const char *end)
     return true;
 }
 
-/* Keywords for shapes that are no polygons, and the tags of OpenSubdiv. */
+/* Keywords for shapes that are no polygons, and the tags of OpenSubdiv; they are ignored with a
+ * warning. */
 static const char *const passed_over[] = {
     "l",      "p",        "vp",    "deg",   "bmat",   "step",     "cstype",     "curv",
     "curv2",  "surf",     "parm",  "trim",  "hole",   "scrv",     "sp",         "end",
@@ -407,7 +408,7 @@ static uint64_t line_of(const obj *o, size_t corner)
     return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
 }
 
-/* Removes the numbers of values that do not exist from the corners. */
+/* Removes from the corners the indices of texture coordinates or normals that do not exist. */
 static void check_values(obj *o, he_pool *pool)
 {
     for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
@@ -416,7 +417,7 @@ static void check_values(obj *o, he_pool *pool)
     }
 }
 
-/* Indices are checked after all elements have been read. */
+/* Checks all indices, which is possible only after all elements have been read. */
 static he_status check_indices(obj *o, he_error *err)
 {
     const he_soup *soup = &o->into->soup;
@@ -457,7 +458,8 @@ static void note_partial(obj *o, size_t with, size_t all, const char *code, cons
     }
 }
 
-/* Reads a library that came with the file. Returns HE_OK with a note if there is none. */
+/* Reads a material library that came with the file. If there is none, it returns HE_OK and adds a
+ * warning. */
 static he_status open_library(obj *o, const char *name, size_t length, uint64_t line, he_error *err)
 {
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
@@ -483,7 +485,8 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
     return status;
 }
 
-/* A line names one library, whose name may contain blanks, or several. */
+/* Reads the libraries of a line mtllib. The line names either one library, whose name may contain
+ * blanks, or several. */
 static he_status open_libraries(obj *o, he_error *err)
 {
     he_status status = HE_OK;
@@ -500,7 +503,7 @@ static he_status open_libraries(obj *o, he_error *err)
     return status;
 }
 
-/* Stores the names of the libraries as an attribute of the mesh. */
+/* Stores the names of the material libraries as an attribute of the mesh. */
 static he_status keep_libraries(obj *o, he_error *err)
 {
     size_t count = o->library_lines.count;
@@ -584,7 +587,8 @@ static he_status obj_finish(void *state, he_error *err)
 
 const he_reading he_obj_reading = {obj_open, obj_feed, obj_finish, obj_close, false};
 
-/* The first line that is neither blank nor a comment (also with $) must begin with a keyword. */
+/* Returns true if these bytes may be an OBJ file: the first line that is neither blank nor a
+ * comment (lines with $ also count as comments) must begin with a keyword. */
 bool he_obj_sniff(const char *bytes, size_t n)
 {
     static const char *const keywords[] = {"v", "vt", "vn", "f",  "g",      "o",

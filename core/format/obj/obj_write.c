@@ -7,17 +7,17 @@
 
 #include <string.h>
 
-/* The parts of the document, in order. */
+/* The parts of an OBJ document, in the order in which they are written. */
 typedef enum part { HEADER, LIBRARIES, VERTICES, UVS, NORMALS, FACES, END } part;
 
-/* The lines that apply to the faces after them. */
+/* The lines that apply to all faces after them, until they are repeated with another value. */
 enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
 
 static const struct {
     const char *attribute, *keyword;
 } spans[SPANS] = {{"object", "o"}, {"group", "g"}, {"material", "usemtl"}, {"smoothing", "s"}};
 
-/* Texture coordinates or normals: of corners, or of vertices, or none. */
+/* A source of texture coordinates or normals: an attribute of corners, or of vertices, or none. */
 typedef struct values {
     const he_column *column;
     const char *keyword;
@@ -65,7 +65,7 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, c
     return HE_OK;
 }
 
-/* Counts the vertices without a face: no corner names their value. */
+/* Counts the vertices without a face, whose value no corner of the file refers to. */
 static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 {
     uint64_t count = 0;
@@ -88,7 +88,7 @@ static void note_unnamed(const obj_writer *w, he_notes *notes)
                        count_unnamed(&w->normal, w->mesh));
 }
 
-/* Returns the attribute that has the names, or NULL. */
+/* Returns the attribute that has the names of the material libraries, or NULL. */
 static const he_column *find_libraries(obj_writer *w, he_notes *notes)
 {
     w->library_count = he_mtl_names(w->mesh, w->libraries);
@@ -205,7 +205,8 @@ static char *write_value(const values *v, uint32_t row, char *p)
     return p;
 }
 
-/* Does a part with one line for each vertex, or each corner value, have anything at `row`? */
+/* Returns true if a part of the document has a line for `row`, which is a vertex or the value of a
+ * corner. */
 static bool has_row(const obj_writer *w, const values *v, uint32_t row)
 {
     return (v != NULL && v->of_corners) || he_vertex_is_live(w->mesh, (he_vertex){row});
@@ -222,7 +223,8 @@ static uint32_t row_count(const obj_writer *w, const values *v)
     return v->of_corners ? (uint32_t)v->distinct.first.count : w->mesh->c.vertices.issued;
 }
 
-/* Writes the lines of a part; `v` is NULL for vertices. */
+/* Writes the lines of a part of the document: vertices, or, if `v` is not NULL, texture coordinates
+ * or normals. */
 static char *write_rows(obj_writer *w, const values *v, char *p, const char *end)
 {
     uint32_t count = row_count(w, v);
@@ -239,7 +241,8 @@ static char *write_rows(obj_writer *w, const values *v, char *p, const char *end
     return p;
 }
 
-/* Writes the line for the first attribute in which the face differs from the last lines. */
+/* Writes the line for the first attribute (object, group, material or smoothing) in which the face
+ * differs from the lines written last. */
 static char *write_span(obj_writer *w, uint32_t face, char *p)
 {
     for (size_t i = 0; i < SPANS; i++) {

@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The shortest face is a triangle: degree, three corners, and the length of its colour. */
+/* The words of the shortest face, a triangle: its degree, three corners, and the length of its
+ * colour. */
 enum { WORD = 4, SHORTEST_FACE = 5 * WORD };
 
 static size_t vertex_numbers(const he_off_binary *b)
@@ -27,13 +28,14 @@ static uint32_t word_at(const unsigned char *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* Returns where the part that was just read begins. */
+/* Returns the byte of the input at which the part that was just read begins; it has `size`
+ * bytes. */
 static uint64_t begin_of(const he_off_binary *b, size_t size)
 {
     return b->offset - size;
 }
 
-/* Returns the value, or 0 with a note if it is not finite. */
+/* Returns a number of the input; 0, with a warning, if it is not finite. */
 static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t at)
 {
     uint32_t bits = word_at(p);
@@ -68,7 +70,7 @@ static void begin_faces(he_off_binary *b)
     b->part = b->faces > 0 ? HE_OFF_DEGREE : HE_OFF_END;
 }
 
-/* The number of edges is ignored, because it is often wrong. */
+/* Reads the counts. The number of edges is ignored, because it is often wrong. */
 static he_status take_counts(he_off_binary *b, const unsigned char *p, he_error *err)
 {
     he_import *into = b->values->into;
@@ -226,8 +228,8 @@ static size_t size_of(const he_off_binary *b)
     return WORD;
 }
 
-/* Handles bytes after the last face: a few are ignored, as many as a face has mean a wrong
- * count. */
+/* Handles bytes after the last face: a few are ignored, but as many as a face has mean that the
+ * counts were wrong. */
 static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
 {
     if (b->trailing == 0) {

@@ -4,13 +4,15 @@
  *     x y z [normal] [r g b a] [s t] floats, for each vertex
  *     n v1 ... vn c [c numbers]      for each face: whole numbers, then floats of a colour
  *
- * A colour of a face has c = 3 or 4 numbers; c = 0 means none, and others are noted and ignored. */
+ * A colour of a face has c = 3 or 4 numbers; c = 0 means none, and other numbers are reported as a
+ * warning and ignored. */
 #ifndef HE_FORMAT_OFF_OFF_BINARY_H
 #define HE_FORMAT_OFF_OFF_BINARY_H
 
 #include "format/off/off_values.h"
 
-/* Bytes of a vertex, the longest part that must be complete to be read. */
+/* The bytes of a vertex with all its values, which is the longest part that must be complete to be
+ * read. */
 enum { HE_OFF_LONGEST = 4 * (3 + 3 + 4 + 2) };
 
 typedef enum he_off_part {
@@ -36,10 +38,10 @@ typedef struct he_off_binary {
     uint64_t trailing;
 } he_off_binary;
 
-/* `offset` is the length of the header, which was read before. */
+/* Prepares to read a binary body. `offset` is the length of the header, which was read before. */
 void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned has,
                         uint64_t offset);
-/* Reads more of the body; an error names the byte.
+/* Reads the next bytes of the body; an error names the byte.
  * Returns HE_SYNTAX, HE_BAD_VALUE, HE_BAD_INDEX or HE_NOT_FINITE if the bytes are not valid.
  * Returns HE_LIMIT if a limit of the import would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */

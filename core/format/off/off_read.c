@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The meaning of the next token. read_line goes from one section to the next. */
+/* What the next token of the file is. The function read_line goes from one section to the next. */
 typedef enum section {
     HEADER,
     VERTEX_COUNT,
@@ -18,7 +18,7 @@ typedef enum section {
     DONE
 } section;
 
-/* Room for more numbers than a vertex can have: 3 + 3 + 4 + 2. */
+/* Room for more numbers than a vertex can have, which is 3 + 3 + 4 + 2. */
 enum { VERTEX_NUMBERS = 16 };
 
 typedef struct off {
@@ -47,7 +47,8 @@ static void note(off *o, const char *code, const char *text, const he_line *line
     he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
 }
 
-/* Returns the flags of a header like STCNOFF; -1 if it is none, -2 if it has other dimensions. */
+/* Returns the flags of a header word such as STCNOFF; -1 if it is none, -2 if its positions have
+ * other dimensions than 3. */
 static int header_flags(const char *p, const char *end)
 {
     if (end - p == 3 && memcmp(p, "off", 3) == 0) {
@@ -155,8 +156,8 @@ static bool is_last_token(const he_line *line, const char *p)
     return he_at_end(he_skip_blanks(he_token_end(p, line->end), line->end), line->end);
 }
 
-/* The number of edges is often wrong, so it is ignored. It may be missing: then the line after the
- * counts is that of a vertex, which has more than one number. */
+/* Reads the number of edges, which is often wrong and therefore ignored. It may be missing: then
+ * the line after the counts is that of a vertex, which has more than one number. */
 static he_status read_edge_count(off *o, const he_line *line, const char **p, bool same_line,
                                  he_error *err)
 {
@@ -175,7 +176,8 @@ static he_status read_edge_count(off *o, const he_line *line, const char **p, bo
     return status;
 }
 
-/* 1 and 1.0 are different colours, so the text decides. */
+/* Returns true if a number is written as an integer. The colours 1 and 1.0 are different, so the
+ * text decides. */
 static bool is_integer(const char *begin, const char *end, double value)
 {
     for (const char *p = begin; p < end; p++) {
@@ -186,7 +188,7 @@ static bool is_integer(const char *begin, const char *end, double value)
     return value <= UINT32_MAX;
 }
 
-/* Adds the colour that is the numbers [first, first + count). */
+/* Adds the colour whose components are the numbers [first, first + count) of the line. */
 static he_status add_color(off *o, he_colors *colors, size_t element, size_t first, size_t count,
                            he_error *err)
 {
@@ -201,12 +203,14 @@ static void forget_numbers(off *o)
     o->integers = 0;
 }
 
-/* How many numbers of a vertex belong to each value after its position, in this order. */
+/* How many numbers of a vertex belong to each of the values after its position, which come in this
+ * order. */
 typedef struct parts {
     size_t normal, color, uv;
 } parts;
 
-/* Divides the numbers as the header says, or without the last values that it announces. */
+/* Divides the numbers of a vertex among its values as the header announces them, or without the
+ * last of these values. */
 static bool divide(const off *o, size_t count, parts *out)
 {
     parts p = {(o->has & HE_OFF_NORMALS) != 0 ? 3 : 0, 0, (o->has & HE_OFF_UV) != 0 ? 2 : 0};
@@ -240,8 +244,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
                             ((o->has & HE_OFF_UV) != 0 && p.uv == 0));
     o->spread |= spread;
     o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
-    /* If vertices continue on the next line, surplus numbers are the next vertex; and then none may
-     * end before its last number, because the two could not be distinguished. */
+    /* If vertices continue on the next line, surplus numbers belong to the next vertex. Then no
+     * vertex may omit its last values, because the two cases could not be distinguished. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
                             count);
@@ -272,7 +276,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     return he_line_locate(status, line, err);
 }
 
-/* Reads numbers up to the end of the line; the first `finite` of the vertex must be finite. */
+/* Reads numbers up to the end of the line. The first `finite` numbers of the vertex must be
+ * finite. */
 static he_status read_numbers(off *o, const he_line *line, const char **p, size_t finite,
                               bool colors, he_error *err)
 {
@@ -325,7 +330,7 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
     return end_vertex(o, line, err);
 }
 
-/* Reads the colour that follows the corners, up to the end of the line. */
+/* Reads the colour that follows the corners of a face, up to the end of the line. */
 static he_status read_face_color(off *o, const he_line *line, const char **p, he_error *err)
 {
     he_status status = read_numbers(o, line, p, 0, true, err);
@@ -362,7 +367,7 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
 }
 
 /* Reads the numbers of an ordinary line: integers with one blank between them. Returns 0 if the
- * line is not so, or has more than `room`. */
+ * line is not ordinary, or has more than `room` numbers. */
 static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, size_t room)
 {
     size_t count = 0;
@@ -381,7 +386,7 @@ static size_t plain_numbers(const char *p, const char *end, uint32_t *numbers, s
     return count;
 }
 
-/* Reads a face that is an ordinary line of its own. Returns false, and does nothing, for any other
+/* Reads a face quickly if it is an ordinary line. Returns false, and does nothing, for any other
  * face, which is then read number by number. */
 static bool read_plain_face(off *o, const he_line *line, const char **p, he_status *status,
                             he_error *err)
@@ -503,8 +508,8 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-/* If vertices were read without a value, their numbers may have been on the next line: then all
- * that follows is misread, and the error is about the wrong thing. */
+/* Adds to an error a hint that may be the real cause: if vertices were read without some value,
+ * their numbers may have been on the next line, and then all that follows is misread. */
 static he_status explain(const off *o, he_status status, he_error *err)
 {
     if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
@@ -522,7 +527,7 @@ static void begin_binary(off *o)
     he_off_binary_init(&o->binary, &o->values, o->has, o->header_bytes);
 }
 
-/* The header is read line by line, because binary data may follow it. */
+/* Feeds the header, line by line because binary data may follow it. */
 static he_status feed_header(off *o, const char **p, const char *end, he_error *err)
 {
     const char *stop = he_line_stop(*p, end);
@@ -605,7 +610,8 @@ static he_status off_finish(void *state, he_error *err)
 
 const he_reading he_off_reading = {off_open, off_feed, off_finish, off_close, false};
 
-/* The first token must be a header; without one the format cannot be recognised. */
+/* Returns true if these bytes begin with the header of an OFF file; a file without it cannot be
+ * recognised. */
 bool he_off_sniff(const char *bytes, size_t n)
 {
     const char *p = bytes, *end = bytes + n;

@@ -5,7 +5,7 @@
 #include "format/io/colors.h"
 #include "format/io/format.h"
 
-/* Flags of what the header announces for each vertex. */
+/* Flags that say which values the header of an OFF file announces for each vertex. */
 enum { HE_OFF_NORMALS = 1, HE_OFF_COLORS = 2, HE_OFF_UV = 4 };
 
 /* {.into = ...} is empty. */
@@ -16,12 +16,12 @@ typedef struct he_off_values {
 } he_off_values;
 
 void he_off_values_clear(he_off_values *values);
-/* Add the normal (3 numbers) and texture coordinates (2) of the last vertex.
+/* Each adds a value of the last vertex: the normal (3 numbers) or the texture coordinates (2).
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_off_add_normal(he_off_values *values, const double *normal,
                                          he_error *err);
 HE_NODISCARD he_status he_off_add_uv(he_off_values *values, const double *uv, he_error *err);
-/* To be called after all vertices and faces are read.
+/* Makes the attributes, after all vertices and faces are read.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_off_values_finish(const he_off_values *values, he_error *err);
 

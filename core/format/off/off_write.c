@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* The parts of the document, in order. */
+/* The parts of an OFF document, in the order in which they are written. */
 typedef enum part { HEADER, VERTICES, FACES, END } part;
 
 typedef struct off_writer {
@@ -66,8 +66,8 @@ static char *write_header(const off_writer *w, char *p)
     return p;
 }
 
-/* Writes four numbers, which readers expect of vertices. Readers distinguish colours of 0 to 1 from
- * those of 0 to 255 by the decimal point, so each number has one. */
+/* Writes a colour as four numbers, which is what readers expect of vertices. Readers distinguish
+ * colours of 0 to 1 from those of 0 to 255 by the decimal point, so each number has one. */
 static char *write_color(const he_column *column, size_t row, char *p)
 {
     for (uint32_t i = 0; i < 4; i++) {

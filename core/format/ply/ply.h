@@ -1,4 +1,5 @@
-/* ply.h - Polygon File Format (the Stanford triangle format), the functions of its row in format.c.
+/* ply.h - Polygon File Format (the Stanford triangle format): the functions of the format's row in
+ * format.c. What is "noted" is reported as a warning (notes.h).
  *
  *     ply
  *     format ascii 1.0              or binary_little_endian, binary_big_endian

@@ -35,7 +35,8 @@ typedef struct he_ply_group {
 
 extern const he_ply_group he_ply_groups[HE_PLY_GROUPS];
 
-/* Returns the number that stands for 1 in a property of a colour; 1 if it is of fractions. */
+/* Returns the number that stands for full intensity in a colour property of this type; 1 if the
+ * type is float or double. */
 double he_ply_full_color(he_ply_type type);
 
 #endif

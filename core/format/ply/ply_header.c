@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* More rows than a file has bytes; keeps products with a row's length within 64 bits. */
+/* The most rows that an element may announce: more than any file has bytes, and small enough that a
+ * product with a row's length fits into 64 bits. */
 #define MOST_ROWS ((uint64_t)1 << 48)
 
 static const struct {
@@ -40,7 +41,7 @@ void he_ply_header_clear(he_ply_header *header)
     *header = (he_ply_header){0};
 }
 
-/* A word of the header. Unlike in the text of other formats, '#' begins no comment here. */
+/* A word of the header. In the header '#' begins no comment, unlike in other text formats. */
 typedef struct word {
     const char *begin, *end;
 } word;

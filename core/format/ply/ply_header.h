@@ -6,7 +6,8 @@
 #include "format/text/notes.h"
 #include "mesh/column.h"
 
-/* Limits of the whole header, so that the work for each element and property stays small. */
+/* The most elements and properties that a header may declare, so that the work for each row stays
+ * small. */
 enum { HE_PLY_ELEMENTS = 64, HE_PLY_PROPERTIES = 1024 };
 
 typedef enum he_ply_encoding {
@@ -29,9 +30,9 @@ typedef enum he_ply_type {
 } he_ply_type;
 
 size_t he_ply_type_bytes(he_ply_type type);
-/* Returns "char" ... "double". */
+/* Returns the name of a type of the format, "char" to "double". */
 const char *he_ply_type_name(he_ply_type type);
-/* Returns the type of an attribute that can hold all values of this one. */
+/* Returns the type of attribute that can hold all values of a type of the format. */
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
@@ -63,13 +64,14 @@ typedef struct he_ply_header {
 } he_ply_header;
 
 void he_ply_header_clear(he_ply_header *header);
-/* Reads the next line; must not be called after the end.
+/* Reads the next line of the header. Must not be called after the line end_header.
  * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if the line is not valid.
  * Returns HE_LIMIT if there are too many elements or properties.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_header_read(he_ply_header *header, const he_line *line,
                                           he_error *err);
-/* Returns the property of this name, `properties` if there is none. */
+/* Returns the index of the element's property of this name; the element's `properties`, their
+ * number, if there is none. */
 size_t he_ply_find(const he_ply_header *header, const he_ply_element *element, const char *name);
 
 #endif

@@ -6,10 +6,11 @@
 #include "format/io/format.h"
 #include "format/ply/ply_header.h"
 
-/* Does the header mark this attribute as one of corners? */
+/* Returns true if the header marks this attribute as one of corners. */
 bool he_ply_is_of_corners(const he_ply_header *header, const char *attribute);
-/* Checks the marks before it applies them, because a program that changed the file may have kept
- * them. Copies at another position than their vertex stay vertices, with a note.
+/* Moves the attributes that are marked as those of corners to corners, and merges copies of
+ * vertices. Checks the marks first, because a program that changed the file may have kept them. A
+ * copy at another position than its vertex stays a vertex, with a warning.
  * Returns HE_LIMIT if a limit of the import would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_join(he_import *into, const he_ply_header *header, he_error *err);

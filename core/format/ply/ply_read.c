@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Most bytes of a header line; no PLY file has longer ones. */
+/* The most bytes of a line of the header; no real PLY file has longer ones. */
 enum { HEADER_LINE = 1 << 16 };
 
 typedef struct ply {
@@ -41,7 +41,7 @@ static he_status too_short(const ply *o, const he_line *line, he_error *err)
                         o->rows.element->name);
 }
 
-/* Reads a whole number up to the end of its token. */
+/* Reads a whole number that must be a whole token of the line. */
 static he_status read_whole(const he_line *line, const char **p, const char *what, int64_t *value,
                             he_error *err)
 {
@@ -59,7 +59,8 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
     return HE_OK;
 }
 
-/* A value that is not finite is refused in a position; the caller handles it anywhere else. */
+/* Reads a value of property k. A value that is not finite is refused in a position; elsewhere the
+ * caller handles it. */
 static he_status read_value(ply *o, const he_line *line, const char **p, size_t k, he_error *err)
 {
     double value = 0;
@@ -239,8 +240,8 @@ static double value_of(const unsigned char *p, he_ply_type type, bool big)
     return (double)whole_of(p, type, big);
 }
 
-/* Takes the next `size` bytes, if they have come: from the input or, if a piece ended inside them,
- * from those held. If not, the part that has come is held. */
+/* Takes the next `size` bytes of the input, if they have come; if the last piece ended inside them,
+ * its part was kept. If they have not all come, the part that has come is kept. */
 static bool take(ply *o, const unsigned char **p, const unsigned char *end, size_t size,
                  const unsigned char **bytes)
 {
@@ -278,7 +279,7 @@ static he_status take_row(ply *o, const unsigned char *bytes, he_error *err)
     return status == HE_OK ? he_ply_rows_end(&o->rows, err) : status;
 }
 
-/* Skips unwanted rows of fixed length. */
+/* Skips rows of fixed length that belong to an element that is not wanted. */
 static void skip_rows(ply *o, const unsigned char **p, const unsigned char *end)
 {
     const unsigned char *bytes;
@@ -310,7 +311,7 @@ static he_status take_rows(ply *o, const unsigned char **p, const unsigned char 
     return status;
 }
 
-/* Adds as many values of a list as have come. */
+/* Adds as many values of a list as have come with this piece of the input. */
 static he_status take_items(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
@@ -342,7 +343,7 @@ static he_status take_items(ply *o, const unsigned char **p, const unsigned char
     return HE_OK;
 }
 
-/* Adds one property of a row with lists, or as much of it as has come. */
+/* Adds one property of a row that has lists, or as much of it as has come. */
 static he_status take_property(ply *o, const unsigned char **p, const unsigned char *end,
                                he_error *err)
 {
@@ -373,11 +374,11 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
     return status;
 }
 
-/* Rows of up to this many corners are read here; a byte can count more. */
+/* Rows of up to this many corners are read by the fast path. A length byte can announce more. */
 enum { PLAIN_CORNERS = 16 };
 
-/* Is a row only a list of corners, with a byte for the length and 32 bits for each, as in nearly
- * every file? */
+/* Returns true if each row is only a list of corners, with a byte for the length and 32 bits for
+ * each corner, as in nearly every file. */
 static bool is_plain(const ply *o)
 {
     const he_ply_element *e = o->rows.element;
@@ -387,7 +388,7 @@ static bool is_plain(const ply *o)
            (property->type == HE_PLY_INT32 || property->type == HE_PLY_UINT32);
 }
 
-/* Adds such rows, up to one that is unusual or incomplete. */
+/* Adds rows that are only lists of corners, quickly, up to one that is unusual or incomplete. */
 static he_status take_plain(ply *o, const unsigned char **p, const unsigned char *end,
                             he_error *err)
 {
@@ -462,7 +463,7 @@ static he_status take_bytes(ply *o, const unsigned char *p, const unsigned char 
     return status;
 }
 
-/* --- the functions of the row --- */
+/* --- the functions of the format's row in format.c --- */
 
 static void ply_close(void *state)
 {
@@ -487,7 +488,8 @@ static he_status ply_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-/* The header is read line by line, because binary data may begin after it. */
+/* Feeds a piece of the file. The header is read line by line, because binary data may begin after
+ * it. */
 static he_status ply_feed(void *state, const void *bytes, size_t n, he_error *err)
 {
     ply *o = state;

@@ -35,7 +35,8 @@ static bool has_column(const he_soup *soup, he_kind domain, const char *name)
     return false;
 }
 
-/* Returns the type that holds all values of the members found; colours are fractions. */
+/* Returns the type that can hold all values of a group's properties; a colour is stored as
+ * fractions. */
 static he_type type_of_group(const he_ply_property *properties, const size_t *found, size_t count,
                              bool color)
 {
@@ -48,7 +49,8 @@ static he_type type_of_group(const he_ply_property *properties, const size_t *fo
     return type;
 }
 
-/* Maps an attribute's group. Of several, the first is used whose needed members the element has. */
+/* Maps the properties of a group, such as nx ny nz, to an attribute. If several groups make one
+ * attribute, the first is used whose required properties the element has. */
 static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind domain,
                            const he_ply_group *group, he_error *err)
 {
@@ -76,7 +78,7 @@ static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind d
     return status;
 }
 
-/* Maps the properties that are in no group. */
+/* Maps each property that is in no group to an attribute of its name. */
 static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind domain, he_error *err)
 {
     he_soup *soup = &rows->into->soup;
@@ -150,8 +152,8 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
     return HE_OK;
 }
 
-/* Maps lists of two numbers a corner, which are texture coordinates. A file written by hedge has
- * them at its vertices too, where they are exact. */
+/* Maps lists of two numbers for each corner of a face, which are texture coordinates. A file
+ * written by hedge has these also at its vertices, where they are exact. */
 static he_status map_uvs(he_ply_rows *rows, const he_ply_element *e, he_error *err)
 {
     he_soup *soup = &rows->into->soup;
@@ -250,7 +252,8 @@ void he_ply_rows_next(he_ply_rows *rows)
 
 /* --- rows --- */
 
-/* The first two elements show the usual distance between elements. */
+/* Records where an element begins in the input. The first two elements show the usual distance
+ * between elements. */
 static he_status add_place(const he_ply_rows *rows, he_places *places, size_t element,
                            he_error *err)
 {
@@ -260,7 +263,7 @@ static he_status add_place(const he_ply_rows *rows, he_places *places, size_t el
     return he_places_add(places, (uint32_t)element, rows->at, err);
 }
 
-/* Extends a column to rows up to `end`. */
+/* Extends a column, with defaults, so that it has `end` rows. */
 static he_status extend(const he_ply_rows *rows, he_column *column, size_t end, he_error *err)
 {
     if (column->rows >= end) {
@@ -292,7 +295,7 @@ he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err)
     return at_place(rows, status, err);
 }
 
-/* Up to these numbers the type has every whole number. */
+/* Up to these numbers, a float and a double can represent every whole number. */
 static const double FLOAT_WHOLE = 1 << 24, DOUBLE_WHOLE = 9007199254740992;
 
 static bool is_whole(double value, double low, double high)
@@ -483,7 +486,7 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
            he_type_bytes(rows->uv->type));
 }
 
-/* Gives the texture coordinates of the face that has ended to its corners. */
+/* Gives the texture coordinates of the face that has just ended to its corners. */
 static he_status end_uvs(he_ply_rows *rows, he_error *err)
 {
     const he_soup *soup = &rows->into->soup;

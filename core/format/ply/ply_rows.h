@@ -55,7 +55,7 @@ typedef struct he_ply_rows {
     size_t uv_count, uv_capacity;
 } he_ply_rows;
 
-/* Makes the attributes.
+/* Makes the attributes for the properties of the file.
  * Returns HE_SYNTAX if the header lacks a property that is needed.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_rows_open(he_ply_rows *rows, he_import *into,
@@ -68,34 +68,34 @@ static inline he_ply_role he_ply_rows_role(const he_ply_rows *rows, size_t prope
     return rows->targets[rows->element->first + property].role;
 }
 
-/* Begins a row.
+/* Begins a row of the present element.
  * Returns HE_LIMIT if a limit of the import would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_rows_begin(he_ply_rows *rows, he_error *err);
-/* Adds a value. Whether it must be finite is decided at the end of the row.
- * Returns HE_BAD_VALUE if the property cannot have it. */
+/* Adds a value of a row. Whether it must be finite is decided at the end of the row.
+ * Returns HE_BAD_VALUE if the property cannot have this value. */
 HE_NODISCARD he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value,
                                          he_error *err);
-/* Begins a list.
+/* Begins a list of `count` values in a row.
  * Returns HE_BAD_VALUE if no list can have that length.
  * Returns HE_LIMIT if a limit of the import would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count,
                                         he_error *err);
-/* Adds a value of a list of corners or strips.
- * Returns HE_BAD_INDEX if it names no vertex.
+/* Adds a whole number to a list of corners or of strips.
+ * Returns HE_BAD_INDEX if the number is no vertex.
  * Returns HE_LIMIT if a limit of the import would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value,
                                         he_error *err);
-/* Adds a value of a list of floats or doubles. As a corner, a value that is not whole, or so large
- * that its type skips whole numbers, names no vertex. As a texture coordinate any value is allowed.
- * Fails as he_ply_rows_item does. */
+/* Adds a number to a list of floats or doubles. As a corner, a number that is not whole, or so
+ * large that its type skips whole numbers, is no vertex. As a texture coordinate any number is
+ * allowed. Returns the errors of he_ply_rows_item. */
 HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
                                             he_error *err);
-/* Adds a whole row that is only a list of corners, `vertices` of this file. Returns false, and does
- * nothing, if a limit is reached: adding it value by value then finds which. Otherwise *status is
- * HE_OK or HE_NO_MEMORY. */
+/* Adds a whole row that consists only of a list of corners, which are `vertices` of this file.
+ * Returns false, and does nothing, if a limit is reached: adding the row value by value then finds
+ * out which one. Otherwise *status is HE_OK or HE_NO_MEMORY. */
 bool he_ply_rows_face(he_ply_rows *rows, const uint32_t *vertices, size_t count, he_status *status,
                       he_error *err);
 /* Ends a row.

@@ -7,10 +7,10 @@
 
 #include <string.h>
 
-/* The parts of the document, in order. */
+/* The parts of a PLY document, in the order in which they are written. */
 typedef enum part { HEADER, VERTICES, COPIES, FACES, END } part;
 
-/* Room for one value, or one line of the header. */
+/* Room for one value, or for one line of the header. */
 enum { VALUE_ROOM = 160 };
 
 /* One number of a row. */
@@ -27,7 +27,7 @@ typedef struct ply_writer {
     const he_mesh *mesh;
     uint32_t *numbers; /* numbers of vertices */
     he_splits splits;  /* for corners whose values differ at one vertex */
-    /* Attributes of corners that are written with vertices. */
+    /* The attributes of corners that are written as properties of vertices. */
     const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;
     const he_column *texcoord; /* one of them that faces also have as a list */
@@ -54,7 +54,7 @@ static void ply_close(void *state)
     he_mem_free(w);
 }
 
-/* --- choosing the outputs --- */
+/* --- choosing which properties are written --- */
 
 static bool positions_are_floats(const he_mesh *mesh)
 {
@@ -66,8 +66,8 @@ static bool positions_are_floats(const he_mesh *mesh)
     return true;
 }
 
-/* Returns a type that holds the length of each face's list, with so many numbers for each
- * corner. */
+/* Returns an integer type that can hold the length of each face's list, which has `numbers` numbers
+ * for each corner. */
 static he_ply_type type_of_degree(const he_mesh *mesh, uint32_t numbers)
 {
     for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
@@ -112,7 +112,8 @@ static const he_column *find_group(const ply_writer *w, const he_ply_group *grou
                                          group->most, notes);
 }
 
-/* An attribute of corners takes precedence over one of vertices. */
+/* Adds the properties of a group to what is written. An attribute of corners takes precedence over
+ * one of vertices. */
 static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, he_notes *notes)
 {
     const he_column *column = NULL;
@@ -151,7 +152,7 @@ static bool is_taken(const ply_writer *w, size_t first, const char *name)
     return false;
 }
 
-/* A property's name must be one word. */
+/* Returns true if a name is one word, as the name of a property must be. */
 static bool is_word(const char *name)
 {
     for (const char *p = name; *p != '\0'; p++) {
@@ -234,7 +235,7 @@ static he_status choose_outputs(ply_writer *w, he_watch *watch, he_notes *notes,
 static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
                           void **state, he_error *err)
 {
-    /* in the order of the row's list */
+    /* This array has the order in which the format's row in format.c lists its encodings. */
     static const he_ply_encoding encodings[] = {HE_PLY_LITTLE_ENDIAN, HE_PLY_ASCII,
                                                 HE_PLY_BIG_ENDIAN};
     ply_writer *w = he_mem_zero(1, sizeof *w);
@@ -298,7 +299,8 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
     return p + he_u32_print(value, p);
 }
 
-/* `row` is the vertex or face; attributes of corners are read at `corner`. */
+/* Writes a value of an element: `row` is the vertex or face; attributes of corners are read at the
+ * half-edge `corner`. */
 static char *write_output(const ply_writer *w, const output *o, uint32_t row, uint32_t corner,
                           bool first, char *p)
 {
@@ -461,8 +463,8 @@ static char *begin_list(ply_writer *w, uint32_t numbers, he_ply_type type, char 
     return write_whole(w, numbers * degree, type, !w->in_list, p);
 }
 
-/* Writes the list that has begun, corner by corner; after the corners that of texture
- * coordinates. */
+/* Writes the rest of a face's list, corner by corner: first the list of vertices, then the list of
+ * texture coordinates. */
 static char *write_list(ply_writer *w, char *p)
 {
     const he_content *c = &w->mesh->c;

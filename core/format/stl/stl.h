@@ -1,4 +1,5 @@
-/* stl.h - STL, triangles for stereolithography: the functions of its row in format.c.
+/* stl.h - STL, triangles for stereolithography: the functions of the format's row in format.c. What
+ * is "noted" is reported as a warning (notes.h).
  *
  *     solid NAME                         binary, little-endian:
  *       facet normal x y z                 80 bytes of anything

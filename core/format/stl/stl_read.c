@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Bytes looked at to distinguish text from binary, and the sizes of binary parts. */
+/* The number of bytes that are examined to distinguish text from binary, and the sizes and offsets
+ * of binary parts. */
 enum { HEAD = 512, COUNT_AT = 80, HEADER = 84, FACET = 50, FIRST_CORNER = 12, AHEAD = 6 };
 
 typedef enum kind { UNKNOWN, TEXT, BINARY } kind;
@@ -91,7 +92,7 @@ static he_status begin_solid(stl *o, const he_line *line, const char *p, he_erro
     return he_spans_set_name(&o->object, o->into->soup.face_count, line, p, &o->into->notes, err);
 }
 
-/* Skips the normal: to the end of the line, or to "outer". */
+/* Skips the normal of a facet: to the end of the line, or to the word "outer". */
 static const char *skip_normal(const he_line *line, const char *p)
 {
     p = he_skip_blanks(p, line->end);
@@ -230,7 +231,8 @@ static he_vec3 position_at(const unsigned char *p)
     return (he_vec3){float_at(p), float_at(p + 4), float_at(p + 8)};
 }
 
-/* Looking up a corner's position is a random access, so it is prefetched some facets ahead. */
+/* Prefetches the positions of a facet that comes some facets later, because looking up a position
+ * in the hash table is a random access. */
 static void expect_facet(const stl *o, const unsigned char *bytes)
 {
     for (unsigned i = 0; i < 3; i++) {
@@ -256,8 +258,8 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
     return at_place(status, HE_PLACE_BYTE, at, err);
 }
 
-/* Handles bytes after the last facet: a few are padding, a facet's length of them means a wrong
- * count. */
+/* Handles bytes after the last facet: a few are padding, but the length of a facet or more means
+ * that the announced number is wrong. */
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
@@ -323,9 +325,9 @@ static he_status finish_binary(const stl *o, he_error *err)
     return HE_OK;
 }
 
-/* --- the functions of the row --- */
+/* --- the functions of the format's row in format.c --- */
 
-/* Does the text begin with "solid"? */
+/* Returns true if the text begins with "solid", after blanks. */
 static bool begins_solid(const char *p, const char *end)
 {
     if (end - p >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0) {
@@ -371,7 +373,7 @@ static he_status decide(stl *o, he_error *err)
     bool text =
         begins_solid(head, head + o->head_count) && memchr(head, '\0', o->head_count) == NULL;
     o->kind = text ? TEXT : BINARY;
-    /* in text a facet mostly has seven lines */
+    /* In text most facets have seven lines. */
     he_places_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
     he_places_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
     return feed_known(o, o->head, o->head_count, err);
@@ -416,8 +418,8 @@ static he_status stl_finish(void *state, he_error *err)
 
 const he_reading he_stl_reading = {stl_open, stl_feed, stl_finish, stl_close, false};
 
-/* Binary has no magic number: it is recognised by a byte that no text has, and a first facet of
- * numbers. */
+/* Returns true if these bytes may be a binary STL file. The format has no magic number, so it is
+ * recognised by a byte that no text has, and by a first facet whose numbers are plausible. */
 bool he_stl_sniff(const char *bytes, size_t n)
 {
     if (begins_solid(bytes, bytes + n)) {

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The parts of the document, in order. */
+/* The parts of an STL document, in the order in which they are written. */
 typedef enum part { HEADER, FACETS, END } part;
 
 enum { HEADER_BYTES = 80 };
@@ -28,7 +28,7 @@ static void stl_close(void *state)
     he_mem_free(w);
 }
 
-/* --- notes, before the first byte is written --- */
+/* --- warnings, which are found before the first byte is written --- */
 
 static void note_cuts(const he_cuts *cuts, he_notes *notes)
 {
@@ -38,7 +38,8 @@ static void note_cuts(const he_cuts *cuts, he_notes *notes)
                        cuts->turned);
 }
 
-/* The mesh that a reader will make of the file: vertices by position, and three for each facet. */
+/* The mesh that a reader will make of the file: vertices are merged by position, and each facet has
+ * three corners. */
 typedef struct again {
     he_soup soup;
     he_weld weld;
@@ -71,8 +72,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
     return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
 }
 
-/* Builds the facets as a reader would and counts the defects: vertices at one position become one,
- * and two faces may have been cut along one diagonal. */
+/* Builds a mesh of the facets as a reader would, and counts its defects: vertices at one position
+ * become one, and two faces may have been cut along one diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
     he_cut_walk walk = {0};
@@ -87,7 +88,7 @@ static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he
     return status == HE_OK ? he_build_try(&a->soup, defects, err) : status;
 }
 
-/* Notes how the mesh will differ when it is read again. */
+/* Adds warnings about how the mesh will differ when the file is read again. */
 static he_status note_differences(const stl_writer *w, again *a, he_notes *notes, he_error *err)
 {
     uint64_t defects = 0;
@@ -165,8 +166,8 @@ static he_vec3 scaled(he_vec3 p, double factor)
     return (he_vec3){p.x * factor, p.y * factor, p.z * factor};
 }
 
-/* Returns a unit vector, or zero if there is no area. Scaled, so that nothing overflows or
- * underflows. */
+/* Returns the unit normal of a triangle; zero if it has no area. Lengths are scaled, so that
+ * nothing overflows or underflows. */
 static he_vec3 normal_of(const he_vec3 *p)
 {
     he_vec3 quarter[3] = {scaled(p[0], 0.25), scaled(p[1], 0.25), scaled(p[2], 0.25)};
@@ -183,7 +184,7 @@ static he_vec3 normal_of(const he_vec3 *p)
     return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 becomes 0 */
 }
 
-/* Positions keep all digits, a normal those of a float. */
+/* Writes three numbers: positions keep all digits, and a normal only those of a float. */
 static char *put_numbers(he_vec3 v, bool all, char *p)
 {
     const double values[3] = {v.x, v.y, v.z};

@@ -40,6 +40,6 @@ bool he_base64_decode(const char *text, size_t length, unsigned char *to, size_t
         }
     }
     *decoded = n;
-    /* a single character left over encodes no byte; bits left over must be zero */
+    /* A single character left over encodes no byte, and bits left over must be zero. */
     return length % 4 != 1 && (bits & ((1u << held) - 1)) == 0;
 }

@@ -5,9 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Returns the room that any text of this length needs when decoded. */
+/* Returns the most bytes that a text of this length can give when decoded. */
 size_t he_base64_room(size_t length);
-/* Decodes a text to `to`, which has that room. Returns false if it is no base 64. */
+/* Decodes a text to `to`, which must have the room that he_base64_room returns. Returns false if
+ * the text is no base 64. */
 bool he_base64_decode(const char *text, size_t length, unsigned char *to, size_t *decoded);
 
 #endif

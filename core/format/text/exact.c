@@ -7,7 +7,8 @@
 #include <string.h>
 
 /* A non-negative integer, least significant word first, without leading zero words. The longest
- * needed are 801 digits times a power of two, or 5^1146 times 54 bits: under 4096 bits. */
+ * integers that are needed have 801 digits times a power of two, or 5^1146 times 54 bits: under
+ * 4096 bits. */
 enum { BIG_WORDS = 66 };
 
 typedef struct big {
@@ -15,8 +16,8 @@ typedef struct big {
     uint64_t words[BIG_WORDS];
 } big;
 
-/* 768 digits decide between any two doubles; of further ones it only matters whether all are
- * zero. */
+/* The first 768 digits decide between any two doubles; about further digits it only matters whether
+ * all are zero, so only KEPT_DIGITS are read. */
 enum { KEPT_DIGITS = 800 };
 
 static void multiply_add(big *n, uint64_t factor, uint64_t add)
@@ -66,7 +67,7 @@ static int compare(const big *a, const big *b)
     return 0;
 }
 
-/* Reads digits into an integer; `*exponent` is corrected for those that were cut off. */
+/* Reads digits into a big integer; `*exponent` is corrected for the digits that were cut off. */
 static void read_digits(big *n, const char *digits, const char *end, int64_t *exponent)
 {
     size_t kept = 0, dropped = 0;
@@ -91,7 +92,8 @@ static void read_digits(big *n, const char *digits, const char *end, int64_t *ex
     }
 }
 
-/* Compares digits * 10^exponent with the middle between the doubles `bits` and `bits` + 1. */
+/* Compares digits * 10^exponent with the number half-way between the doubles whose bits are `bits`
+ * and `bits` + 1. */
 static int compare_with_middle(const big *digits, int64_t exponent, uint64_t bits)
 {
     uint64_t mantissa = bits & (((uint64_t)1 << 52) - 1);

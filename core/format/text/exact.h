@@ -1,4 +1,5 @@
-/* exact.h - the slow, exact way to read a decimal, for number_parse.c. */
+/* exact.h - the slow, exact way to read a decimal number; number_parse.c uses it when the fast way
+ * cannot decide. */
 #ifndef HE_FORMAT_TEXT_EXACT_H
 #define HE_FORMAT_TEXT_EXACT_H
 
@@ -7,7 +8,8 @@
 /* Returns the bits of the double nearest to a decimal, ties to even; those of infinity if it is too
  * large. [digits, end) contains decimal digits, one of them not 0, and at most one point, which is
  * ignored: the value is the number made by the digits times 10^exponent. It must be between 1e-345
- * and 1e311. The closer `guess` (bits of a positive double) is, the fewer comparisons. */
+ * and 1e311. `guess` is the bits of a positive double near the result: the closer it is, the fewer
+ * comparisons are needed. */
 uint64_t he_exact_round(const char *digits, const char *end, int64_t exponent, uint64_t guess);
 
 #endif

@@ -1,8 +1,8 @@
-/* json.h - a JSON text as a tree, for formats that are written in it.
+/* json.h - parses a JSON text into a tree, for mesh formats that are written in JSON.
  *
- * The lexer (json_lexer.h) checks the text, and no member may be given twice. The caller keeps the
- * text; the tree adds eight bytes a value, so that a text costs five times its length at most, and
- * no recursion.
+ * The lexer (json_lexer.h) checks the text; in addition, no name may occur twice in an object. The
+ * caller keeps the text; the tree adds eight bytes for each value, so it takes at most four times
+ * the length of the text, and parsing does not recurse.
  *
  * A value is named by its number, the root is 0, and HE_NONE is a value that is absent. A number is
  * converted to a double only when it is read. Every error names the byte and the path:
@@ -34,20 +34,21 @@ typedef struct he_json {
     size_t count, capacity;
 } he_json;
 
-/* Parses a text.
- * Returns HE_SYNTAX if it is not valid.
+/* Parses a JSON text.
+ * Returns HE_SYNTAX if the text is not valid JSON.
  * Returns HE_NOT_FINITE if a number is beyond the range of doubles.
- * Returns HE_LIMIT if it has too many values or is too long.
+ * Returns HE_LIMIT if the text has too many values or is too long.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_json_parse(he_json *json, const char *text, size_t length,
                                      uint64_t offset, he_watch *watch, he_error *err);
 void he_json_clear(he_json *json);
 
-/* Returns '{', '[', '"', 't', 'f', 'n', or '0' for any number; '\0' for HE_NONE. */
+/* Returns the type of a value: '{', '[', '"', 't', 'f', 'n', or '0' for any number; '\0' for
+ * HE_NONE. */
 char he_json_type(const he_json *json, uint32_t value);
-/* Finds the member of this name. Returns HE_NONE if `object` is no object or has no such member.
- * Linear in the members. */
+/* Finds the member of an object by its name. Returns HE_NONE if `object` is no object or has no
+ * such member. Takes time linear in the number of members. */
 uint32_t he_json_find(const he_json *json, uint32_t object, const char *name);
 /* Iterate over the items of an array, or over the names of an object's members, each of which has
  * its value after it:
@@ -59,28 +60,30 @@ static inline uint32_t he_json_of(uint32_t name)
 {
     return name + 1;
 }
-/* Returns the number of values inside, including itself. */
+/* Returns the number of values inside a value, including the value itself. */
 size_t he_json_span(const he_json *json, uint32_t value);
 
-/* Is it a string equal to `text`? */
+/* Returns true if the value is a string equal to `text`. */
 bool he_json_is(const he_json *json, uint32_t value, const char *text);
 bool he_json_begins(const he_json *json, uint32_t value, const char *text);
-/* Copies the string without quotes and escapes, cut between characters to fit, with a NUL; "" if
- * the value is no string. Returns its length. */
+/* Copies a string value without its quotes and escapes. If it does not fit, it is cut between
+ * characters; it is ended by a NUL. Copies "" if the value is no string. Returns the length that
+ * was copied. */
 size_t he_json_string(const he_json *json, uint32_t value, char *to, size_t size);
-/* Returns the string's bytes as written, without quotes. */
+/* Returns the bytes of a string value as they stand in the text, without the quotes. */
 const char *he_json_raw(const he_json *json, uint32_t value, size_t *length);
 
-/* Reads a number, or a whole number in a range.
- * Returns HE_BAD_VALUE, with the place and path, if the value is none. */
+/* Reads a number, or a whole number that must be in a range.
+ * Returns HE_BAD_VALUE, with the byte and the path of the value, if it is not such a number. */
 HE_NODISCARD he_status he_json_number(const he_json *json, uint32_t value, double *out,
                                       he_error *err);
 HE_NODISCARD he_status he_json_whole(const he_json *json, uint32_t value, uint64_t least,
                                      uint64_t most, uint64_t *out, he_error *err);
 
-/* Writes a path such as "meshes/0/primitives/2" for people; names are cut to fit. */
+/* Writes the path of a value for people, such as "meshes/0/primitives/2"; names are cut to fit. */
 void he_json_path(const he_json *json, uint32_t value, char *to, size_t size);
-/* he_fail_at for the value's byte; the text begins with its path. */
+/* Fails like he_fail_at with the byte of the value; the message begins with the path of the
+ * value. */
 he_status he_json_fail(const he_json *json, uint32_t value, he_error *err, he_status status,
                        const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Returns the byte of the input where the value begins. */

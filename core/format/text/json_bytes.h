@@ -1,10 +1,11 @@
-/* json_bytes.h - skips the blanks of JSON, and decides which bytes a number may have. */
+/* json_bytes.h - skips the blanks between the tokens of JSON, and decides which bytes a number may
+ * contain. */
 #ifndef HE_FORMAT_TEXT_JSON_BYTES_H
 #define HE_FORMAT_TEXT_JSON_BYTES_H
 
 #include <stdbool.h>
 
-/* Returns the first byte from `at` on that is not a blank; `end` if all are. */
+/* Returns the first byte from `at` on that is not a blank; `end` if all of them are blanks. */
 static inline const char *he_json_skip_blanks(const char *at, const char *end)
 {
     while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) {

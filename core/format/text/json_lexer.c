@@ -94,7 +94,8 @@ static he_token end_value(he_lexer *x, he_token token)
 
 /* --- numbers --- */
 
-/* Carries the bytes of a number that a piece cuts, up to one that cannot belong to it. */
+/* Copies to the carry buffer the bytes of a number that is cut by the end of a piece, up to a byte
+ * that cannot belong to it. */
 static he_token carry_number(he_lexer *x)
 {
     he_lexer_carry *carry = x->carry;
@@ -159,7 +160,7 @@ static he_token read_word(he_lexer *x)
 
 /* --- strings --- */
 
-/* Carries bytes of a name in a text whose pieces are freed. */
+/* Copies bytes of a name to the carry buffer, if the pieces of the text are freed. */
 static void carry_name(he_lexer *x, const char *bytes, size_t length)
 {
     size_t used = innermost(x)->names + x->name_length;
@@ -170,7 +171,7 @@ static void carry_name(he_lexer *x, const char *bytes, size_t length)
     }
 }
 
-/* Adds the text from x->at up to `to` to the open string. */
+/* Makes the text from x->at up to `to` the next part of the string that is being read. */
 static void pass_string(he_lexer *x, const char *to)
 {
     if (x->state == HE_JSON_IN_NAME && x->carry != NULL) {
@@ -193,7 +194,7 @@ static he_token read_colon(he_lexer *x)
     return HE_TOKEN_KEY;
 }
 
-/* Ends a string at its closing quote. */
+/* Ends the string that is being read at its closing quote. */
 static he_token close_string(he_lexer *x)
 {
     x->at++;
@@ -212,8 +213,8 @@ static he_token close_string(he_lexer *x)
     return read_colon(x);
 }
 
-/* Completes the character whose first bytes are carried. Returns false if it is cut again, or not
- * valid. */
+/* Completes a character whose first bytes are in the carry buffer, because a piece ended inside it.
+ * Returns false if the character is cut again, or is not valid. */
 static bool mend_character(he_lexer *x, he_token *token)
 {
     he_lexer_carry *carry = x->carry;
@@ -240,7 +241,8 @@ static bool is_plain(char c)
     return (unsigned char)c >= 0x20 && (unsigned char)c < 0x80 && c != '"' && c != '\\';
 }
 
-/* Returns how far the string may be read before it is interrupted or its name is too long. */
+/* Returns how far a string may be read: to the end of the piece, or to where its name becomes too
+ * long. */
 static const char *string_stop(const he_lexer *x)
 {
     size_t most = HE_JSON_STRING, left = (size_t)(x->end - x->at);
@@ -384,7 +386,7 @@ static he_token read_value(he_lexer *x)
     }
 }
 
-/* Handles the end of the whole text. */
+/* Handles the end of the whole text: what is still open then is a fault. */
 static he_token end_text(he_lexer *x)
 {
     if (x->state == HE_JSON_DONE) {

@@ -48,8 +48,9 @@ typedef enum he_token {
     HE_TOKEN_CLOSE /* a closing bracket; x.frames[x.depth] still has its frame */
 } he_token;
 
-/* The kinds of faults. The place of a fault is where its token begins; for HE_FAULT_STRING where
- * the character begins, and for something too long the first byte beyond the limit. */
+/* The kinds of faults. A fault is reported at the byte where its token begins; HE_FAULT_STRING at
+ * the byte where the bad character begins; and something too long at the first byte beyond the
+ * limit. */
 typedef enum he_fault {
     HE_FAULT_NONE,
     HE_FAULT_VALUE,      /* no value begins here */
@@ -86,20 +87,21 @@ typedef struct he_lexer_frame {
     bool object;
     uint32_t names; /* bytes of the carried names of the frames below */
     size_t index;   /* index of the item or member */
-    /* the member's name as written, without quotes; NULL before it is read, and if it had to be
-     * carried and found no room */
+    /* The name of the member as it stands in the text, without quotes. It is NULL before it is
+     * read, and also if a piece of the text ended inside it and `carry` has no room for it. */
     const char *name;
     size_t name_length;
 } he_lexer_frame;
 
-/* The bytes that are kept from a text whose pieces are freed. */
+/* A buffer for the bytes of names and numbers that must be kept when the piece of the text that
+ * contains them is freed. */
 typedef struct he_lexer_carry {
     char bytes[HE_JSON_CARRY]; /* bytes of a number or character that a piece cuts */
     size_t length;
     char names[HE_JSON_NAMES];
 } he_lexer_carry;
 
-/* Anyone may read the fields; the caller may set the three limits. */
+/* The state of a lexer. All code may read the fields; the caller may set only the three limits. */
 typedef struct he_lexer {
     const char *begin, *at, *end; /* the piece, and the next byte */
     uint64_t offset;              /* offset of the piece in the text */
@@ -126,33 +128,35 @@ typedef struct he_lexer {
     he_lexer_frame frames[HE_JSON_DEPTH];
 } he_lexer;
 
-/* Initialises a lexer. `carry` is borrowed. */
+/* Initialises a lexer. `carry` is borrowed; it is NULL if the text comes in one piece. */
 void he_lexer_init(he_lexer *x, he_lexer_carry *carry);
-/* Feeds the next piece, after HE_TOKEN_CUT; it is borrowed until the next one. */
+/* Feeds the next piece of the text, at the beginning and whenever he_lexer_next returns
+ * HE_TOKEN_CUT. The piece is borrowed until the next one is fed. */
 void he_lexer_feed(he_lexer *x, const char *bytes, size_t length);
 
 he_token he_lexer_next(he_lexer *x);
 
-/* Does the byte *x.at begin a value, or stand where only a value may? Skips blanks and the comma
- * before it. Returns false if the piece ends before, inside a token, and if something else must
- * follow. */
+/* Returns true if a value begins at x.at, after skipping blanks and a comma, or if only a value can
+ * stand there. Returns false if the piece ends before the value or inside a token, or if something
+ * else must follow. */
 bool he_lexer_value_ahead(he_lexer *x);
-/* Take an array of at most `most` numbers, or of at most `most` whole numbers below HE_DEAD in
- * decimal digits, if a value is ahead. Return how many numbers it has; 0, and nothing is taken, if
- * the value is no such array or the piece does not contain all of it. */
+/* Each reads an array of numbers at once, if that is the next value: at most `most` numbers, or at
+ * most `most` whole numbers below HE_DEAD in decimal digits. Returns how many numbers the array
+ * has; 0 if the value is no such array or the piece does not contain all of it, and then nothing is
+ * read. */
 size_t he_lexer_take_numbers(he_lexer *x, double *out, size_t most);
 size_t he_lexer_take_indices(he_lexer *x, uint32_t *out, size_t most);
 
-/* Returns the offset in the text of the next byte. */
+/* Returns the offset of the next byte in the whole text. */
 static inline uint64_t he_lexer_place(const he_lexer *x)
 {
     return x->offset + (uint64_t)(x->at - x->begin);
 }
-/* Returns a sentence about x.fault. */
+/* Returns a sentence that explains the fault x.fault. */
 const char *he_lexer_fault_text(const he_lexer *x);
-/* Writes the JSON pointer (RFC 6901) of the lexer's position. It ends early at a name that is not
- * known or does not fit, because a pointer to a value that contains the position is still
- * correct. */
+/* Writes the JSON pointer (RFC 6901) of the value that the lexer is at. The pointer ends early at a
+ * name that is not known or does not fit, because a pointer to a value that contains the position
+ * is still correct. */
 void he_lexer_pointer(const he_lexer *x, char *out, size_t size);
 
 #endif

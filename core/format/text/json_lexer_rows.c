@@ -1,11 +1,12 @@
-/* he_lexer_take_numbers and he_lexer_take_indices of json_lexer.h. */
+/* json_lexer_rows.c - reads a whole array of numbers at once: he_lexer_take_numbers and
+ * he_lexer_take_indices. */
 #include "format/text/json_lexer.h"
 
 #include "format/text/json_bytes.h"
 #include "format/text/number.h"
 #include "mesh/mesh.h"
 
-/* Returns the ',' or ']' after a number of a row, NULL if neither follows. */
+/* Returns the ',' or ']' that follows a number in an array; NULL if neither follows. */
 static const char *pass_number(const char *at, const char *end)
 {
     if (at < end && *at != ',' && *at != ']') {
@@ -45,8 +46,8 @@ size_t he_lexer_take_numbers(he_lexer *x, double *out, size_t most)
     return 0;
 }
 
-/* Reads the decimal digits of an index. Returns NULL if there are none, or more than an id can
- * have. */
+/* Reads the decimal digits of an index. Returns NULL if there are none, or more digits than an id
+ * can have. */
 static const char *read_index(const char *at, const char *end, uint32_t *value)
 {
     uint64_t sum = 0;

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* Bytes between two steps of the watch. */
+/* The number of bytes between two steps of the progress watch. */
 enum { STRIDE = 1 << 16 };
 
 typedef struct scan {
@@ -19,7 +19,7 @@ typedef struct scan {
     he_error *err;
 } scan;
 
-/* Fails with the fault that the lexer found. */
+/* Fails with the fault that the lexer has found. */
 static he_status refuse(const scan *s)
 {
     const he_lexer *x = &s->lexer;
@@ -51,7 +51,8 @@ static he_status poll(scan *s)
     return s->lexer.at - s->told < STRIDE ? HE_OK : tell(s);
 }
 
-/* Adds the value or name that begins at byte `place` of the input and has nothing inside yet. */
+/* Adds to the tree the value or name that begins at byte `place` of the input, with nothing inside
+ * yet. */
 static he_status add_value(scan *s, uint64_t place)
 {
     he_json *json = s->json;
@@ -77,7 +78,7 @@ static he_status add_value(scan *s, uint64_t place)
     return HE_OK;
 }
 
-/* --- members that are given twice --- */
+/* --- names that occur twice in an object --- */
 
 static he_status repeated(const scan *s, uint32_t name)
 {
@@ -88,7 +89,8 @@ static he_status repeated(const scan *s, uint32_t name)
                       "JSON: the member '%s' is given twice", quoted);
 }
 
-/* A longer name is compared by its first bytes and refused as too long. */
+/* Names up to NAME_ROOM bytes are allowed; a longer name is compared by its first bytes and refused
+ * as too long. The names of an object with at most FEW members are compared pairwise. */
 enum { NAME_ROOM = 1024, FEW = 12 };
 
 static he_status check_few(const scan *s, uint32_t object)
@@ -159,7 +161,7 @@ static he_status check_members(scan *s, uint32_t object)
 
 /* --- values --- */
 
-/* Ends the value whose bracket was closed. */
+/* Ends the array or object whose bracket was closed. */
 static he_status close_value(scan *s)
 {
     uint32_t value = s->open[s->lexer.depth];

@@ -4,8 +4,7 @@
 
 #include <string.h>
 
-/* Returns the value of `count` hexadecimal digits; -1 if one of the bytes before the end is no
- * digit. */
+/* Returns the value of `count` hexadecimal digits; -1 if one of the bytes is no digit. */
 static int hex(const char *at, size_t count)
 {
     int value = 0;
@@ -23,7 +22,7 @@ static int hex(const char *at, size_t count)
     return value;
 }
 
-/* Reads the second half of a surrogate pair, "\uDC00" to "\uDFFF", after the first one. */
+/* Reads the second half of a surrogate pair, "\uDC00" to "\uDFFF", and returns its length. */
 static size_t pass_low_half(const char *at, const char *end, bool *cut)
 {
     size_t there = end - at < 6 ? (size_t)(end - at) : 6;
@@ -33,7 +32,7 @@ static size_t pass_low_half(const char *at, const char *end, bool *cut)
     return there == 6 && escape && unit >= 0xDC00 && unit <= 0xDFFF ? 6 : 0;
 }
 
-/* Reads an escape, from the backslash at `at` on. */
+/* Reads an escape, which begins with the backslash at `at`, and returns its length. */
 static size_t pass_escape(const char *at, const char *end, const char **wrong, bool *cut)
 {
     size_t there = (size_t)(end - at);
@@ -63,8 +62,8 @@ static size_t pass_escape(const char *at, const char *end, const char **wrong, b
     return unit < 0xDC00 && pass_low_half(at + 6, end, cut) > 0 ? 12 : 0;
 }
 
-/* Could these bytes, which are no character, be the beginning of one? Whether the second byte fits
- * the first is only tested when all bytes are there. */
+/* Returns true if these bytes, which are no whole character, could be the beginning of one. Whether
+ * the second byte fits the first is only tested when all bytes are there. */
 static bool begins_character(const unsigned char *bytes, size_t length)
 {
     size_t size = bytes[0] < 0xC2   ? 0

@@ -1,4 +1,4 @@
-/* json_string.h - the characters of JSON strings, as written in a text. */
+/* json_string.h - the characters of JSON strings as they stand in a text, with their escapes. */
 #ifndef HE_FORMAT_TEXT_JSON_STRING_H
 #define HE_FORMAT_TEXT_JSON_STRING_H
 
@@ -7,19 +7,21 @@
 
 /* Returns how many bytes the character at `at` < `end` takes in the text, an escape or UTF-8, at
  * most HE_JSON_CHARACTER. Returns 0 if it is refused: an unknown escape, half a surrogate pair, a
- * null or control character, or bytes that are not UTF-8. Then `*wrong` says why, and `*cut`
- * whether bytes after `end` could complete it to a character. */
+ * null or control character, or bytes that are not UTF-8. Then `*wrong` says why, and `*cut` says
+ * whether bytes after `end` could make it a whole character. */
 enum { HE_JSON_CHARACTER = 12 };
 size_t he_json_character(const char *at, const char *end, const char **wrong, bool *cut);
 
-/* Decodes the character at *at of a string that was checked, and moves *at after it. Returns the
- * length of its UTF-8, at most 4; 0, without moving, at the closing quote. */
+/* Decodes the character at *at in a string that was checked before, and moves *at behind it.
+ * Returns the length of the character in UTF-8, at most 4; 0 at the closing quote, where *at does
+ * not move. */
 size_t he_json_decode(const char **at, char to[4]);
 
-/* Does a string that was checked begin with `text`? Its bytes run from *at to `end` or to its
- * closing quote. If it does, *at moves after that beginning. */
+/* Returns true if a string that was checked before begins with `text`, and then moves *at behind
+ * that beginning. The bytes of the string run from *at to `end` or to its closing quote. */
 bool he_json_text_begins(const char **at, const char *end, const char *text);
-/* Are these bytes, which were checked and have no quotes, the string `text`? */
+/* Returns true if a string equals `text`. Its bytes are those of the JSON text, were checked before
+ * and have no quotes around them. */
 bool he_json_text_is(const char *at, size_t length, const char *text);
 
 #endif

@@ -31,8 +31,9 @@ const char *he_continuation(const char *p, const char *end)
     return *p == '\n' ? p + 1 : NULL;
 }
 
-/* Does a line that ends at the line feed `feed` continue? A comment does not; `first` says that the
- * line is not itself a continuation, so it may be one. */
+/* Returns true if the line that ends at the line feed `feed` is continued on the next one. A
+ * comment is not continued; `first` says that the line is not a continuation itself, so it may be a
+ * comment. */
 static bool goes_on(const char *begin, const char *feed, bool first)
 {
     const char *p = feed;
@@ -49,7 +50,7 @@ static bool goes_on(const char *begin, const char *feed, bool first)
     return !first || *p != '#';
 }
 
-/* Does the text begin with the byte order mark of UTF-16? */
+/* Returns true if the text begins with the byte order mark of UTF-16. */
 static bool is_wide(const char *p, size_t n)
 {
     return n >= 2 && ((p[0] == '\xFF' && p[1] == '\xFE') || (p[0] == '\xFE' && p[1] == '\xFF'));
@@ -101,7 +102,7 @@ static he_status keep(he_lines *lines, const char *begin, const char *end, he_er
     return HE_OK;
 }
 
-/* Handles a line end at `feed`; the line's last part is [begin, feed]. */
+/* Handles a line end at `feed`. The last part of the line is [begin, feed]. */
 static he_status end_line(he_lines *lines, const char *begin, const char *feed, he_error *err)
 {
     he_status status = HE_OK;
@@ -132,7 +133,7 @@ static he_status feed_text(he_lines *lines, const char *p, const char *end, he_e
     while (p < end) {
         const char *feed = memchr(p, '\n', (size_t)(end - p));
         if (feed == NULL) {
-            /* line 1 is kept to recognise its encoding */
+            /* Line 1 is kept even if it is a comment, because it may tell the encoding. */
             lines->in_comment =
                 lines->in_comment || (lines->length == 0 && lines->number > 1 && *p == '#');
             return lines->in_comment ? HE_OK : keep(lines, p, end, err);
@@ -146,7 +147,8 @@ static he_status feed_text(he_lines *lines, const char *p, const char *end, he_e
     return HE_OK;
 }
 
-/* If lines end in carriage returns alone, as on old Macs, these are turned into line feeds. */
+/* Feeds a text whose lines end in carriage returns alone, as on old Macs: they are turned into line
+ * feeds. */
 static he_status feed_returns(he_lines *lines, const char *p, const char *end, he_error *err)
 {
     char part[1024];
@@ -161,7 +163,7 @@ static he_status feed_returns(he_lines *lines, const char *p, const char *end, h
     return status;
 }
 
-/* Handles the bytes that came before it was known how lines end. */
+/* Feeds the bytes that came before the end of the first line showed how lines end. */
 static he_status feed_held(he_lines *lines, he_error *err)
 {
     char *held = lines->rest;
@@ -176,7 +178,7 @@ static he_status feed_held(he_lines *lines, he_error *err)
     return status;
 }
 
-/* A carriage return ends lines if no line feed follows it. */
+/* Finds out how lines end: a carriage return ends lines if no line feed follows the first one. */
 static void see_ends(he_lines *lines, const char *p, const char *end)
 {
     for (; p < end && lines->ends == HE_ENDS_UNKNOWN; p++) {
@@ -205,7 +207,8 @@ static he_status feed_any(he_lines *lines, const char *p, const char *end, he_er
     return feed_returns(lines, p, end, err);
 }
 
-/* No text has a NUL. UTF-16 has one in its first two bytes, or a byte order mark. */
+/* Refuses a NUL, which no text contains. UTF-16 has a NUL in its first two bytes, or a byte order
+ * mark, and gets its own message. */
 static he_status refuse_nul(const he_lines *lines, he_error *err)
 {
     bool first = lines->number == 1 && lines->joined == 0;

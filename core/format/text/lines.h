@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-/* [begin, end) without the line end. */
+/* A line of text: the bytes [begin, end), without the line end. */
 typedef struct he_line {
     const char *begin, *end;
     uint64_t number; /* line number of its first byte, from 1 */
@@ -33,15 +33,15 @@ typedef struct he_lines {
     uint64_t number; /* number of the line being collected */
     uint64_t joined; /* line ends inside it, after backslashes */
     bool in_comment; /* the unfinished line is a comment and not kept */
-    /* how the first line ends, and so all lines */
+    /* How lines end: the end of the first line decides for all. */
     enum { HE_ENDS_UNKNOWN, HE_ENDS_FEED, HE_ENDS_RETURN } ends;
     bool returned; /* the last bytes are carriage returns, and `ends` is not known yet */
 } he_lines;
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
 void he_lines_clear(he_lines *lines);
-/* Returns the end of the first line of some bytes, after any byte that may end it, for callers that
- * feed line by line because binary data may follow. */
+/* Returns the end of the first line of some bytes, after the line end. Callers use it that must
+ * feed line by line because binary data may follow the text. */
 static inline const char *he_line_stop(const char *p, const char *end)
 {
     while (p < end && *p != '\n' && *p != '\r') {
@@ -49,19 +49,20 @@ static inline const char *he_line_stop(const char *p, const char *end)
     }
     return p < end ? p + 1 : end;
 }
-/* Feeds a piece.
+/* Feeds a piece of the text to the lines. Each whole line is passed to `take`.
  * Returns HE_LIMIT if a line is too long.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if the text is UTF-16.
- * Returns HE_SYNTAX if it contains a NUL.
+ * Returns HE_SYNTAX if the text contains a NUL.
  * Returns the error of `take` if that fails. */
 HE_NODISCARD he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err);
-/* Returns the number of the last line fed, comments included; 1 if there is none. */
+/* Returns the number of the last line that was passed on, counting comments; 1 if there is none. */
 uint64_t he_lines_last(const he_lines *lines);
-/* Passes on the last line if it had no line end. */
+/* Passes on the last line of the text if it had no line end. */
 HE_NODISCARD he_status he_lines_finish(he_lines *lines, he_error *err);
 
-/* Returns the end of a continuation that starts at `p`, else NULL. */
+/* Returns the end of a continuation (a backslash and a line end) that starts at `p`; NULL if none
+ * does. */
 const char *he_continuation(const char *p, const char *end);
 
 static inline const char *he_skip_blanks(const char *p, const char *end)
@@ -79,7 +80,7 @@ static inline const char *he_skip_blanks(const char *p, const char *end)
     return p;
 }
 
-/* Is the rest of the line empty or a comment? `p` is after blanks. */
+/* Returns true if the rest of the line is empty or a comment. `p` must point behind the blanks. */
 static inline bool he_at_end(const char *p, const char *end)
 {
     return p == end || *p == '#';
@@ -106,20 +107,20 @@ uint64_t he_line_number(const he_line *line, const char *p);
 /* he_fail_at for that line. */
 he_status he_line_fail(he_error *err, he_status status, const he_line *line, const char *p,
                        const char *format, ...) __attribute__((format(printf, 5, 6)));
-/* Adds the line's place to a failure that has none, such as memory that ran out. Returns
- * `status`. */
+/* Adds the number of the line to an error that names no place, such as one for lack of memory.
+ * Returns `status`. */
 he_status he_line_locate(he_status status, const he_line *line, he_error *err);
-/* he_line_fail about the token at `p`, which is quoted: "'abc' is not a number". */
+/* Fails like he_line_fail, with a message that quotes the token at `p`: "'abc' is not a number". */
 he_status he_token_fail(he_error *err, he_status status, const he_line *line, const char *p,
                         const char *what);
 
-/* Reads a number that is a whole token; `*p` moves after it.
+/* Reads a token that must be a number; `*p` moves behind it.
  * Returns HE_SYNTAX if the token is no number.
- * Returns HE_NOT_FINITE if it is not finite. */
+ * Returns HE_NOT_FINITE if the number is not finite. */
 HE_NODISCARD he_status he_token_number(const he_line *line, const char **p, double *value,
                                        he_error *err);
-/* he_token_number that accepts numbers that are not finite: `*finite` is then false and the value
- * 0.
+/* Reads a number like he_token_number, but accepts numbers that are not finite: then `*finite` is
+ * false and the value 0.
  * Returns HE_SYNTAX if the token is no number. */
 HE_NODISCARD he_status he_token_any_number(const he_line *line, const char **p, double *value,
                                            bool *finite, he_error *err);

@@ -1,8 +1,8 @@
 /* notes.h - warnings of a reader or writer: content that it ignored, or could not write.
  *
- * Notes of one code and subject are counted, not repeated; the places of the first HE_NOTE_SPOTS
- * occurrences are kept. There is room for HE_NOTES of them, and no memory is allocated; `more`
- * counts what found no room. */
+ * A note has a code and a subject; further occurrences with the same two are counted, not repeated.
+ * The places of the first HE_NOTE_SPOTS occurrences are kept. There is room for HE_NOTES notes, and
+ * no memory is allocated; `more` counts the occurrences that found no room. */
 #ifndef HE_FORMAT_TEXT_NOTES_H
 #define HE_FORMAT_TEXT_NOTES_H
 
@@ -35,16 +35,16 @@ typedef struct he_notes {
     size_t spot_count;
 } he_notes;
 
-/* Adds an occurrence. `subject` (may be NULL) is cut to fit and made printable. */
+/* Adds one occurrence of a warning. `subject` (may be NULL) is cut to fit and made printable. */
 void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
                   size_t length, he_place place, uint64_t at);
-/* Adds `count` occurrences without a place; nothing if `count` is 0. */
+/* Adds `count` occurrences of a warning that have no place in the file; nothing if `count` is 0. */
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
 /* Writes a text such as "ignored: unknown keyword 'xyz', 3 times, first on line 7". */
 size_t he_note_text(const he_note *note, char *text, size_t size);
 
-/* Copies bytes of an input for a message: at most size - 1; other bytes than printable ASCII become
- * '?'. */
+/* Copies bytes of an input into a message: at most size - 1 bytes. Bytes other than printable ASCII
+ * become '?'. */
 void he_quote(const char *begin, const char *end, char *text, size_t size);
 
 #endif

@@ -18,11 +18,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Room for any number that is printed here. */
+/* The room that any number printed by these functions needs. */
 enum { HE_NUMBER_TEXT = 32 };
 
-/* Write a finite value, without a NUL, and return the length. he_float_print gives the shortest
- * text that reads back to the same float. */
+/* Write a finite value, without a NUL at the end, and return the length. he_float_print writes the
+ * shortest text that reads back to the same float. */
 size_t he_double_print(double value, char *text);
 size_t he_float_print(float value, char *text);
 size_t he_u32_print(uint32_t value, char *text);
@@ -34,16 +34,17 @@ size_t he_i64_print(int64_t value, char *text);
  * in any letter case and the "1.#" forms of old C libraries are recognised as not finite. */
 typedef enum he_grammar { HE_JSON_NUMBER, HE_FILE_NUMBER } he_grammar;
 
-/* Parses a number in linear time. HE_OK and HE_NOT_FINITE set `*used`; only HE_OK sets `*value`. A
- * number too small for a normal double rounds to a subnormal or zero.
+/* Parses a number in linear time. If it returns HE_OK or HE_NOT_FINITE it sets `*used`; only with
+ * HE_OK it sets `*value`. A number too small for a normal double rounds to a subnormal or zero.
  * Returns HE_SYNTAX if there is no number.
- * Returns HE_NOT_FINITE if it is too large for a double, or one of the words above. */
+ * Returns HE_NOT_FINITE if the number is too large for a double, or is one of the words for
+ * infinity and NaN. */
 HE_NODISCARD he_status he_double_parse(const char *begin, const char *end, he_grammar grammar,
                                        double *value, size_t *used);
 
-/* Parse decimal digits, with a minus sign in the signed one.
+/* Parse a whole number in decimal digits; he_i64_parse accepts a minus sign.
  * Returns HE_SYNTAX if there is no digit.
- * Returns HE_BAD_VALUE if the digits, `*used` bytes of them, do not fit. */
+ * Returns HE_BAD_VALUE if the number does not fit into 64 bits; `*used` is set. */
 HE_NODISCARD he_status he_u64_parse(const char *begin, const char *end, uint64_t *value,
                                     size_t *used);
 HE_NODISCARD he_status he_i64_parse(const char *begin, const char *end, int64_t *value,

@@ -13,15 +13,15 @@ static bool is_digit(char c)
     return (unsigned char)(c - '0') < 10;
 }
 
-/* Are the eight bytes of a word digits? The sums carry no bit from byte to byte. */
+/* Returns true if all eight bytes of a word are digits. The sums carry no bit from byte to byte. */
 static bool are_eight_digits(uint64_t word)
 {
     return ((word & 0xF0F0F0F0F0F0F0F0) |
             ((word + 0x0606060606060606) & 0xF0F0F0F0F0F0F0F0) >> 4) == 0x3333333333333333;
 }
 
-/* Converts eight digits: first pairs, then fours, then all. Needs little-endian order, as column.h
- * does. */
+/* Converts eight digits to a number: first pairs, then fours, then all. It requires little-endian
+ * byte order, which column.h checks. */
 static uint32_t eight_digits(uint64_t word)
 {
     word -= 0x3030303030303030;
@@ -31,9 +31,9 @@ static uint32_t eight_digits(uint64_t word)
     return (uint32_t)((first + second) >> 32);
 }
 
-/* Converts the digits at the start of a word, fewer than eight. Returns their number, 0 if there
- * are none or eight. The addition sets the top bit of the first byte that is no digit; carries only
- * affect later bytes. */
+/* Converts the digits at the start of a word, if they are fewer than eight. Returns their number; 0
+ * if there are none or eight. The addition sets the top bit of the first byte that is no digit;
+ * carries only affect later bytes. */
 static size_t few_digits(uint64_t word, uint64_t *value)
 {
     uint64_t digits = word ^ 0x3030303030303030;
@@ -45,7 +45,7 @@ static size_t few_digits(uint64_t word, uint64_t *value)
     return count;
 }
 
-/* Reads digits onto *value, which may wrap; the caller counts them. */
+/* Appends decimal digits to *value, which may overflow: the caller counts the digits. */
 static const char *read_digits(const char *p, const char *end, uint64_t *value)
 {
     uint64_t v = *value;
@@ -66,8 +66,8 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
     return p;
 }
 
-/* Eisel-Lemire: returns the bits of the double nearest to w * 10^q, w > 0; *decided is false if 128
- * bits of the power do not decide. */
+/* Returns the bits of the double nearest to w * 10^q, with w > 0, by the method of Eisel and
+ * Lemire. *decided is set to false if 128 bits of the power do not decide. */
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
@@ -101,10 +101,11 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
         }
         mantissa >>= 1 - exponent;
         mantissa += mantissa & 1;
-        /* a carry into bit 52 makes the exponent 1 */
+        /* If rounding carries into bit 52, the exponent becomes 1, which is correct. */
         return mantissa >> 1;
     }
-    /* Exactly in the middle, which is only possible if 5^q fits: round to even, so down from 01. */
+    /* The value is exactly in the middle between two doubles, which is only possible if 5^q fits
+     * into 64 bits. It is rounded to even, so down if the last bits are 01. */
     if (low <= 1 && q >= -4 && q <= 23 && (mantissa & 3) == 1 && mantissa << (top + 9) == high) {
         mantissa &= ~(uint64_t)1;
     }
@@ -120,7 +121,8 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     return (uint64_t)exponent << 52 | (mantissa & (((uint64_t)1 << 52) - 1));
 }
 
-/* Handles more than 19 digits, leading zeros included: value = digits of [p, end) * 10^exponent. */
+/* Handles numbers of more than 19 digits, counting leading zeros: the value is the digits of
+ * [begin, end) times 10^exponent. */
 static uint64_t nearest_to_many(const char *begin, const char *end, int64_t exponent)
 {
     const char *p = begin;
@@ -156,7 +158,8 @@ static uint64_t nearest_to_many(const char *begin, const char *end, int64_t expo
     return he_exact_round(first, end, exponent, bits);
 }
 
-/* Returns the length of a word that C libraries print for what is not finite; 0 if it is none. */
+/* Returns the length of a word by which C libraries print infinity or NaN; 0 if there is no such
+ * word. */
 static size_t word_length(const char *p, const char *end)
 {
     static const char *const words[] = {"infinity", "inf", "nan"};
@@ -172,8 +175,8 @@ static size_t word_length(const char *p, const char *end)
     return 0;
 }
 
-/* Returns the end of an exponent at `p`, NULL if it has no digits. The exponent saturates at a size
- * that no mantissa in memory can make up for. */
+/* Returns the end of the exponent at `p`; NULL if it has no digits. A huge exponent is capped at a
+ * size that no mantissa in memory can make up for. */
 static const char *read_exponent(const char *p, const char *end, int64_t *exponent)
 {
     const int64_t large = INT64_C(1) << 60;
@@ -248,7 +251,8 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
 
     double result;
     if (digits <= 19 && w >> 53 == 0 && exponent >= -22 && exponent <= 22) {
-        /* both are exact, so the single operation rounds once */
+        /* Both operands are exact, so the result of the single operation is rounded once, which is
+         * correct. */
         result = (double)w;
         result = exponent < 0 ? result / tens[-exponent] : result * tens[exponent];
     } else {

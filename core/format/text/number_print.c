@@ -33,7 +33,7 @@ static size_t digit_count(uint64_t value)
         1000000000000000000,
         10000000000000000000u,
     };
-    /* 1233 / 4096 is slightly more than log10(2) */
+    /* The fraction 1233 / 4096 is slightly more than log10(2). */
     unsigned guess = (64u - (unsigned)__builtin_clzll(value | 1)) * 1233u >> 12;
     return guess + (value >= tens[guess]);
 }
@@ -47,7 +47,7 @@ static void write_eight(uint32_t value, char *text)
     memcpy(text + 6, pairs + low % 100 * 2, 2);
 }
 
-/* Writes exactly `count` digits, which must be enough. */
+/* Writes the value with exactly `count` decimal digits, which must be enough. */
 static void write_digits(uint64_t value, size_t count, char *text)
 {
     while (count >= 8) {
@@ -104,8 +104,9 @@ typedef struct decimal {
     int exponent;
 } decimal;
 
-/* Returns the top of a 64 by 128 bit product, its last bit set if anything was cut off, so that
- * comparing with even numbers stays exact (Schubfach, section 9.6). */
+/* Returns the top 64 bits of the product of a 64-bit and a 128-bit number. The last bit is set if
+ * anything was cut off, so that comparing with even numbers stays exact (Schubfach, section
+ * 9.6). */
 static uint64_t scale(he_power g, uint64_t value)
 {
     he_u128 low = (he_u128)g.low * value;
@@ -113,10 +114,10 @@ static uint64_t scale(he_power g, uint64_t value)
     return (uint64_t)(high >> 64) | ((uint64_t)high > 1);
 }
 
-/* Finds the shortest decimal inside the rounding interval of c * 2^q, c > 0, and of several the
- * closest. `narrow`: the next lower number is only half as far away as the next higher one. The
- * names are the paper's: four times the value and the interval's ends, in units of 10^k, are vb,
- * vbl, vbr. */
+/* Finds the shortest decimal inside the rounding interval of c * 2^q, c > 0, and among several the
+ * closest. `narrow` says that the next lower number is only half as far away as the next higher
+ * one. The names are those of the paper: vb, vbl and vbr are four times the value and the
+ * interval's ends, in units of 10^k. */
 static decimal shortest(uint64_t c, int q, int narrow)
 {
     int k = narrow ? (q * 1262611 - 524031) >> 22 : (q * 1262611) >> 22; /* log10, floor */

@@ -1,4 +1,5 @@
-/* power.h - the leading 128 bits of the powers of five, for number_print.c and number_parse.c.
+/* power.h - the leading 128 bits of the powers of five, which number_print.c and number_parse.c
+ * need.
  *
  * 10^k and 5^k have the same leading bits, so one table serves both. Every 27th power is kept with
  * 192 bits; a product with an exact 5^0 .. 5^26 gives those between. tests/unit/test_number.c
@@ -13,7 +14,7 @@ __extension__ typedef unsigned __int128 he_u128;
 
 enum { HE_POWER_MIN = -342, HE_POWER_MAX = 324, HE_POWER_STEP = 27 };
 
-/* floor(5^k * 2^s) with s such that the top bit of `high` is set. */
+/* A power of five: floor(5^k * 2^s), where s is such that the top bit of `high` is set. */
 typedef struct he_power {
     uint64_t high, low;
 } he_power;
@@ -28,7 +29,7 @@ static inline he_power he_power_of_five(int k)
     uint64_t fine = he_power_fine[shifted % HE_POWER_STEP];
     he_u128 high = (he_u128)coarse[0] * fine;
     he_u128 middle = (he_u128)coarse[1] * fine + (uint64_t)((he_u128)coarse[2] * fine >> 64);
-    /* the words top, next, last of a product of at most 253 bits */
+    /* The product has at most 253 bits, in the three words top, next and last. */
     high += (uint64_t)(middle >> 64);
     uint64_t top = (uint64_t)(high >> 64), next = (uint64_t)high, last = (uint64_t)middle;
     if (top == 0) { /* fine is 1: the kept power itself */
@@ -41,7 +42,8 @@ static inline he_power he_power_of_five(int k)
     return (he_power){top << zeros | next >> (64 - zeros), next << zeros | last >> (64 - zeros)};
 }
 
-/* floor(log2(10^k)), exact for |k| <= 1233: the constant is 2^19 * log2(10), rounded down. */
+/* Returns floor(log2(10^k)), which is exact for |k| <= 1233. The constant is 2^19 * log2(10),
+ * rounded down. */
 static inline int he_floor_log2_of_ten(int k)
 {
     return (k * 1741647) >> 19;
