@@ -8,8 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bodies. A parsed control document costs at most API_MAX_*_VALUES * 64 bytes of cJSON nodes plus
- * its strings. An edit list costs its text plus the nodes of one operation at a time. */
+/* The largest bodies. A parsed control document (a JSON body other than a mesh) costs at most
+ * API_MAX_*_VALUES * 64 bytes of cJSON nodes plus its strings. A list of edits costs its text plus
+ * the nodes of one operation at a time. */
 #define API_MAX_CONTROL        ((size_t)1 << 20) /* a control document */
 #define API_MAX_CONTROL_VALUES ((size_t)1 << 18)
 #define API_MAX_MATERIALS      ((size_t)16 << 20) /* the materials of a mesh document */
@@ -93,7 +94,8 @@ enum {
     API_MAX_PAIRS = 1 << 20 /* pairs of intersecting faces; for polygons possibly fewer */
 };
 
-/* Requests whose cost is above these run on the job pool instead of the worker (API_WORK). */
+/* Requests that cost more than this run on the pool of job threads instead of a worker thread
+ * (API_WORK). */
 enum {
     API_COSTLY_ELEMENTS = 20000,    /* vertices, half-edges and faces together */
     API_COSTLY_UPLOAD = 256 * 1024, /* bytes received */
@@ -145,23 +147,24 @@ enum {
 #define API_MAX_EDITS_STEPS ((uint64_t)1 << 33)
 enum { API_ROWS_OF_WORK = 2, API_STEPS_OF_WORK = 16 };
 enum {
-    /* An operation on the whole of a mesh with more elements than this claims the mesh and works on
-     * a copy. On a smaller mesh it holds the lock for a few milliseconds. */
+    /* An operation on the whole of a mesh with more elements than this claims the mesh: it works on
+     * a copy, without the mesh's lock, while other writes are refused or wait. On a smaller mesh it
+     * holds the lock for a few milliseconds. */
     API_CLAIM_ELEMENTS = 200000,
-    /* A list of more operations also claims the mesh. A list that turns out to change more rows
-     * than API_LOCKED_ROWS is started again with a claim: encoding its megabyte or more for the
-     * journal must not hold the lock. */
+    /* A list of more operations also claims the mesh (works on a copy without the lock). A list
+     * that turns out to change more rows than API_LOCKED_ROWS is started again with a claim:
+     * encoding its megabyte or more for the journal must not hold the lock. */
     API_CLAIM_EDITS = 4096,
     API_LOCKED_ROWS = 1 << 17,
     API_DEFAULT_JOBS = 100 /* jobs per page of the list */
 };
 
-/* Limits of an event: bytes of its data, and rows of the delta it is made from (made under the
- * mesh's lock). An event over either limit only says that the mesh changed. */
+/* Limits of one event: the bytes of its data, and the rows of the delta it is made from while the
+ * mesh's lock is held. An event over either limit only says that the mesh changed. */
 enum { API_MAX_EVENT = 64 * 1024, API_MAX_EVENT_ROWS = 1 << 15 };
 
-/* Listeners that may be brought up to date from the history at the same time; each needs a copy of
- * its mesh. */
+/* The number of listeners that may be sent missed events from the history at the same time; each
+ * needs a copy of its mesh. */
 enum { API_MAX_BACKFILLS = 8 };
 
 enum { API_PROBLEM_ELEMENTS = 100 }; /* elements that a problem names one by one */

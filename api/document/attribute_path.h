@@ -1,4 +1,4 @@
-/* attribute_path.h - the attribute that a path names: x->kind and x->attribute. */
+/* attribute_path.h - finds the attribute that a path names by x->kind and x->attribute. */
 #ifndef HE_API_DOCUMENT_ATTRIBUTE_PATH_H
 #define HE_API_DOCUMENT_ATTRIBUTE_PATH_H
 
@@ -8,10 +8,10 @@
 /* The built-in attribute, whose name no other attribute may have. */
 #define API_POSITION "position"
 
-/* Returns NULL with no_such_attribute if there is none. */
+/* Finds the attribute that the path names. Returns NULL with no_such_attribute if there is none. */
 const he_column *api_attribute_find(api_exchange *x, const he_mesh *mesh);
 
-/* Writes the path of the attribute, percent-encoded. */
+/* Writes the path of the attribute, percent-encoded, for the header Location. */
 void api_attribute_path(const api_exchange *x, char out[API_LOCATION]);
 
 #endif

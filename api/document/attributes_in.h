@@ -23,23 +23,24 @@ typedef struct api_attributes_in api_attributes_in;
 api_attributes_in *api_attributes_in_new(void); /* NULL when memory is out */
 void api_attributes_in_free(api_attributes_in *in);
 
-/* The lexer is behind the colon of "attributes". May the value that is ahead of it stand there?
- * Takes it where it is a row of numbers. */
+/* Decides whether the value ahead of the lexer, which is behind the colon of "attributes", may
+ * stand there. If it is an array of numbers, reads it at once and sets `*taken`. */
 bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken,
                               api_problem *problem);
-/* Takes a token. `*into` is set where the next member is small and to be gathered, and `*done` when
- * the array has ended. */
+/* Handles a token. `*into` is set if the next member is small and must be gathered, and `*done`
+ * when the array has ended. */
 bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, api_members **into,
                             bool *done, api_problem *problem);
-/* Are there values of edges or half-edges? */
+/* Returns true if the document has attribute values of edges or half-edges. */
 bool api_attributes_in_has_edges(const api_attributes_in *in);
-/* The document is to be repaired before it is built: its soup takes the values of vertices and
- * faces, so that they are repaired with it. */
+/* Moves the values of vertices and faces into the soup of a document that is to be repaired before
+ * it is built, so that they are repaired with it. */
 bool api_attributes_in_to_soup(api_attributes_in *in, he_soup *soup, api_problem *problem);
-/* It was repaired: values of edges and half-edges are refused, for they go with edges that are no
- * longer. */
+/* Refuses the attribute values of edges and half-edges if the document was repaired, because the
+ * edges they belong to no longer exist. */
 bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *problem);
-/* Add what was read to the mesh, after a good end. */
+/* Adds the attributes that were read to the mesh. It must be called only after the document ended
+ * without an error. */
 bool api_attributes_in_apply(api_attributes_in *in, he_mesh *mesh, api_problem *problem);
 
 #endif

@@ -25,29 +25,34 @@
 
 typedef struct api_document_in api_document_in;
 
-/* NULL when memory is out. `limits` may be NULL. */
+/* Makes a reader. Returns NULL when memory is out. `limits` may be NULL. */
 api_document_in *api_document_in_new(const he_limits *limits);
 void api_document_in_free(api_document_in *in);
 
-/* The next piece. After false the reader only waits to be freed. */
+/* Reads the next piece of the document. After it has returned false, the reader can only be
+ * freed. */
 bool api_document_in_feed(api_document_in *in, const char *bytes, size_t length,
                           api_problem *problem);
-/* The body has ended: was it whole, and are the gathered members well formed? */
+/* Ends the document: checks that it was complete, and that the gathered members are well formed. */
 bool api_document_in_end(api_document_in *in, api_problem *problem);
 
-/* After a good end. The soup is the reader's; he_build may take from it. */
+/* Returns the soup of vertices and faces, after api_document_in_end returned true. The reader owns
+ * it; he_build may take from it. */
 he_soup *api_document_in_soup(api_document_in *in);
 bool api_document_in_has_vertices(const api_document_in *in);
 bool api_document_in_has_faces(const api_document_in *in);
-/* Before the soup is repaired: it takes the attributes of vertices and faces. */
+/* Moves the attributes of vertices and faces into the soup. It must be called before the soup is
+ * repaired. */
 bool api_document_in_lend(api_document_in *in, api_problem *problem);
-/* Add the other attributes to the mesh the document made, whose soup may have been `repaired`. */
+/* Adds the other attributes to the mesh that was made of the document. `repaired` says whether its
+ * soup was repaired. */
 bool api_document_in_attributes(api_document_in *in, he_mesh *mesh, bool repaired,
                                 api_problem *problem);
-/* Are there attributes that no repaired document can keep? */
+/* Returns true if the document has attributes of edges or half-edges, which no repaired document
+ * can keep. */
 bool api_document_in_has_edges(const api_document_in *in);
-/* The other members as one object; valid until the reader is freed. Their refusals go to the
- * problem that was given to api_document_in_end. */
+/* Returns the other members of the document as one object, valid until the reader is freed.
+ * Refusals of their values go to the problem that was given to api_document_in_end. */
 const api_in *api_document_in_rest(const api_document_in *in);
 
 #endif

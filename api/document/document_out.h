@@ -21,10 +21,9 @@
 
 typedef struct api_document_out api_document_out;
 
-/* Borrows `mesh`, copies `name`. Returns NULL when memory is out. It needs a buffer, 4 bytes per
- * vertex id if some vertices are dead, and 4 bytes per edge id if edges or half-edges have
- * attributes.
- */
+/* Makes a writer. It borrows `mesh` and copies `name`. Returns NULL when memory is out. It needs
+ * memory for a buffer, 4 bytes for each vertex id if some vertices were deleted, and 4 bytes for
+ * each edge id if edges or half-edges have attributes. */
 api_document_out *api_document_out_new(const he_mesh *mesh, const char *name);
 void api_document_out_free(api_document_out *out);
 /* Reads up to `size` bytes; returns 0 at the end, -1 on failure, as api_answer.read does. */

@@ -1,4 +1,4 @@
-/* gather.h - members of an object that comes in pieces, gathered into a control document.
+/* members.h - members of an object that comes in pieces, gathered into a control document.
  *
  * What is not a list of numbers ("name", the head of an attribute, materials) is small and read
  * through json_in.h. Its tokens pass the scan (json_scan.h) on their way, and its bytes are kept as
@@ -9,7 +9,7 @@
 #include "api/json/json_scan.h"
 #include "api/json/text.h"
 
-/* Begin with .what, .most and .values_most set. */
+/* The members gathered so far. It begins with .what, .most and .values_most set. */
 typedef struct api_members {
     const char *what; /* "materials": for the refusal of too many bytes */
     size_t most, values_most;
@@ -25,11 +25,11 @@ void api_members_clear(api_members *m);
 /* Nothing is gathered. */
 void api_members_empty(api_members *m);
 
-/* The lexer is behind the colon of a member, named by the innermost frame: gathers the name. */
+/* Begins to gather a member: its name. The lexer must be behind the colon after the name. */
 bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem);
-/* Gathers its value; `*done` is false where the piece ended first. */
+/* Gathers the value of the member; `*done` is false if the piece ended before the value did. */
 bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem);
-/* Parses all that was gathered, as one object. */
+/* Parses all members that were gathered, as one object. */
 bool api_members_parse(api_members *m, api_document *out, api_in *root, api_problem *problem);
 
 #endif

@@ -49,7 +49,7 @@ api_parts_step api_parts_next(api_exchange *x, api_parts *parts, const char **at
  * `bytes` are all of it, which live until `parts` are freed; otherwise both are NULL. Returns false
  * with the problem filled. */
 bool api_parts_end(api_exchange *x, api_parts *parts, api_parts_piece *out);
-/* Returns the other files; they live as long as `parts`. */
+/* Returns the files other than the mesh file; they are valid as long as `parts`. */
 he_beside *api_parts_beside(api_parts *parts);
 
 #endif

@@ -1,4 +1,4 @@
-/* repairs.h - the repairs that a request asks for, and the report of what they did. */
+/* repairs.h - the repairs that a request asks for, and the report of what they changed. */
 #ifndef HE_API_DOCUMENT_REPAIRS_H
 #define HE_API_DOCUMENT_REPAIRS_H
 

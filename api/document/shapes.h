@@ -4,7 +4,8 @@
 
 #include "api/json/json_out.h"
 
-/* Writes the member "shape" of components/schemas: one alternative for each shape. */
+/* Writes the schema called "shape" into components/schemas of the OpenAPI document: one alternative
+ * for each shape. */
 void api_shape_schema_write(api_out *out);
 
 #endif

@@ -11,7 +11,8 @@
 
 enum { API_SUMMARY_DEGREES = 128 };
 
-/* Everything that is computed from the content; plain data, so that the store can keep it. */
+/* The part of a summary that is computed from the content. It is plain data, so that the store can
+ * keep it. */
 typedef struct api_summary {
     he_topology topology; /* without its list of degrees */
     he_degree_count degrees[API_SUMMARY_DEGREES];
@@ -27,7 +28,8 @@ typedef struct api_summary {
  * the mesh is corrupt. */
 bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out);
 
-/* Writes members into an object that is open: id, name, revision, counts, ... */
+/* Writes the members of a summary into an object that is open: id, name, revision, counts and so
+ * on. */
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary);
 /* Writes id, name, revision, the counts that need no computing, and the damage of a damaged
  * mesh. */
@@ -37,9 +39,10 @@ void api_write_brief(api_out *out, const st_card *card);
  * the function that estimates its cost. */
 void api_summary_get(api_exchange *x);
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
-/* Handles GET and HEAD of a mesh that is not in memory. Answers 304, and answers HEAD if the client
- * accepts an answer without a content coding: then HEAD tells of that one, even where GET
- * compresses a long summary. HEAD does not notice damaged content. */
+/* Handles GET and HEAD of a mesh that is not in memory. Answers 304 if the client has the present
+ * summary. Answers HEAD if the client accepts an answer without a content coding; the headers are
+ * then those of such an answer, even if GET would compress a long summary. HEAD does not notice
+ * damaged content. */
 void api_summary_cold(api_exchange *x, st_cold *cold);
 /* Called by the handler of a write to answer with the summary. */
 void api_answer_summary(api_exchange *x);

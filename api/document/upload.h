@@ -18,7 +18,8 @@
 bool api_upload_begin(api_exchange *x);
 bool api_upload_feed(api_exchange *x, const char *bytes, size_t length);
 bool api_upload_end(api_exchange *x);
-/* Returns what building will cost, for api_run_long; call it after api_upload_end returned true. */
+/* Returns how many elements building the mesh will handle, for api_run_long. It must be called
+ * after api_upload_end has returned true. */
 uint64_t api_upload_elements(const api_exchange *x);
 /* Is the number of elements a guess? A file that api_upload_build reads as a whole may expand a few
  * bytes to many elements. */

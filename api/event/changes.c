@@ -1,7 +1,7 @@
 #include "api/event/changes.h"
 
-/* Writes a map of ids. It may name elements that are gone: those are null, unlike in other lists of
- * ids. */
+/* Writes a map from ids to ids as pairs. It may name elements that were deleted since; these are
+ * null, unlike in other lists of ids. */
 static void write_map(api_out *out, const he_ids *map)
 {
     api_out_array_begin(out);

@@ -14,7 +14,7 @@ struct api_backfill {
     st_mesh *mesh; /* a reference */
     st_mesh_info info;
     uint64_t to;
-    /* Owned by the job while one is queued or running, else by the listener. */
+    /* The cursor belongs to the job while one is queued or running, else to the listener. */
     st_cursor *cursor;
     api_text text;
     bool failed;
@@ -46,7 +46,8 @@ api_backfill *api_backfill_new(api_backfills *all, st_mesh *mesh, const st_mesh_
     return c;
 }
 
-/* Ends one use and unlocks. The lock is held. */
+/* Ends one of the two uses of a backfill, frees it after the last, and unlocks it. The caller holds
+ * the lock. */
 static void release(api_backfill *c)
 {
     bool last = --c->uses == 0;
@@ -78,8 +79,9 @@ void api_backfill_wake(api_backfill *c, void (*wake)(void *context), void *conte
 
 /* --- on the job pool --- */
 
-/* A change that added or removed columns or contents is announced as stale: they belong to the mesh
- * and may be changing. */
+/* Renders a step of the history as an event. A change that added or removed attribute columns or
+ * the whole content is announced as `stale`, because these objects belong to the mesh and may be
+ * changing. */
 static void render(api_backfill *c, const st_cursor_step *step)
 {
     c->info.revision = step->revision;
@@ -94,7 +96,8 @@ static void render(api_backfill *c, const st_cursor_step *step)
     }
 }
 
-/* If memory dropped the next revision since the last step, searches again: the disk may have it. */
+/* Gets the next step of the history. If memory has dropped the next revision since the last step,
+ * it searches again, because the disk may have it. */
 static bool next_step(api_backfill *c, st_cursor_step *step)
 {
     st_status status = st_cursor_next(c->cursor, step);

@@ -21,14 +21,14 @@ typedef struct api_backfills {
     _Atomic size_t count; /* backfills that are running */
 } api_backfills;
 
-/* Makes the events of the revisions after from->revision up to `to`, which is durable, or will be
- * before anything is taken. Returns NULL when memory is out or too many backfills run. */
+/* Makes the events of the revisions after from->revision up to `to`, which must be durable before
+ * an event is taken. Returns NULL when memory is out or too many backfills run. */
 api_backfill *api_backfill_new(api_backfills *all, st_mesh *mesh, const st_mesh_info *from,
                                uint64_t to);
-/* Takes NULL. A batch in progress is discarded when it is done. */
+/* Frees a backfill, which may be NULL. A batch in progress is discarded when it is done. */
 void api_backfill_free(api_backfill *c);
-/* Sets the callback that follows an API_BACKFILL_WAIT; a thread of the job pool calls it. Set it
- * before the first take. */
+/* Sets the callback that follows an API_BACKFILL_WAIT; a thread of the job pool calls it. It must
+ * be set before the first take. */
 void api_backfill_wake(api_backfill *c, void (*wake)(void *context), void *context);
 
 typedef enum api_backfill_step {

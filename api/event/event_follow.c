@@ -69,7 +69,8 @@ static size_t copy_text(stream *s, char *buffer, size_t size)
 
 enum { IN_TEXT = -3 }; /* result: bytes to send are in `text` */
 
-/* Reads from the backfill. If it fails, sends `resync` instead of the missed events. */
+/* Reads missed events from the backfill. If the backfill fails, it sends `resync` instead of the
+ * missed events. */
 static int64_t read_missed(stream *s)
 {
     switch (api_backfill_take(s->missed, &s->text)) {
@@ -109,7 +110,8 @@ static int64_t read_queue(stream *s, char *buffer, size_t size)
     return IN_TEXT;
 }
 
-/* When the server stops, the stream ends without waiting. */
+/* Reads the next bytes of an event stream. When the server stops, the stream ends without
+ * waiting. */
 static int64_t read_stream(void *self, char *buffer, size_t size)
 {
     stream *s = self;
@@ -146,7 +148,8 @@ static void free_stream(void *self)
     he_mem_free(s);
 }
 
-/* The history has revisions only, and a new name is not a revision: so the present name is sent. */
+/* Begins a stream with missed events from the history. The history consists of revisions, and a new
+ * name is not a revision, so the present name is sent as well. */
 static void begin_with_history(stream *s, const st_mesh_info *info, uint64_t since,
                                api_backfills *backfills)
 {

@@ -10,14 +10,14 @@
 #include "api/live.h"
 #include "store/followers.h"
 
-/* The st_render of the store: renders a change as an event. */
+/* Renders a change of a mesh as an event, for the listeners of the store (st_render). */
 bool api_event_render(const st_mesh_info *info, const st_change *change, char **bytes,
                       size_t *length);
 
-/* Opens a stream of the changes after `since`, or after the present revision, whose fields are
- * copied to `info`. The caller frees the source.
+/* Opens a stream of the changes after `since`, or, if that is NULL, after the present revision. The
+ * description of the mesh is copied to `info`. The caller frees the source.
  * Returns ST_ABSENT if the mesh was deleted.
- * Returns ST_LISTENERS if it has too many listeners.
+ * Returns ST_LISTENERS if the mesh has too many listeners.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *backfills,
                            st_mesh_info *info, api_source *out);

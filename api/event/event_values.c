@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* What a delta did to one attribute slot. If one column replaced another, `dropped` and `added` are
- * both set. */
+/* What a delta did to the column in one slot of attributes. If one column replaced another,
+ * `dropped` and `added` are both set. */
 typedef struct slot {
     he_ids rows; /* rows touched; of an added column, rows that do not hold the default */
     const he_column *dropped; /* the column before the delta, else NULL */
@@ -134,7 +134,7 @@ static he_status find_touched(touched *t, const he_mesh *mesh, const he_delta *d
     return status == HE_OK ? he_ids_sort(&t->faces, err) : status;
 }
 
-/* --- writing: stops early when the text is full --- */
+/* --- writing, which stops early when the text is full --- */
 
 static void write_vertices(api_out *out, const he_mesh *mesh, const he_ids *rows)
 {
@@ -300,7 +300,7 @@ he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *de
     touched t = {0};
     he_status status = find_touched(&t, mesh, delta, undone, err);
     if (status == HE_OK) {
-        /* Dropped columns come first: an added one may have the same name. */
+        /* Dropped columns are written first, because an added column may have the same name. */
         write_columns_dropped(out, &t);
         write_columns_added(out, mesh, &t);
         if (t.materials) {

@@ -12,9 +12,9 @@
 #include "api/json/json_out.h"
 #include "mesh/delta.h"
 
-/* Writes the member values, and attributes_added and attributes_dropped if columns were added or
- * removed, into an object that is open. `mesh` is in the state after `delta`, or before it if the
- * delta was undone.
+/* Writes what a delta changed into an object that is open: the member `values`, and
+ * attributes_added and attributes_dropped if columns were added or removed. `mesh` is in the state
+ * after `delta`, or before it if the delta was undone.
  * Returns HE_NO_MEMORY if memory is out; the text written so far is then unusable. */
 HE_NODISCARD he_status api_write_values(api_out *out, const he_mesh *mesh, const he_delta *delta,
                                         bool undone, he_error *err);

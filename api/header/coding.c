@@ -48,7 +48,7 @@ bool api_coding_of_body(const char *content_encoding, api_coding *out)
 
 bool api_coding_choose(const char *accept_encoding, api_codings *out)
 {
-    /* in thousandths; -1: not named */
+    /* The weights are in thousandths; -1 means that the header does not name the coding. */
     int q[API_CODING_COUNT] = {-1, -1, -1}, others = -1;
     api_weighed item;
     for (const char *at = accept_encoding; api_media_next(&at, &item);) {

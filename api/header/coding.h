@@ -5,11 +5,11 @@
 
 #include <stdbool.h>
 
-/* In order of preference where a client accepts several equally: zstd is several times as fast as
- * gzip and its output is smaller. */
+/* The content codings, in the order of preference if a client accepts several equally: zstd is
+ * several times as fast as gzip, and its output is smaller. */
 typedef enum api_coding { API_ZSTD, API_GZIP, API_IDENTITY, API_CODING_COUNT } api_coding;
 
-/* Returns the name, such as "gzip". */
+/* Returns the name of a coding, such as "gzip". */
 const char *api_coding_name(api_coding coding);
 
 /* The codings accepted for request bodies: as a list that ends in NULL, and as the value of
@@ -17,12 +17,13 @@ const char *api_coding_name(api_coding coding);
 extern const char *const api_codings_taken[];
 extern const char api_codings_list[];
 
-/* Reads a Content-Encoding. NULL, "" and identity are API_IDENTITY; x-gzip is gzip.
+/* Reads the header Content-Encoding of a body. NULL, "" and "identity" mean API_IDENTITY; "x-gzip"
+ * means gzip.
  * Returns false for an unknown coding and for more than one, so that no body is decompressed
  * twice. */
 bool api_coding_of_body(const char *content_encoding, api_coding *out);
 
-/* What an Accept-Encoding header allows. */
+/* The codings that an Accept-Encoding header allows, and the best of them. */
 typedef struct api_codings {
     bool allowed[API_CODING_COUNT];
     api_coding best; /* the preferred one of those allowed */
@@ -33,7 +34,7 @@ typedef struct api_codings {
  * equal or higher q is preferred to it. "*" stands for identity and gzip only, because every
  * intermediary reads gzip: zstd is chosen only by name, or where nothing else is allowed. Malformed
  * entries are skipped.
- * Returns false if the header allows nothing; `best` is then identity. */
+ * Returns false if the header allows no coding at all; then `best` is identity. */
 bool api_coding_choose(const char *accept_encoding, api_codings *out);
 
 #endif

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Does not use printf because nearly every answer has a tag. */
+/* Writes the part of a tag that changes with the mesh. It does not use printf, because nearly every
+ * answer has a tag. */
 static size_t write_state(const st_mesh_info *info, char out[API_ETAG])
 {
     static const char digits[] = "0123456789abcdef";

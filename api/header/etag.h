@@ -14,16 +14,16 @@ enum { API_ETAG = 128 };
 
 void api_etag_write(const st_mesh_info *info, const char *representation, char out[API_ETAG]);
 
-/* Writes the tag of the same representation with this content coding: "...-obj-gzip". */
+/* Writes the tag of a representation when it is sent with this content coding: "...-obj-gzip". */
 void api_etag_code(const char *etag, api_coding coding, char out[API_ETAG]);
 
-/* Evaluates If-None-Match: does the list hold this tag (ignoring W/) in an allowed coding, or is it
- * "*"? Sets `found` to the coding, identity for "*". */
+/* Evaluates If-None-Match: returns true if the list contains this tag (ignoring W/) in an allowed
+ * coding, or is "*". Sets `found` to the coding, which for "*" is identity. */
 bool api_etag_listed(const char *header, const char *etag, const api_codings *codings,
                      api_coding *found);
 
-/* Evaluates If-Match of a write: does the list name the present state in any representation, or is
- * it "*"? A weak tag never matches. */
+/* Evaluates If-Match of a write: returns true if the list contains a tag of the mesh's present
+ * state, in any representation, or is "*". A weak tag never matches. */
 bool api_etag_is_present(const char *header, const st_mesh_info *info);
 
 #endif

@@ -22,7 +22,7 @@ bool api_equal_nocase(const char *a, const char *b)
     return equal(a, strlen(a), b);
 }
 
-/* Part of a header without surrounding blanks. */
+/* A part of a header, without blanks around it. */
 typedef struct piece {
     const char *at;
     size_t length;
@@ -40,7 +40,8 @@ static piece trim(const char *at, size_t length)
     return (piece){at, length};
 }
 
-/* Reads the next piece of *rest up to `separator`, which does not count inside quoted strings.
+/* Reads the next piece of *rest, up to `separator`, which does not count inside quoted strings.
+ * Returns false at the end.
  * Returns false at the end. */
 static bool next_piece(piece *rest, char separator, piece *out)
 {
@@ -69,7 +70,7 @@ static bool next_piece(piece *rest, char separator, piece *out)
     return true;
 }
 
-/* Splits name=value and removes the quotes of the value. */
+/* Splits a parameter name=value, and removes the quotes of the value. */
 static bool split_parameter(piece parameter, piece *name, piece *value)
 {
     const char *equals = memchr(parameter.at, '=', parameter.length);
@@ -121,8 +122,8 @@ static int read_q(piece value)
     return q <= 1000 ? q : -1;
 }
 
-/* How specifically a range matches a type: 0 not at all, 1 by any/any, 2 by type/any, 3 by its
- * name. */
+/* Returns how specifically a media range matches a type: 0 not at all, 1 by any/any, 2 by type/any,
+ * 3 by its exact name. */
 static int closeness(piece range, const char *type)
 {
     if (equal(range.at, range.length, "*/*")) {

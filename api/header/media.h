@@ -7,11 +7,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A body of several files, see multipart.h. */
+/* The media type of a body of several files, see multipart.h. */
 #define API_MULTIPART "multipart/form-data"
 
-/* Does a Content-Type name this type ("application/json")? Letter case and parameters are ignored,
- * but a charset must be UTF-8. */
+/* Returns true if the value of a Content-Type is this type ("application/json"). Letter case and
+ * parameters are ignored, but a charset must be UTF-8. */
 bool api_media_is(const char *content_type, const char *type);
 
 /* Returns the index in `offers` (which ends in NULL) of the type that an Accept header prefers:
@@ -31,10 +31,11 @@ typedef struct api_weighed {
  * end. */
 bool api_media_next(const char **at, api_weighed *out);
 
-/* Does a comma-separated header hold this token ("return=minimal")? Letter case is ignored. */
+/* Returns true if a comma-separated header contains this token ("return=minimal"). Letter case is
+ * ignored. */
 bool api_header_has(const char *header, const char *token);
 
-/* Compares strings without ASCII letter case. */
+/* Returns true if two strings are equal apart from the case of ASCII letters. */
 bool api_equal_nocase(const char *a, const char *b);
 
 #endif

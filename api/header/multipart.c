@@ -31,7 +31,7 @@ struct api_multipart {
     char name[API_MAX_PART_NAME + 1], type[API_MAX_PART_NAME + 1];
 };
 
-/* --- parameters: *( ";" name "=" value ) --- */
+/* --- parameters of a header: *( ";" name "=" value ) --- */
 
 typedef struct parameter {
     const char *name;
@@ -71,8 +71,8 @@ static bool put(parameter *out, char c)
     return true;
 }
 
-/* Returns the position after the closing quote, or NULL if there is none or the value is too
- * long. */
+/* Reads a quoted value. Returns the position after the closing quote; NULL if there is none or the
+ * value is too long. */
 static const char *read_quoted(const char *p, const char *end, parameter *out)
 {
     for (p++; p < end && *p != '"'; p++) {
@@ -128,7 +128,7 @@ static found next_parameter(const char **at, const char *end, parameter *out)
     return p == NULL ? WRONG : FOUND;
 }
 
-/* Compares without letter case. */
+/* Returns true if the bytes are this word, without regard to letter case. */
 static bool is_word(const char *p, const char *end, const char *word)
 {
     size_t length = strlen(word);
@@ -153,7 +153,7 @@ static bool is_boundary(const char *text, size_t length)
     return good;
 }
 
-/* Finds the boundary parameter; returns false if it is missing or repeated. */
+/* Finds the boundary parameter of a Content-Type; returns false if it is missing or repeated. */
 static bool find_boundary(const char *content_type, parameter *out)
 {
     const char *end = content_type + strlen(content_type);
@@ -187,7 +187,7 @@ api_multipart *api_multipart_new(const char *content_type, api_problem *problem)
     memcpy(m->delimiter, "\r\n--", 4);
     memcpy(m->delimiter + 4, boundary.value, boundary.length);
     m->length = 4 + boundary.length;
-    /* the first delimiter may be at the very beginning, without CR LF */
+    /* The first delimiter may stand at the very beginning of the body, without CR LF before it. */
     m->matched = m->implied = 2;
     return m;
 }
@@ -216,12 +216,13 @@ static bool is_text(const char *text, size_t length)
     return he_is_utf8(text, length);
 }
 
-/* What was read of a part's headers so far. */
+/* Which headers of a part have been read so far. */
 typedef struct head {
     bool disposition, type, coding;
 } head;
 
-/* Returns NULL, or what is wrong with the header. */
+/* Reads the value of Content-Disposition. Returns NULL, or a sentence about what is wrong with
+ * it. */
 static const char *read_disposition(api_multipart *m, const char *p, const char *end)
 {
     const char *word = p;
@@ -248,7 +249,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
         if (!is_text(next.value, next.length)) {
             return "a name that is not UTF-8, or has control characters";
         }
-        /* a file input of a form without a chosen file has an empty filename */
+        /* An HTML form sends an empty filename for a file input without a chosen file. */
         if (next.length > 0 && (is_file || !filename || m->name[0] == '\0')) {
             memcpy(m->name, next.value, next.length + 1);
         }
@@ -318,17 +319,18 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
     }
     m->state = SEEK;
     m->inside = true;
-    /* in an empty part the CR LF of the empty line belongs to the delimiter */
+    /* If a part is empty, the CR LF of the empty line after its headers is the beginning of the
+     * delimiter. */
     m->matched = m->implied = 2;
     out->part = (api_part){m->name, seen.type ? m->type : NULL};
     return API_MULTIPART_BEGIN;
 }
 
-/* --- stepping through the bytes --- */
+/* --- reading bytes of parts and delimiters --- */
 
-/* Reads up to the delimiter. Bytes that match its beginning turn out to belong to the part when a
- * later byte differs. CR is its first byte and occurs nowhere else in it, so no byte has to be
- * compared twice. */
+/* Reads up to the next delimiter. Bytes that match the beginning of the delimiter turn out to
+ * belong to the part when a later byte differs. CR is the first byte of the delimiter and occurs
+ * nowhere else in it, so no byte has to be compared twice. */
 static api_multipart_step seek(api_multipart *m, const char **at, const char *end,
                                api_multipart_piece *out)
 {
@@ -363,7 +365,7 @@ static api_multipart_step seek(api_multipart *m, const char **at, const char *en
     return m->inside && out->length > 0 ? API_MULTIPART_BYTES : API_MULTIPART_MORE;
 }
 
-/* Reads "--", or blanks and CR LF. */
+/* Reads what follows a boundary: "--", or blanks and CR LF. */
 static bool close_delimiter(api_multipart *m, char c)
 {
     if (m->close == '-' || m->close == '\r') {
@@ -376,7 +378,7 @@ static bool close_delimiter(api_multipart *m, char c)
     return good;
 }
 
-/* Did the empty line after the headers arrive? */
+/* Returns true if the empty line after the headers of a part has arrived. */
 static bool ends_headers(const api_multipart *m)
 {
     const char *p = m->head + m->head_length;

@@ -36,7 +36,8 @@ typedef enum api_multipart_step {
     API_MULTIPART_BAD    /* refused: the problem is filled; no call may follow */
 } api_multipart_step;
 
-/* The texts live until the next part begins. */
+/* A part of the body: the name and type from its headers. The texts are valid until the next part
+ * begins. */
 typedef struct api_part {
     const char *name; /* file name, or else the field name */
     const char *type; /* Content-Type, or NULL */
@@ -48,12 +49,13 @@ typedef struct api_multipart_piece {
     size_t length;
 } api_multipart_piece;
 
-/* The parameter `boundary` of `content_type` must be 1 to 70 of the characters that RFC 2046
- * allows.
+/* Makes a reader for a body with this Content-Type. Its parameter `boundary` must be 1 to 70 of the
+ * characters that RFC 2046 allows.
  * Returns NULL with bad_header or no_memory. */
 api_multipart *api_multipart_new(const char *content_type, api_problem *problem);
 void api_multipart_free(api_multipart *m);
-/* Reads from *at, which lies before `end`, and moves it past the bytes it used. */
+/* Reads bytes of the body from *at up to `end`, until it finds something to report, and moves *at
+ * past the bytes it used. */
 api_multipart_step api_multipart_next(api_multipart *m, const char **at, const char *end,
                                       api_multipart_piece *out, api_problem *problem);
 /* Ends the body. Returns false with the problem filled if the last delimiter is missing. */

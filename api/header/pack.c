@@ -20,7 +20,8 @@ struct api_pack {
     bool ended; /* the whole output was returned */
     bool failed;
     size_t from, to;
-    /* from..to is uncompressed input; one byte more shows whether the body is longer */
+    /* The bytes from..to are uncompressed input. There is room for one byte more than is compressed
+     * at once, which shows whether the body is longer. */
     char in[API_PACK_AT_ONCE + 1];
 };
 
@@ -46,7 +47,7 @@ void api_pack_free(api_pack *pack)
     }
 }
 
-/* Fills the free part of `in`. */
+/* Reads bytes of the body into the free part of `in`. */
 static void fill(api_pack *pack)
 {
     const api_plain *plain = &pack->plain;
@@ -89,7 +90,8 @@ static bool begin_gzip(api_pack *pack)
            Z_OK;
 }
 
-/* Compresses no bytes, to make zstd allocate now: it would allocate with the first bytes only. */
+/* Makes zstd allocate its memory now by compressing no bytes: it would otherwise allocate with the
+ * first bytes, when failure is too late. */
 static bool begin_zstd(api_pack *pack)
 {
     ZSTD_inBuffer none = {"", 0, 0};
@@ -113,7 +115,7 @@ void api_pack_give_up(api_pack *pack)
     pack->as_it_is = true;
 }
 
-/* Both compress from..to into `buffer` and return the number of bytes written. */
+/* Each compresses the bytes from..to into `buffer`, and returns the number of bytes written. */
 static size_t step_gzip(api_pack *pack, char *buffer, size_t size)
 {
     z_stream *z = &pack->zlib;

@@ -15,7 +15,7 @@
 
 typedef struct api_pack api_pack;
 
-/* The uncompressed body, borrowed: bytes, or a reader as in api_answer. */
+/* The uncompressed body, which is borrowed: bytes, or a reader like that of api_answer. */
 typedef struct api_plain {
     const char *bytes; /* NULL: use `read` */
     size_t length;
@@ -23,23 +23,24 @@ typedef struct api_plain {
     void *context;
 } api_plain;
 
-/* Returns NULL when memory is out. `coding` is not identity. */
+/* Makes a compressor for a body. Returns NULL when memory is out. `coding` must not be identity. */
 api_pack *api_pack_new(api_coding coding, const api_plain *plain);
 void api_pack_free(api_pack *pack);
 
-/* If the body is no longer than API_PACK_AT_ONCE, returns true with all of it, uncompressed, valid
- * as long as the pack. May read from the body, so call it before the first api_pack_read. */
+/* If the body is no longer than API_PACK_AT_ONCE, returns true with all of its bytes, uncompressed,
+ * valid as long as the pack. It may read from the body, so it must be called before the first
+ * api_pack_read. */
 bool api_pack_whole(api_pack *pack, const char **bytes, size_t *length);
 
 /* Allocates the compressor, after api_pack_whole and before api_pack_read. Returns false, with
  * nothing changed, when memory is out. */
 bool api_pack_begin(api_pack *pack);
-/* Call it instead of api_pack_begin to send the body uncompressed. */
+/* Makes api_pack_read send the body uncompressed. It is called instead of api_pack_begin. */
 void api_pack_give_up(api_pack *pack);
 
-/* The `read` of an api_answer. Returns what the compressor made of API_PACK_TURN bytes of the body,
- * so that no call takes long, however well the body compresses. It reads on only if there was no
- * output (zlib buffers up to 4 MiB of zeros). */
+/* Reads compressed bytes, as the `read` of an api_answer. Returns what the compressor made of
+ * API_PACK_TURN bytes of the body, so that no call takes long, however well the body compresses. It
+ * reads more of the body only if there was no output (zlib buffers up to 4 MiB of zeros). */
 int64_t api_pack_read(void *pack, char *buffer, size_t size);
 
 #endif

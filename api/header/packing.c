@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* Precedes each block, so that its size is known when it is freed. */
+/* A header that precedes each block, so that the size of the block is known when it is freed. */
 typedef union head {
     size_t size;
     max_align_t align;
@@ -22,8 +22,9 @@ static void give_back(void *context, void *block)
     }
 }
 
-/* Compares and adds in one atomic step, so that two threads cannot exceed the ceiling together, and
- * no thread reads a total above what was allocated. */
+/* Counts an allocation if it stays below the ceiling. It compares and adds in one atomic step, so
+ * that two threads cannot exceed the ceiling together, and no thread reads a total above what was
+ * allocated. */
 static bool fits(api_packing_memory *memory, size_t size)
 {
     size_t lent = atomic_load_explicit(memory->lent, memory_order_relaxed);

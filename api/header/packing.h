@@ -14,19 +14,22 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
-/* Where a stream's memory comes from: the heap, under a ceiling that streams share. */
+/* Where the memory of a compression stream comes from: the heap, under a ceiling that all streams
+ * share. */
 typedef struct api_packing_memory {
-    /* bytes of all streams, with the overhead of each block; NULL: no ceiling */
+    /* The bytes that all streams have allocated, with the overhead of each block; NULL means no
+     * ceiling. */
     _Atomic size_t *lent;
     size_t most;
-    /* called at the ceiling: true if another stream freed its memory */
+    /* Called when an allocation would exceed the ceiling: returns true if another stream freed its
+     * memory. */
     bool (*make_room)(void *context);
     void *context;
     bool refused; /* an allocation failed by the ceiling, not by lack of memory */
 } api_packing_memory;
 
-/* Both fill the allocator hooks of the library. `memory` lives as long as the stream and may be
- * NULL: no ceiling. */
+/* Each fills the allocator hooks of its library. `memory` must live as long as the stream; it may
+ * be NULL, which means no ceiling. */
 void api_packing_zlib(z_stream *stream, api_packing_memory *memory);
 ZSTD_customMem api_packing_zstd(api_packing_memory *memory);
 

@@ -13,7 +13,8 @@ static int hex(char c)
                                   : -1;
 }
 
-/* Percent-decodes into the arena. Returns NULL with the problem filled. */
+/* Decodes percent escapes into the arena. Returns NULL with the problem filled if an escape is
+ * malformed or memory is out. */
 static const char *decode(const char *raw, size_t length, int code, bool slash, api_arena *arena,
                           api_problem *problem)
 {

@@ -1,4 +1,4 @@
-/* path.h - splitting and decoding the request target.
+/* path.h - splits and decodes the target of a request: its path and its query.
  *
  * The raw path is split at '/' and each segment decoded afterwards, so that an encoded slash never
  * makes another segment. In the last segment an encoded slash is part of the text, because
@@ -17,8 +17,9 @@ typedef struct api_path {
     bool has_slash;                         /* the last segment contains an escaped slash */
 } api_path;
 
-/* Returns false with bad_path (400), with no_such_route (404) for too many segments or an empty one
- * (as in "//" or after a trailing slash), or with no_memory. */
+/* Splits a path into segments and decodes them. Returns false with bad_path (400), with
+ * no_such_route (404) for too many segments or an empty one (as in "//" or after a trailing slash),
+ * or with no_memory. */
 bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_problem *problem);
 
 /* One name=value pair of the query, decoded; '+' is a plus sign, not a space. */
@@ -37,7 +38,7 @@ bool api_query_split(const char *raw, api_arena *arena, api_query *out, api_prob
 
 /* Reads an element id: a decimal number of 1 to 10 digits, below 2^32 - 2. */
 bool api_path_id(const char *text, uint32_t *out);
-/* Can `text` name a mesh: [A-Za-z0-9._-]{1,64}, not "." or ".."? */
+/* Returns true if `text` can name a mesh: [A-Za-z0-9._-]{1,64}, not "." or "..". */
 bool api_path_is_mesh_id(const char *text);
 
 #endif

@@ -5,10 +5,10 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Longer than any request may take. */
+/* The longest wait that is accepted, which is longer than any request may take. */
 enum { MOST_SECONDS = 1000000 };
 
-/* Reads the digits after "wait=" at the start of a preference. */
+/* Reads the seconds after "wait=" at the start of a preference. */
 static double read_wait(const char *header)
 {
     static const char name[] = "wait=";

@@ -10,7 +10,8 @@ typedef struct api_prefer {
     double wait;        /* wait=N: seconds that the client will wait; negative: not given */
 } api_prefer;
 
-/* `header` may be NULL. Unknown preferences are ignored, as the RFC demands. */
+/* Reads the header Prefer, which may be NULL. Unknown preferences are ignored, as the RFC
+ * demands. */
 api_prefer api_prefer_read(const char *header);
 
 #endif

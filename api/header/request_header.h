@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Constant, name, and whether it is a list, whose lines make up one value (RFC 9110 5.3). */
+/* Each row: X(constant, name, whether the header is a list, whose lines make up one value (RFC 9110
+ * 5.3)) */
 #define API_REQUEST_HEADER_MAP(X)                 \
     X(ACCEPT, "Accept", true)                     \
     X(ACCEPT_ENCODING, "Accept-Encoding", true)   \
@@ -28,8 +29,8 @@ typedef enum api_request_header {
 } api_request_header;
 #undef API_REQUEST_HEADER_CONSTANT
 
-/* Returns the header with this name, which is compared without case, and API_REQUEST_HEADERS for a
- * header that is not read. */
+/* Returns the header with this name, which is compared without letter case; API_REQUEST_HEADERS for
+ * a header that no handler reads. */
 api_request_header api_request_header_find(const char *name, size_t length);
 
 bool api_request_header_is_list(api_request_header header);

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Length of the magic number of a zstd frame. */
+/* The length of the magic number with which a zstd frame begins. */
 enum { MAGIC = 4 };
 static const uint32_t ZSTD_FRAME = 0xFD2FB528, ZSTD_SKIPPABLE = 0x184D2A50,
                       ZSTD_ANY_SKIPPABLE = 0xFFFFFFF0;
@@ -47,7 +47,8 @@ static bool fail_memory(const api_unpack *u, api_problem *problem)
 
 enum { EMPTY, BUSY, WAITING, TAKING, GONE };
 
-/* Decoders of gzip are small and cannot be evicted. Without a free place neither can this one. */
+/* Finds a place for the decoder among those that can be evicted. Decoders of gzip are small and get
+ * none. If no place is free, this decoder cannot be evicted. */
 static void find_place(api_unpack *u)
 {
     for (size_t i = 0; u->place == NULL && i < API_UNPACK_PLACES; i++) {
@@ -61,7 +62,7 @@ static void find_place(api_unpack *u)
     }
 }
 
-/* Takes the decoder from WAITING to BUSY. Returns false if it was evicted. */
+/* Moves the decoder from WAITING to BUSY. Returns false if it was evicted. */
 static bool enter(api_unpack *u)
 {
     int state = WAITING;
@@ -72,7 +73,8 @@ static bool enter(api_unpack *u)
         if (state == GONE || state == BUSY) {
             return state == BUSY;
         }
-        /* spins while another thread is TAKING it, as long as freeing a block takes */
+        /* This spins while another thread is TAKING the decoder, which lasts as long as freeing a
+         * block of memory. */
         state = WAITING;
     }
     return true;
@@ -90,14 +92,14 @@ static void leave(api_unpack *u, size_t bytes)
     }
 }
 
-/* Returns the share of this body in all compressed bytes that arrived since it began. */
+/* Returns the share of this body in all compressed bytes that have arrived since it began. */
 static double part_of(const api_unpack_room *room, const api_unpack_place *place)
 {
     uint64_t all = atomic_load(&room->arrived) - atomic_load(&place->began);
     return all == 0 ? 1 : (double)atomic_load(&place->bytes) / (double)all;
 }
 
-/* Returns false if no decoder is WAITING. */
+/* Evicts the decoder with the slowest body. Returns false if no decoder is WAITING. */
 static bool take_slowest(void *context)
 {
     api_unpack_room *room = context;
@@ -144,7 +146,7 @@ api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
         .lent = &room->lent, .most = API_MAX_UNPACKING, .make_room = take_slowest, .context = room};
     if (coding == API_GZIP) {
         api_packing_zlib(&u->zlib, &u->memory);
-        /* accepts the gzip format only */
+        /* The window size plus 16 makes zlib accept the gzip format only. */
         u->has_zlib = inflateInit2(&u->zlib, MAX_WBITS + 16) == Z_OK;
     } else {
         u->zstd = ZSTD_createDCtx_advanced(api_packing_zstd(&u->memory));
@@ -182,14 +184,14 @@ static bool refuse(const api_unpack *u, api_problem *problem, const char *why)
                            (unsigned long long)u->at, api_coding_name(u->coding), why);
 }
 
-/* Returns how many bytes this member or frame has produced above the ratio. */
+/* Returns how many bytes this member or frame has decompressed to beyond the allowed ratio. */
 static uint64_t beyond(const api_unpack *u)
 {
     uint64_t earned = u->from * API_UNPACK_RATIO;
     return u->to > earned ? u->to - earned : 0;
 }
 
-/* Passes `length` bytes of u->piece on if the body may be that large. */
+/* Passes on `length` bytes of u->piece, unless the body would become too large. */
 static bool give(api_unpack *u, size_t length, api_problem *problem)
 {
     u->to += length;
@@ -236,7 +238,7 @@ static bool feed_gzip(api_unpack *u, const unsigned char *bytes, size_t length, 
     z_stream *z = &u->zlib;
     const unsigned char *end = bytes + length;
     z->next_in = (z_const Bytef *)bytes;
-    /* After all input was read, a full piece of output means that there may be more. */
+    /* When all input was read, a full piece of output means that there may be more output. */
     bool full = false;
     while (z->next_in < end ? u->turn < API_UNPACK_TURN : full) {
         if (!u->inside) {
@@ -248,7 +250,7 @@ static bool feed_gzip(api_unpack *u, const unsigned char *bytes, size_t length, 
         z->avail_in = (unsigned)(end - before);
         z->next_out = (unsigned char *)u->piece;
         z->avail_out = sizeof u->piece;
-        /* Z_BLOCK stops after the header, whose length is not limited. */
+        /* Z_BLOCK makes zlib stop after the gzip header, whose length is not limited. */
         int status = inflate(z, u->deflated ? Z_NO_FLUSH : Z_BLOCK);
         u->at += (uint64_t)(z->next_in - before);
         u->from += u->deflated ? (uint64_t)(z->next_in - before) : 0;
@@ -286,7 +288,8 @@ static bool refuse_zstd(const api_unpack *u, size_t code, api_problem *problem)
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
 
-/* zstd does not compare the lengths if the last block is empty, so this does. */
+/* Checks the length of a frame at its end, because zstd does not compare the lengths if the last
+ * block is empty. */
 static bool end_frame(api_unpack *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
@@ -298,7 +301,7 @@ static bool end_frame(api_unpack *u, api_problem *problem)
     return true;
 }
 
-/* Gives these bytes to zstd, up to the end of the frame; `taken` is how many it read. */
+/* Passes bytes to zstd, up to the end of the frame; `taken` gets the number that zstd read. */
 static bool decode(api_unpack *u, const unsigned char *bytes, size_t length, size_t *taken,
                    api_problem *problem)
 {
@@ -361,7 +364,8 @@ static bool feed_zstd(api_unpack *u, const unsigned char *bytes, size_t length, 
                 return false;
             }
         } else {
-            /* Stops at the end of each header or block, so that a refusal has its offset. */
+            /* zstd gets no more than the next header or block at once, so that a refusal names the
+             * right offset. */
             size_t left = length - at, most = u->wanted < left ? u->wanted : left;
             keep_head(u, bytes + at, most);
             if (!decode(u, bytes + at, most, &taken, problem)) {

@@ -35,8 +35,9 @@ typedef struct api_unpack api_unpack;
 
 enum { API_UNPACK_PIECE = 32 * 1024, API_UNPACK_PLACES = API_MAX_UNPACKING >> 20 };
 
-/* A decoder that can be evicted. Its owner (while feeding or ending it) and a newcomer (while
- * evicting it) need exclusive access, which each gains by a transition from WAITING.
+/* The place of a decoder that can be evicted. Its owner (the request, while feeding or ending it)
+ * and a newcomer (another request, while evicting it) need exclusive access, which each gains by a
+ * transition from WAITING.
  *
  *     EMPTY --owner--> BUSY <--owner--> WAITING --newcomer--> TAKING --newcomer--> GONE
  *       ^--------owner---'                                                          |
@@ -44,30 +45,31 @@ enum { API_UNPACK_PIECE = 32 * 1024, API_UNPACK_PLACES = API_MAX_UNPACKING >> 20
 typedef struct api_unpack_place {
     _Atomic int state; /* one of the states above; EMPTY is 0 */
     _Atomic(api_unpack *) owner;
-    /* `began`: the room's `arrived` at the start; `bytes`: of this body */
+    /* `began` is the value of the room's `arrived` when this body began; `bytes` counts the bytes
+     * of this body. */
     _Atomic uint64_t began, bytes;
 } api_unpack_place;
 
-/* State that all decoders of a service share. All zeros at first. */
+/* The state that all decoders of a service share. It begins with all zeros. */
 typedef struct api_unpack_room {
     _Atomic size_t lent;      /* bytes allocated, at most API_MAX_UNPACKING */
     _Atomic uint64_t arrived; /* compressed bytes of all bodies so far */
     api_unpack_place places[API_UNPACK_PLACES];
 } api_unpack_room;
 
-/* `coding` is not identity. `take` receives the pieces and returns false to stop. `room` outlives
- * the decoder. Returns NULL with the problem filled. */
+/* Makes a decoder. `coding` must not be identity. `take` receives the decompressed pieces and
+ * returns false to stop. `room` must outlive the decoder. Returns NULL with the problem filled. */
 api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
                            bool (*take)(void *context, const char *bytes, size_t length),
                            void *context, api_problem *problem);
 void api_unpack_free(api_unpack *u);
-/* Decompresses. `used` may be less than `length` if API_UNPACK_TURN bytes were decompressed: the
- * caller serves other requests and then feeds the rest.
+/* Decompresses bytes of the body. `used` may be less than `length` if API_UNPACK_TURN bytes were
+ * decompressed: the caller then serves other requests before it feeds the rest.
  * Returns false if the body is refused, with the problem filled, or if `take` wants no more;
  * neither this nor api_unpack_end may be called again then. */
 bool api_unpack_feed(api_unpack *u, const char *bytes, size_t length, size_t *used,
                      api_problem *problem);
-/* Ends the body; an empty body is valid. */
+/* Ends the body, and checks that it is complete. An empty body is valid. */
 bool api_unpack_end(api_unpack *u, api_problem *problem);
 
 #endif

@@ -18,14 +18,14 @@ enum { API_JOB_STATES = API_JOB_CANCELLED + 1 };
 
 enum { API_JOB_ID = ST_JOB_ID, API_JOB_LOCATION = sizeof "/v1/meshes/" + ST_MESH_ID };
 
-/* Headers of the answer that a job keeps, in the order of api_job_header_names. */
+/* The headers of its answer that a job keeps, in the order of api_job_header_names. */
 enum { API_JOB_HEADERS = 4 };
 extern const char *const api_job_header_names[API_JOB_HEADERS];
 
 /* The description of a job. */
 typedef struct api_job {
     char id[API_JOB_ID + 1]; /* random, so that no client can guess it */
-    /* name of the token that started it; "" if there was no token */
+    /* The name of the token that started the job; "" if there was no token. */
     char holder[API_TOKEN_NAME + 1];
     uint64_t number; /* in the order of submission, from 1 */
     api_job_state state;
@@ -40,7 +40,7 @@ typedef struct api_job {
     size_t length;
     api_blob blob; /* borrowed: the answer, if it is not in `body` */
     bool shown;    /* `body` is JSON and part of the job's own representation */
-    /* borrowed for the call; NULL for a header that is missing */
+    /* The values of these headers, borrowed for the call; NULL for a header that is missing. */
     const char *headers[API_JOB_HEADERS];
 } api_job;
 

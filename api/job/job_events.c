@@ -1,5 +1,5 @@
-/* The event stream of a job. Each listener reads the newest state when it is ready for it, so no
- * events are queued for slow listeners. */
+/* job_events.c - the event stream of a job. Each listener reads the newest state when it is ready
+ * for it, so no events are queued for slow listeners. */
 #include "api/job/job_entry.h"
 
 #include "api/job/job_out.h"
@@ -23,7 +23,7 @@ struct api_job_listener {
     api_job_listener *next;
 };
 
-/* A smaller progress is not worth a message. */
+/* Progress smaller than this is not worth a message. */
 static const double STEP = 0.005;
 
 void api_job_entry_wake(api_job_entry *job)
@@ -51,7 +51,8 @@ static bool is_news(const api_job_listener *l, const api_job *facts)
            l->phase != facts->phase;
 }
 
-/* Writes the next message, or arranges to be woken for it. Returns false at the end. */
+/* Writes the next message of a job's stream, or arranges that the listener is woken for it. Returns
+ * false at the end. */
 static bool next_message(api_job_listener *l)
 {
     api_job_entry *job = l->job;

@@ -1,4 +1,4 @@
-/* Jobs across a restart: storing and loading them.
+/* job_keep.c - keeps jobs across a restart: stores and loads them.
  *
  * A job is recorded when it is accepted and when it ends; the journal's records of its work show on
  * their own that it was done. So a job that is found without an end has changed nothing. */
@@ -10,10 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A larger answer is not kept across a restart. */
+/* The largest answer that is kept across a restart. */
 enum { KEPT_BODY = 64 << 10 };
 
-/* Journals hold the numbers of st_job_state, so these must not depend on api_job_state. */
+/* Returns the state's number in the journal. Journals on disk contain the numbers of st_job_state,
+ * so these must not depend on the order of api_job_state. */
 static st_job_state kept_state(api_job_state state)
 {
     switch (state) {
@@ -95,7 +96,7 @@ st_status api_job_forget(const api_job_entry *j)
 
 enum { TEXTS = 2 + API_JOB_HEADERS };
 
-/* Copies the texts of unlimited length. Returns false when memory is out. */
+/* Copies the texts of a stored job that have no fixed size. Returns false when memory is out. */
 static bool copy_texts(api_job_entry *j, const st_job *job)
 {
     const char *from[TEXTS] = {job->operation, job->phase};
@@ -138,8 +139,8 @@ static bool copy_body(api_job_entry *j, const st_job *job)
     return true;
 }
 
-/* Restores Location when the record of the work shows that it was done but the answer was not
- * recorded. */
+/* Restores the header Location, if the record of the work shows that it was done, but the answer
+ * was not recorded before the restart. */
 static void locate(api_job *facts)
 {
     enum { CREATED = 201 };
@@ -148,7 +149,7 @@ static void locate(api_job *facts)
     }
 }
 
-/* Marks the job as failed by the restart. Returns false when memory is out. */
+/* Marks a job as failed because a restart interrupted it. Returns false when memory is out. */
 static bool interrupt(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -223,8 +224,8 @@ bool api_job_restore(api_job_table *table)
     if (st_jobs_kept(table->options.store, take, table) != ST_OK) {
         return false;
     }
-    /* Recorded after all jobs were read, because reading is not finished before. Next time these
-     * jobs are ended. */
+    /* These ends are recorded after all jobs were read, because nothing can be recorded before. At
+     * the next restart these jobs are found as ended. */
     for (api_job_entry *j = table->first; j != NULL; j = j->next) {
         uint64_t position;
         if (j->interrupted) {

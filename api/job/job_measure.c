@@ -1,4 +1,4 @@
-/* Statistics of the table of jobs for metrics. */
+/* job_measure.c - statistics of the table of jobs, for metrics. */
 #include "api/job/job_entry.h"
 
 static uint64_t micros_between(double from, double to)

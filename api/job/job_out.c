@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Progress is written in steps of 1/STEPS. */
+/* Progress is written as a multiple of 1 / STEPS. */
 static const double STEPS = 10000;
 
 static const char *const states[] = {

@@ -1,4 +1,4 @@
-/* job_out.h - jobs as JSON and as events. */
+/* job_out.h - writes jobs as JSON and as events. */
 #ifndef HE_API_JOB_JOB_OUT_H
 #define HE_API_JOB_JOB_OUT_H
 
@@ -6,15 +6,15 @@
 #include "api/json/json_out.h"
 
 const char *api_job_state_name(api_job_state state);
-/* Writes the path of the job's answer; "" if it has no answer of its own, or none yet. */
+/* Writes the path of the answer of a job; "" if the job has no answer of its own, or none yet. */
 enum { API_JOB_RESULT_PATH = sizeof "/v1/jobs//result" + API_JOB_ID };
 void api_job_result_path(const api_job *job, char out[API_JOB_RESULT_PATH]);
-/* Writes the job as an object; `whole` adds its result or problem, which may be large. */
+/* Writes a job as an object; `whole` adds its result or its problem, which may be large. */
 void api_write_job(api_out *out, const api_job *job, bool whole);
 /* Writes the state of a job as an event for listeners of its mesh. */
 void api_event_job_state(api_text *text, const api_job *job);
-/* Writes the job as an event of its own stream, and `bye` after the last event. The result is
- * included if it fits into an event; GET of the job always has it. */
+/* Writes a job as an event of its own stream, and a message `bye` after the last event. The result
+ * is included if it fits into an event; GET of the job always has it. */
 void api_event_job(api_text *text, const api_job *job, bool bye);
 
 #endif

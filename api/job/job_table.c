@@ -15,8 +15,8 @@
 const char *const api_job_header_names[API_JOB_HEADERS] = {"Content-Type", "Content-Disposition",
                                                            "ETag", "Export-Warnings"};
 
-/* Sends the state to listeners of the job's mesh, by reference: a new mesh with this id must not
- * get it. */
+/* Sends the state of a job to the listeners of its mesh. The mesh is passed by reference, not by
+ * id, because a new mesh with this id must not get it. */
 static void tell_listeners(st_mesh *mesh, const api_job *job)
 {
     if (mesh != NULL && st_is_followed(mesh)) {
@@ -35,7 +35,7 @@ static void free_work(api_job_work *work)
     }
 }
 
-/* --- the list, under the lock --- */
+/* --- the list of jobs, while the table's lock is held --- */
 
 static void free_blob(api_job_entry *j)
 {
@@ -106,8 +106,8 @@ static api_job_entry *ended_first(const api_job_table *table)
     return found;
 }
 
-/* Drops old jobs, and as many more as needed to make space for `room` jobs. The newest answer
- * stays, however large it is. */
+/* Drops jobs that have ended, to keep to the limits and to make space for `room` more jobs. The
+ * newest answer stays, however large it is. */
 static void tidy(api_job_table *table, size_t room)
 {
     double now = st_clock_utc();
@@ -148,7 +148,7 @@ api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *v
 
 /* --- running --- */
 
-/* Listeners are woken for this much progress. */
+/* Listeners are woken when the progress has grown by this much. */
 static const double WORTH = 0.005;
 
 static bool tell(void *context, const char *phase, double done)
@@ -165,7 +165,7 @@ static bool tell(void *context, const char *phase, double done)
     return !atomic_load_explicit(&j->stop, memory_order_relaxed);
 }
 
-/* Returns false when memory is out. */
+/* Copies the headers of an answer into the job. Returns false when memory is out. */
 static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
 {
     size_t length = 0;
@@ -184,7 +184,7 @@ static bool keep_headers(api_job_entry *j, const api_job_outcome *outcome)
     return length == 0 || at != NULL;
 }
 
-/* If there is no memory for the headers, the body is dropped. */
+/* Stores the answer in the job. If there is no memory for the headers, the body is dropped. */
 static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
 {
     j->facts.status = outcome->status;
@@ -207,7 +207,7 @@ static void keep_outcome(api_job_entry *j, const api_job_outcome *outcome)
     j->facts.shown = outcome->shown;
 }
 
-/* Frees the work first, so that its memory is free when clients see the end. */
+/* Ends a job. Its work is freed first, so that its memory is free when clients see the end. */
 static void end(api_job_entry *j)
 {
     api_job_table *table = j->table;
@@ -234,8 +234,8 @@ static void end(api_job_entry *j)
     st_release(about);
 }
 
-/* Replaces an answer whose change may never be in the journal. When memory is out only the status
- * remains. */
+/* Replaces the answer of a job whose change may never be in the journal. When memory is out, only
+ * the status remains. */
 static void answer_lost(api_job_entry *j)
 {
     api_problem problem = {0};
@@ -285,8 +285,8 @@ static void decide_end(api_job_entry *j)
     j->noted = 0;
 }
 
-/* Records the end. A job that was cancelled by the stop of the server gets no such record: after
- * the restart it is found and marked as interrupted. */
+/* Records the end of a job in the store. A job that was cancelled because the server stops gets no
+ * such record: after the restart it is found without an end, and marked as interrupted. */
 static void note_end(api_job_entry *j)
 {
     uint64_t position;
@@ -297,9 +297,9 @@ static void note_end(api_job_entry *j)
     }
 }
 
-/* Called when the changes of the work are durable, or never will be, or the server stops. Then the
- * record of the end is awaited, so that a job that clients saw as done is still done after a
- * crash. */
+/* Called when the changes of the work are durable, when they never will be, or when the server
+ * stops. It then waits for the record of the job's end, so that a job that clients saw as done is
+ * still done after a crash. */
 static void resume(st_wait *wait)
 {
     api_job_entry *j = waiter(wait);
@@ -323,7 +323,8 @@ static void resume(st_wait *wait)
     }
 }
 
-/* D1: clients must not see the end before it is durable. */
+/* Ends a job as soon as its changes are durable: clients must not see the end before that (rule D1
+ * of the store). */
 static void end_when_durable(api_job_entry *j, const api_job_outcome *outcome)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
@@ -419,7 +420,8 @@ static void resume_accepted(st_wait *wait)
     pthread_mutex_unlock(&table->lock);
 }
 
-/* The caller holds the lock. */
+/* Watches the job's record at `position` of the journal: if it can never become durable, the job is
+ * stopped. The caller holds the table's lock. */
 static void watch_note(api_job_entry *j, uint64_t position)
 {
     st_waits *waits = st_store_waits(j->table->options.store);
@@ -432,7 +434,8 @@ static void watch_note(api_job_entry *j, uint64_t position)
     }
 }
 
-/* The caller holds the lock. */
+/* Returns true if the holder of this work has as many jobs as it may have. The caller holds the
+ * table's lock. */
 static bool is_beyond(const api_job_table *table, const api_job_work *work)
 {
     uint64_t open = 0;
@@ -442,9 +445,10 @@ static bool is_beyond(const api_job_table *table, const api_job_work *work)
     return work->most != 0 && open >= work->most;
 }
 
-/* The caller holds the lock, so the job cannot start. If the disk accepts no more records, work
- * that only reads goes on: such a job is lost at a restart, and work that writes is refused when it
- * commits. */
+/* Adds a job to the table and passes it to the pool. The caller holds the table's lock, so the job
+ * cannot start before it is recorded. If the disk accepts no more records, a job that only reads is
+ * accepted all the same, although it would be lost at a restart; a job that writes is refused when
+ * it commits. */
 static st_status accept(api_job_table *table, api_job_entry *j, const st_task *task)
 {
     uint64_t position = 0;
@@ -551,8 +555,8 @@ bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after,
     return more;
 }
 
-/* The caller holds the lock. It must free the returned work (of a job that was queued) and release
- * `about` after unlocking. */
+/* Cancels a job. The caller holds the table's lock. After unlocking, it must free the returned work
+ * (of a job that was still queued) and release `about`. */
 static api_job_work cancel(api_job_entry *j, st_mesh **about)
 {
     api_job_work work = {.self = NULL};
@@ -569,7 +573,7 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
         api_job_count_end(j);
         if (j->is_kept && !j->table->stopped) {
             uint64_t position;
-            /* on failure, it is found as interrupted after a restart */
+            /* If this record fails, the job is found as interrupted after a restart. */
             (void)api_job_keep(j, &position);
         }
         api_job_entry_wake(j);
@@ -608,7 +612,7 @@ st_status api_job_remove(api_job_table *table, const api_token *viewer, const ch
     return status;
 }
 
-/* Cancels a queued job and returns its work; NULL members if none is queued. */
+/* Cancels one queued job and returns its work; its members are NULL if no job is queued. */
 static api_job_work cancel_one(api_job_table *table, st_mesh **about)
 {
     api_job_work work = {.self = NULL};

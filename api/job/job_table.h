@@ -44,10 +44,10 @@ typedef struct api_job_table_options {
     double keep; /* seconds for which an ended job is kept */
 } api_job_table_options;
 
-/* Makes a table with the jobs that the store has kept. Returns NULL when memory is out or they
+/* Makes a table with the jobs that the store has kept. Returns NULL when memory is out or the jobs
  * cannot be read. */
 api_job_table *api_job_table_new(const api_job_table_options *options);
-/* No job may be running, or waiting for the pool or the journal. */
+/* Frees the table. No job may be running, or waiting for the pool or the journal. */
 void api_job_table_free(api_job_table *table);
 /* Cancels all jobs and accepts no more. */
 void api_job_table_stop(api_job_table *table);
@@ -65,57 +65,60 @@ typedef struct api_job_outcome {
     bool changed;                         /* the work changed a mesh */
 } api_job_outcome;
 
-/* Reports the phase and the fraction done, 0 to 1. Returns false if the work shall stop. */
+/* The function by which work reports its phase and the fraction that is done, 0 to 1. It returns
+ * false if the work must stop. */
 typedef bool api_job_progress(void *context, const char *phase, double done);
 
-/* The work of a job. `run` is called at most once, by one thread; `free` is always called. The id
- * is the job's and lives until `free`. */
+/* The work of a job. `run` is called at most once, by one thread; `free` is always called. `id` is
+ * the id of the job and is valid until `free` is called. */
 typedef struct api_job_work {
     void *self;
     void (*run)(void *self, const char *id, api_job_progress *progress, void *context,
                 api_job_outcome *out);
     void (*free)(void *self);
     double seconds; /* estimated duration */
-    /* the mesh whose listeners get events; the work holds a reference. NULL: none */
+    /* The mesh whose listeners get events of the job, to which the work holds a reference; NULL if
+     * there is none. */
     st_mesh *about;
     const char *holder; /* name of the token that started it; "" if there was no token */
-    /* queued and running jobs allowed to this holder, this one included; 0: no limit */
+    /* The number of queued and running jobs that this holder may have, this one included; 0 is no
+     * limit. */
     uint64_t most;
     bool claims; /* the work has claimed that mesh (store/write.h) */
 } api_job_work;
 
-/* Takes `work` and describes the job in `out`. `operation` is a literal; `mesh` is the id of the
- * job's mesh or "".
+/* Starts a job: takes `work` and describes the job in `out`. `operation` must be a literal; `mesh`
+ * is the id of the job's mesh or "".
  * Returns ST_TOO_MANY if too many jobs wait, ST_QUOTA if the holder has as many as allowed, or
  * ST_BEHIND or ST_NO_MEMORY. */
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);
 
-/* `viewer` is the token of the client that asks. Jobs that it does not own (api_token_owns) do not
- * exist for it. */
+/* In the following functions `viewer` is the token of the client that asks. Jobs that it does not
+ * own (api_token_owns) do not exist for it. */
 
-/* Calls `show` with the job, under the lock. Returns false if there is no job with this id. */
+/* Calls `show` with the job with this id, while the table's lock is held. Returns false if there is
+ * no such job. */
 bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
                   void (*show)(void *context, const api_job *job), void *context);
-/* Borrows the job with this id, with its answer, until api_job_return; `*facts` describes it as it
- * is now. Returns NULL if there is none. */
+/* Borrows the job with this id, with its answer, until api_job_return; `*facts` describes the job
+ * as it is now. Returns NULL if there is none. */
 typedef struct api_job_entry api_job_loan;
 api_job_loan *api_job_lend(api_job_table *table, const api_token *viewer, const char *id,
                            api_job *facts);
 void api_job_return(api_job_loan *loan);
-/* Calls `show` with up to `limit` jobs whose numbers are above `after`, in order. Returns true if
- * there are more.
- */
+/* Calls `show` with up to `limit` jobs whose numbers are above `after`, in the order of numbers.
+ * Returns true if there are more. */
 bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
                   void (*show)(void *context, const api_job *job), void *context);
-/* Cancels a job that has not ended and calls `show`; deletes one that has ended and sets
+/* Cancels a job that has not ended and calls `show`; or deletes a job that has ended and sets
  * `*forgotten`.
  * Returns ST_ABSENT if there is no such job, or ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY if
  * the store cannot delete it. */
 st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
                          bool *forgotten, void (*show)(void *context, const api_job *job),
                          void *context);
-/* The number of jobs in each state, and statistics since the start. */
+/* The number of jobs in each state, and statistics since the server started. */
 typedef struct api_job_measures {
     size_t in_state[API_JOB_STATES];
     uint64_t ended[API_JOB_STATES]; /* zero for states that are not final */
@@ -124,11 +127,12 @@ typedef struct api_job_measures {
     size_t listeners, most_listeners;
 } api_job_measures;
 
-/* Holds the table's lock for as long as counting the jobs takes. */
+/* Measures the table of jobs. It holds the table's lock for as long as counting the jobs takes. */
 void api_job_measure(api_job_table *table, api_job_measures *out);
-/* Opens a stream of events: one for each change of the job, and `bye` after the last or when the
- * server stops. The caller frees the source.
- * Returns ST_ABSENT, ST_LISTENERS or ST_NO_MEMORY. */
+/* Opens the event stream of a job: one event for each change of the job, and `bye` after the last
+ * one or when the server stops. The caller frees the source.
+ * Returns ST_ABSENT if there is no such job, ST_LISTENERS if it has too many listeners, or
+ * ST_NO_MEMORY. */
 st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,
                          api_source *out);
 

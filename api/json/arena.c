@@ -6,8 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The first block holds all texts of an ordinary request. With its header it still has a size that
- * the C library allocates without a lock or a search. */
+/* The size of the first block, which holds all texts of an ordinary request. With its header, the C
+ * library still allocates it without a lock or a search. */
 enum { FIRST_BLOCK = 1024 - 64, LARGEST_STEP = 1 << 20 };
 
 struct api_block {
@@ -25,7 +25,7 @@ void *api_arena_alloc(api_arena *arena, size_t size)
     size = (size + align - 1) / align * align;
     api_block *block = arena->blocks;
     if (block == NULL || size > block->size - block->used) {
-        /* Doubling keeps the number of blocks small; the maximum step limits unused space. */
+        /* Doubling the size of blocks keeps their number small; the maximum limits unused space. */
         size_t room = block == NULL ? FIRST_BLOCK : block->size * 2;
         room = room > LARGEST_STEP ? LARGEST_STEP : room;
         room = room < size ? size : room;

@@ -13,13 +13,13 @@ typedef struct api_arena {
     api_block *blocks; /* newest first */
 } api_arena;
 
-/* Returns memory that is not zeroed, or NULL when memory is out; the arena is then unchanged. */
+/* Returns memory that is not zeroed, or NULL when memory is out; then the arena is unchanged. */
 void *api_arena_alloc(api_arena *arena, size_t size);
 /* Allocates count * size bytes. Returns NULL also when the product overflows. */
 void *api_arena_array(api_arena *arena, size_t count, size_t size);
-/* Returns a copy that ends in NUL, or NULL when memory is out. */
+/* Returns a copy of `bytes` that ends in NUL, or NULL when memory is out. */
 char *api_arena_copy(api_arena *arena, const char *bytes, size_t length);
-/* Invalidates all allocations but keeps the newest block for the next ones. */
+/* Invalidates all allocations of the arena, but keeps its newest block for the next ones. */
 void api_arena_empty(api_arena *arena);
 void api_arena_clear(api_arena *arena); /* frees all blocks */
 

@@ -11,7 +11,7 @@
 #include "api/json/json_out.h"
 #include "mesh/column.h"
 
-/* Writes the value of a column at `row`. */
+/* Writes the value that a column has in the row at `row`. */
 void api_write_value(api_out *out, const he_column *column, const unsigned char *row);
 /* Writes the components of one value into an array that the caller has opened. */
 void api_write_components(api_out *out, const he_column *column, const unsigned char *row);
@@ -20,12 +20,12 @@ bool api_read_value(const api_in *in, const he_column *column, unsigned char *ro
 bool api_read_values(const api_in *in, const he_column *column, unsigned char **rows,
                      size_t *count);
 
-/* Reads the members type, components, rule, default and labels of an object, as a new column
- * without rows. The caller reads the other members. */
+/* Reads the definition of an attribute from an object: the members type, components, rule, default
+ * and labels. Makes a new column without rows. The caller reads the other members. */
 bool api_read_column(const api_in *object, he_kind domain, const char *name, he_column **out);
-/* All three write members into an object that is open: api_write_head from "domain" to "default",
- * api_write_labels "labels" if there are any (they may be long), api_write_column the head and
- * "bytes" of all rows. */
+/* These three functions write members into an object that is open: api_write_head those from
+ * "domain" to "default"; api_write_labels "labels", if there are any (they may be long);
+ * api_write_column the head and "bytes", the size of all rows. */
 void api_write_head(api_out *out, const he_column *column);
 void api_write_labels(api_out *out, const he_column *column);
 void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column);
@@ -34,10 +34,10 @@ void api_write_column(api_out *out, const he_mesh *mesh, const he_column *column
  * the number of values written. */
 uint32_t api_write_attributes(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);
 
-/* Names of he_type and of he_rule in the order of the enum; each array ends in NULL. */
+/* The names of he_type and of he_rule, in the order of the enum; each array ends in NULL. */
 extern const char *const api_type_names[], *const api_rule_names[];
-/* Returns the rule of an attribute whose creator named none: interpolate for floating-point types,
- * else copy. */
+/* Returns the rule that an attribute gets if the client names none: interpolate for floating-point
+ * types, else copy. */
 he_rule api_default_rule(he_type type);
 
 #endif

@@ -18,7 +18,7 @@ void api_in_setup(void)
     cJSON_InitHooks(&hooks);
 }
 
-/* FNV-1a; compares names as integers. */
+/* Hashes a name by FNV-1a, so that names are compared as integers. */
 static uint32_t hash(const char *text)
 {
     uint32_t h = 2166136261u;
@@ -52,7 +52,8 @@ static bool check_members(const api_in *object)
     return true;
 }
 
-/* Recursion is bounded: the scan has refused more than API_MAX_DEPTH levels. */
+/* Checks that no object has a repeated member. The recursion is bounded, because the scan has
+ * refused more than API_MAX_DEPTH levels. */
 static bool check_objects(const api_in *in)
 {
     if (cJSON_IsObject(in->value) && !check_members(in)) {
@@ -67,7 +68,7 @@ static bool check_objects(const api_in *in)
     return true;
 }
 
-/* Parses one value of a text that was scanned; `*end` is where it ends. */
+/* Parses one value of a text that was scanned; `*end` is set to where the value ends. */
 static bool parse(const char *bytes, size_t length, const api_in *at, api_document *out,
                   api_in *root, const char **end)
 {

@@ -1,4 +1,4 @@
-/* json_in.h - strict reading of control documents.
+/* json_in.h - strict reading of control documents, which are JSON bodies other than meshes.
  *
  * The text is scanned before cJSON sees it. The scan checks UTF-8, depth, number of values, and the
  * exact grammar of numbers and strings; it refuses \u0000, lone surrogates, a byte order mark and
@@ -62,12 +62,13 @@ void api_in_setup(void);
  * Returns false with malformed_json, duplicate_member, limit_exceeded (413) or no_memory. */
 bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
                         api_document *out, api_in *root, api_problem *problem);
-/* Parses what was gathered from a text that the scan let pass. */
+/* Parses a text that the scan (json_scan.h) has accepted already. */
 bool api_document_parse_scanned(const char *bytes, size_t length, api_document *out, api_in *root,
                                 api_problem *problem);
 void api_document_clear(api_document *document);
-/* Parses like api_document_parse, but leaves the array named `items->name` empty. `bytes` must
- * outlive the items. A repeated member inside an item is found when the item is read. */
+/* Parses like api_document_parse, but leaves the array named `items->name` empty, so that the
+ * caller reads its items one by one. `bytes` must outlive the items. A repeated member inside an
+ * item is found when the item is read. */
 bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,
                             api_items *items, api_document *out, api_in *root,
                             api_problem *problem);
@@ -84,8 +85,8 @@ bool api_in_is_array(const api_in *in);
 bool api_in_is_object(const api_in *in);
 bool api_in_is_number(const api_in *in);
 
-/* Checks that the value is an object with no members but these (each may be absent). `names` ends
- * in NULL. */
+/* Checks that the value is an object with no other members than `names`, each of which may be
+ * absent. `names` ends in NULL. */
 bool api_in_only(const api_in *in, const char *const *names);
 bool api_in_object(const api_in *in);                                  /* must be an object */
 bool api_in_find(const api_in *object, const char *name, api_in *out); /* false: absent */
@@ -103,8 +104,8 @@ const char *api_in_name(const api_in *member); /* name of a member of an object 
 /* --- values --- */
 bool api_in_bool(const api_in *in, bool *out);
 bool api_in_number(const api_in *in, double *out); /* reads a finite number */
-/* Reads a number. Refuses with bad_value what is outside [min, max], and the ends too if
- * exclusive. */
+/* Reads a number. Refuses a number outside [min, max] with bad_value; with `exclusive`, also `min`
+ * and `max` themselves. */
 bool api_in_number_within(const api_in *in, double min, double max, bool exclusive, double *out);
 /* Reads a whole number in [min, max]; max is at most 2^53. */
 bool api_in_u64(const api_in *in, uint64_t min, uint64_t max, uint64_t *out);
@@ -115,7 +116,7 @@ bool api_in_ids(const api_in *in, size_t min, api_arena *arena, uint32_t **ids, 
 bool api_in_vec3(const api_in *in, he_vec3 *out);
 /* Reads a string of at most `max` bytes, which the document owns. */
 bool api_in_string(const api_in *in, size_t max, const char **out);
-/* Reads one of the strings `choices`, which ends in NULL, and returns its index in `out`. */
+/* Reads a string that must be one of `choices`, which ends in NULL; `out` gets its index. */
 bool api_in_choice(const api_in *in, const char *const *choices, int *out);
 /* Reads {"vertex":5}: an object with one member that is named after a kind of element. */
 bool api_in_element(const api_in *in, he_kind *kind, uint32_t *id);

@@ -228,15 +228,16 @@ void api_out_id(api_out *out, uint32_t id)
     }
 }
 
-/* Space is reserved once per this many ids. */
+/* The output reserves space once for this many ids, and the longest text of an id. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
-/* The caller drops the text when writing was stopped, so the failure may look like missing
- * memory. */
+/* Returns false if writing must stop: memory is out or the watch cancelled it. In both cases the
+ * text is marked as failed, because the caller drops the text of a cancelled request anyway. */
 static bool goes_on(api_out *out)
 {
     he_error err = {0};
-    /* Polling costs as much as writing a short list, and each operation may write one. */
+    /* The watch is asked only once for many parts, because asking costs as much as writing a short
+     * list, and each operation may write one. */
     bool looks = ++out->parts % (HE_WATCH_STRIDE / IDS_AT_ONCE) == 0;
     if (looks && he_watch_step(out->watch, 0, 1, &err) != HE_OK) {
         out->text->failed = true;
@@ -294,8 +295,8 @@ void api_out_vec3(api_out *out, he_vec3 value)
     api_out_array_end(out);
 }
 
-/* The Gregorian date of a day counted from 1970-01-01: counts from 1 March of year 0, so that a
- * leap day is the last day of its year, in eras of 400 years. */
+/* Computes the Gregorian date of a day counted from 1970-01-01. It counts from 1 March of year 0,
+ * so that a leap day is the last day of its year, in eras of 400 years. */
 static void date_of(int64_t day, int64_t *year, int *month, int *date)
 {
     day += 719468;
@@ -311,7 +312,7 @@ static void date_of(int64_t day, int64_t *year, int *month, int *date)
 
 void api_out_time(api_out *out, double seconds)
 {
-    /* ISO 8601 has no such string for other years than those of four digits. */
+    /* Years that do not have four digits have no such form in ISO 8601. */
     if (!(seconds > -62167219200.0 && seconds < 253402300799.0)) {
         api_out_null(out);
         return;

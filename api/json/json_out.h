@@ -56,11 +56,12 @@ void api_out_pairs(api_out *out, const uint32_t *ids, size_t count);
 void api_out_vec3(api_out *out, he_vec3 value);
 /* Writes seconds since 1970 UTC as "2026-01-31T12:00:00.000Z". */
 void api_out_time(api_out *out, double seconds);
-/* Reserves space for a whole number that is known later, and returns its position. Every reserved
- * number must be filled, the last one first, before the text is sent. Filling cannot fail. */
+/* Reserves space for a whole number that is known only later, and returns its position. Every
+ * reserved number must be filled in, the last one first, before the text is sent. Filling it in
+ * cannot fail. */
 size_t api_out_later(api_out *out);
 void api_out_fill(api_text *text, size_t at, uint64_t value);
-/* Writes text that is one whole JSON value already. */
+/* Writes a text that is one whole JSON value already. */
 void api_out_raw(api_out *out, const char *json, size_t length);
 
 /* The api_out_key_* functions write a key and its value. */

@@ -62,7 +62,8 @@ bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, ap
     return true;
 }
 
-/* Is this the array of the items, which opened just now? */
+/* Returns true if the array that the lexer has just entered is the one whose items are parsed one
+ * by one. */
 static bool opens_items(const he_lexer *x, const api_items *items)
 {
     const he_lexer_frame *root = &x->frames[0];

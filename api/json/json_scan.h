@@ -1,26 +1,29 @@
-/* json_scan.h - what may stand in a control document, before cJSON reads it.
+/* json_scan.h - checks a control document (a JSON body other than a mesh) before cJSON parses it.
  *
- * The lexer (format/text/json_lexer.h) holds the text to the letter of RFC 8259, which cJSON does
- * not. Here the depth is held to API_MAX_DEPTH, numbers to API_MAX_NUMBER bytes, for cJSON reads no
- * more, and values to a number that says what cJSON's nodes may cost. */
+ * The lexer (format/text/json_lexer.h) enforces the grammar of RFC 8259 exactly, which cJSON does
+ * not. The scan also limits the depth to API_MAX_DEPTH, the length of a number to API_MAX_NUMBER
+ * bytes, because cJSON reads no more, and the number of values, because each costs a node of
+ * cJSON. */
 #ifndef HE_API_JSON_JSON_SCAN_H
 #define HE_API_JSON_JSON_SCAN_H
 
 #include "api/json/json_in.h"
 #include "format/text/json_lexer.h"
 
-/* Scans a whole text. `items` NULL, or with `name` set: the array of that name in the root object
- * is looked for. */
+/* Scans a whole text. `items` may be NULL; otherwise the scan looks for the array called
+ * items->name in the root object. */
 bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits, api_items *items,
                    api_problem *problem);
 
-/* The next token of such a document, whose values are counted in `*values`. */
+/* Reads the next token of a control document, and counts its values in `*values`. */
 bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, api_problem *problem);
 
-/* Refuse the byte `place` of what the client sent. Returns false; the pointer is the caller's. */
+/* Refuses the text because of the byte at offset `place`. Returns false. The caller sets the JSON
+ * pointer of the problem. */
 bool api_json_refuse_at(api_problem *problem, uint64_t place, int code, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Refuse what the lexer found at fault, at the byte `place`, with the pointer of x's place. */
+/* Refuses the text because of the fault that the lexer found at offset `place`, with the JSON
+ * pointer of the value that the lexer is at. */
 bool api_json_refuse_fault(const he_lexer *x, uint64_t place, api_problem *problem);
 
 #endif

@@ -12,7 +12,7 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-/* Does `text` have the word of `length` bytes, between '_' or its ends? */
+/* Returns true if `text` contains the word of `length` bytes, between '_' or its ends. */
 static bool has_word(const char *text, const char *word, size_t length)
 {
     while (true) {

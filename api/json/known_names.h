@@ -1,4 +1,4 @@
-/* known_names.h - a refusal of a name that does not exist says which names do.
+/* known_names.h - the part of a refusal of an unknown name that says which names exist.
  *
  *     api_known_names known = {.wanted = "split_edge"};
  *     for each name that exists {
@@ -18,7 +18,8 @@
 
 enum { API_KNOWN_TEXT = 200 };
 
-/* Begin with .wanted alone set; it is borrowed, and so are the names. */
+/* The names that exist, and the wanted one. It begins with only `wanted` set; all names are
+ * borrowed. */
 typedef struct api_known_names {
     const char *wanted;
     const char *nearest; /* NULL: none is like it */
@@ -33,10 +34,10 @@ void api_known_names_add(api_known_names *known, const char *name);
 /* Lives as long as `known`. */
 const char *api_known_names_text(api_known_names *known);
 
-/* How many letters must be inserted, left out, replaced or exchanged with their neighbour to make
- * one name of the other (optimal string alignment: Boytsov, Indexing methods for approximate
- * dictionary searching, 2011, section 2.1). 1 where both have the same words between '_' in another
- * order. Names of more than 64 bytes are as far away as SIZE_MAX. */
+/* Returns how many letters must be inserted, removed, replaced or exchanged with their neighbour to
+ * turn one name into the other (optimal string alignment: Boytsov, Indexing methods for approximate
+ * dictionary searching, 2011, section 2.1). Returns 1 if both have the same words, separated by
+ * '_', in another order. Returns SIZE_MAX for names of more than 64 bytes. */
 size_t api_name_distance(const char *a, const char *b);
 
 #endif

@@ -14,11 +14,11 @@
 
 /* Writes the materials as a list in the order of their slots. */
 void api_write_materials(api_out *out, const he_materials *materials);
-/* Reads three numbers, or up to `most`, each at least 0; `count` is how many there were. */
+/* Reads an array of three numbers, or up to `most`, each at least 0; `count` gets their number. */
 bool api_read_color(const api_in *in, size_t most, double color[4], size_t *count);
 /* Adds the materials of an array to an empty table.
- * Returns false with the pointer of the member: bad_value and so on for what is no valid material,
- * duplicate_member for a name used twice, limit_exceeded for more than HE_MATERIALS. */
+ * Returns false with the pointer of the member at fault: bad_value and similar codes for an invalid
+ * material, duplicate_member for a name used twice, limit_exceeded for more than HE_MATERIALS. */
 bool api_read_materials(const api_in *in, he_materials *out);
 
 #endif

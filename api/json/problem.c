@@ -21,8 +21,8 @@ static const code_row rows[API_CODE_COUNT - HE_STATUS_COUNT] = {
 #undef CODE_ROW
 };
 
-/* The HTTP status of core's refusals. Refusals that are not listed are about topology: 422, with
- * the rule as the title. */
+/* The HTTP status of each refusal of core. Refusals that are not listed are about topology: they
+ * get 422, and their title is the rule. */
 static const struct {
     int http;
     const char *explanation;
@@ -136,7 +136,7 @@ int api_code_find(const char *slug)
     return -1;
 }
 
-/* Truncates at the end of a character if the text did not fit. */
+/* Cuts a text that did not fit into its buffer at the end of a UTF-8 character. */
 static void end_whole(char *text, size_t size, int wanted)
 {
     if (wanted < 0) {

@@ -11,7 +11,7 @@
 #include "build/build.h"
 #include "store/durability_wait.h"
 
-/* X(constant, slug, HTTP status, title, explanation) */
+/* Each row: X(constant, slug, HTTP status, title, explanation) */
 #define API_CODE_MAP(X)                                                                            \
     /* the body */                                                                                 \
     X(MALFORMED_JSON, "malformed_json", 400, "The body is not the JSON it should be",              \
@@ -273,20 +273,24 @@ int api_code_http(int code);
 int api_code_find(const char *slug);
 
 /* Both fill `problem` from scratch; no argument may be NULL. They return false, so that a refusal
- * is one statement. The first problem wins: a problem that is filled already is not changed. */
+ * is one statement. If `problem` is filled already, it is not changed: the first problem is
+ * reported. */
 bool api_problem_set(api_problem *problem, int code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Fills the problem from a refusal of core about a body: missing elements give 422. */
+/* Fills the problem from a refusal of core about a body; elements that do not exist give the status
+ * 422. */
 bool api_problem_set_core(api_problem *problem, const he_error *err);
-/* Fills the problem from a refusal of core about the path: missing elements give 404 or 410. */
+/* Fills the problem from a refusal of core about the path; elements that do not exist give the
+ * status 404 or 410. */
 bool api_problem_set_path(api_problem *problem, const he_error *err);
-/* Refuses an answer whose content did not become durable; `wait` has the reason. `changed`: the
- * request itself made the change that was lost. */
+/* Refuses an answer because its content did not become durable; `wait` has the reason. `changed`
+ * says that the request itself made the change that was lost. */
 bool api_problem_set_lost(api_problem *problem, const st_wait *wait, bool changed);
 void api_problem_set_pointer(api_problem *problem, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Names the repairs with which the body would pass, as a member and in `detail`. */
+/* Adds to a problem the names of the repairs with which the body would be accepted, as a member and
+ * in `detail`. */
 void api_problem_set_repairs(api_problem *problem, unsigned repairs);
 
 /* Writes the place of a defect in a mesh document: "/faces/3/1". */
@@ -294,13 +298,13 @@ enum { API_DEFECT_POINTER = 40 };
 void api_defect_pointer(const he_defect *defect, char out[API_DEFECT_POINTER]);
 
 int api_problem_http(const api_problem *problem);
-/* Returns the value of Retry-After, in `out` or as a literal, or NULL where waiting does not
+/* Returns the value of the header Retry-After, in `out` or as a literal; NULL if waiting does not
  * help. */
 enum { API_RETRY = 24 };
 const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
-/* Appends the JSON object to `text`; `request_id` may be NULL. */
+/* Appends the problem as a JSON object to `text`; `request_id` may be NULL. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
-/* Writes the page at /problems/{code}. */
+/* Writes the HTML page that explains a code, served at /problems/{code}. */
 void api_problem_page(int code, api_text *text);
 
 #endif

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The answer about one element fits, so that the buffer rarely has to grow. */
+/* The first size of a text. The answer about one element fits into it, so the buffer rarely has to
+ * grow. */
 enum { FIRST_BYTES = 512 };
 
 void api_text_clear(api_text *text)

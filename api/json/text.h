@@ -34,7 +34,7 @@ static inline void api_text_add_char(api_text *text, char c)
         api_text_add(text, &c, 1);
     }
 }
-/* Appends text for an HTML page, with & < > " ' escaped. */
+/* Appends a string to an HTML page, with & < > " ' escaped. */
 void api_text_add_html(api_text *text, const char *string);
 
 #endif

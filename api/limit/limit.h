@@ -37,29 +37,30 @@ typedef enum api_limit {
         API_LIMIT_COUNT
 } api_limit;
 
-/* The largest values allowed. */
+/* The largest values that limits may have. */
 #define API_LIMIT_MOST       UINT64_C(1000000000)
 #define API_LIMIT_MOST_BYTES (UINT64_C(1) << 40)
 
 /* The largest burst: how many seconds' worth of requests and bytes a bucket may hold. */
 enum { API_BURST_MOST = 3600 };
 
-/* Buckets of requests and bytes that are kept at one time: rate.h. */
+/* The number of buckets for the rates of requests and bytes (rate.h) that are kept at one time, of
+ * tokens and of addresses. */
 enum { API_TOKEN_RATES = 8192, API_ADDRESS_RATES = 65536 };
 
-/* Indexed by api_limit; 0: no limit. */
+/* The limits of one client, indexed by api_limit; 0 is no limit. */
 typedef struct api_limits {
     uint64_t most[API_LIMIT_COUNT];
 } api_limits;
 
-/* Returns the name in the file of tokens and in metrics, such as "requests". */
+/* Returns the name of a limit in the file of tokens and in metrics, such as "requests". */
 const char *api_limit_name(api_limit limit);
 /* Is it counted in bytes? */
 bool api_limit_is_bytes(api_limit limit);
 /* May a token have it? */
 bool api_limit_is_of_token(api_limit limit);
 
-/* Parses a whole number; if `bytes`, K, M, G or T may follow (powers of 1024). */
+/* Parses a whole number. If `bytes` is set, K, M, G or T may follow it (powers of 1024). */
 bool api_amount_parse(const char *text, size_t length, bool bytes, uint64_t *out);
 
 /* Counts the requests and connections that each limit has refused since the start, separately for
@@ -76,7 +77,7 @@ typedef struct api_limited {
 
 void api_limited_count(api_limited *limited, api_client_kind kind, api_limit limit);
 uint64_t api_limited_get(const api_limited *limited, api_client_kind kind, api_limit limit);
-/* Returns "token" or "address". */
+/* Returns the name of a kind of client: "token" or "address". */
 const char *api_client_kind_name(api_client_kind kind);
 
 #endif

@@ -89,7 +89,7 @@ static void link_newest(api_rates *rates, uint32_t index)
     rates->newest = index;
 }
 
-/* Returns the bucket whose eviction loses least; there must be one. */
+/* Returns the bucket whose eviction loses least. The table must have a bucket. */
 static uint32_t choose_old(const api_rates *rates, uint64_t now)
 {
     uint32_t index = rates->oldest;
@@ -117,7 +117,7 @@ static uint32_t take_place(api_rates *rates, uint64_t now)
     return index;
 }
 
-/* Makes it the most recently used one. */
+/* Finds the bucket of a client or adds one, and makes it the most recently used one. */
 static bucket *find_or_add(api_rates *rates, const api_rate_key *key, uint64_t now)
 {
     uint32_t *head = head_of(rates, key), index = *head;
@@ -153,13 +153,15 @@ static uint64_t quotient_up(uint64_t a, uint64_t b)
     return a / b + (a % b != 0 ? 1 : 0);
 }
 
-/* Returns the microseconds until so many millionths are filled again, at `rate` units a second. */
+/* Returns the microseconds until `millionths` of a unit are filled again, at `rate` units a
+ * second. */
 static uint64_t time_to_fill(uint64_t millionths, uint64_t rate)
 {
     return rate == 0 ? 0 : quotient_up(millionths, rate);
 }
 
-/* Without a limit a bucket is full at once, so that it starts full if it gets a limit later. */
+/* Fills a bucket for the time that has passed. A bucket without a limit becomes full at once, so
+ * that it starts full if it gets a limit later. */
 static void fill(bucket *b, const api_rate *rate, uint64_t now)
 {
     const uint64_t rates[AMOUNTS] = {rate->requests, rate->bytes};
@@ -232,7 +234,8 @@ size_t api_rates_count(api_rates *rates)
 
 /* --- fields --- */
 
-/* Written without printf, because every answer has these fields. */
+/* Appends a text to a header field. It is written without printf, because every answer has these
+ * fields. */
 static char *add_text(char *to, const char *text)
 {
     size_t length = strlen(text);
@@ -240,7 +243,7 @@ static char *add_text(char *to, const char *text)
     return to + length;
 }
 
-/* Structured fields have integers of up to 15 digits. */
+/* Appends a number to a header field. Structured fields allow integers of up to 15 digits. */
 static char *add_number(char *to, uint64_t number)
 {
     const uint64_t most = UINT64_C(999999999999999);

@@ -27,18 +27,19 @@ enum { API_RATE_LOOKS = 8 };
 
 typedef struct api_rates api_rates;
 
-/* Identifies the client of a bucket; it is unique. */
+/* Identifies the client whose bucket it is; no two clients have the same key. */
 typedef struct api_rate_key {
     uint64_t words[2];
 } api_rate_key;
 
-/* 0 requests or bytes: no limit. `seconds` is at least 1. */
+/* The rates that a client may have; 0 requests or bytes is no limit. `seconds`, the size of the
+ * bucket, is at least 1. */
 typedef struct api_rate {
     uint64_t requests, bytes; /* per second */
     uint64_t seconds;         /* seconds' worth of either that the bucket holds */
 } api_rate;
 
-/* The state of one of the two amounts. */
+/* What is left of one of the two amounts, requests or bytes. */
 typedef struct api_rate_left {
     uint64_t left;  /* available now */
     uint64_t reset; /* seconds until the bucket is full, rounded up */
@@ -49,7 +50,7 @@ typedef struct api_rate_state {
     api_rate_left requests, bytes; /* an amount without a limit is 0 */
 } api_rate_state;
 
-/* Returns NULL when memory is out. */
+/* Makes a table for `capacity` clients. Returns NULL when memory is out. */
 api_rates *api_rates_new(size_t capacity);
 void api_rates_free(api_rates *rates);
 
@@ -57,7 +58,7 @@ void api_rates_free(api_rates *rates);
  * sets `wait` in the part of `out` that refused it, or in both. */
 bool api_rates_admit(api_rates *rates, const api_rate_key *key, const api_rate *rate, uint64_t now,
                      api_rate_state *out);
-/* Takes bytes, even if fewer are left. */
+/* Takes bytes from the client's bucket, even if fewer are left. */
 void api_rates_charge(api_rates *rates, const api_rate_key *key, const api_rate *rate,
                       uint64_t bytes, uint64_t now);
 /* Returns the number of clients with a bucket. */

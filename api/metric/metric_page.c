@@ -39,7 +39,8 @@ static void put_value(api_text *text, const char *value)
     }
 }
 
-/* Writes {method="GET",route="/"}; `bound` is the value of "le", or NULL. */
+/* Writes the labels of a sample, such as {method="GET",route="/"}; `bound` is the value of the
+ * label "le", or NULL. */
 static void put_labels(const api_metric_page *page, const char *const *values, const char *bound)
 {
     api_text *text = page->text;

@@ -46,9 +46,11 @@ typedef struct api_metric_page {
 enum { API_METRIC_LABELS = 3 };
 
 void api_metric_begin(api_metric_page *page, api_metric_id id);
-/* Writes a sample. `values` has one for each label of the row; NULL if it has none. */
+/* Writes a sample of a metric. `values` has a value for each label of the metric's row; NULL if it
+ * has no labels. */
 void api_metric_put(api_metric_page *page, const char *const *values, double number);
-/* Writes a histogram. Its values were counted by `scale`; `unit` of them are 1 on the page. */
+/* Writes a histogram. `scale` says how its values were counted; `unit` of these values are 1 on the
+ * page. */
 void api_metric_put_histogram(api_metric_page *page, const char *const *values,
                               const st_distribution *distribution, const uint64_t scale[ST_BOUNDS],
                               double unit);

@@ -7,7 +7,7 @@
 #ifndef HE_API_METRIC_METRIC_ROWS_H
 #define HE_API_METRIC_METRIC_ROWS_H
 
-/* X(constant, name, type, labels separated by commas, meaning) */
+/* Each row: X(constant, name, type, labels separated by commas, meaning) */
 #define API_METRIC_MAP(X)                                                                          \
     /* requests */                                                                                 \
     X(REQUESTS, "hedge_http_requests_total", COUNTER, "method,route,status",                       \

@@ -8,8 +8,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* The parts of one table of counters: those without labels; problems by code; edits by operation
- * and result; and for each series and class the buckets of a histogram and its sum. */
+/* Where the parts of the table of counters begin: those without labels; problems by code; edits by
+ * operation and result; and for each series and class the buckets of a histogram and its sum. */
 enum {
     PROBLEMS = API_COUNTERS,
     EDITS = PROBLEMS + API_CODE_COUNT,
@@ -90,7 +90,7 @@ static size_t series_at(const api_metrics *metrics, int route, api_method method
 void api_count_request(api_metrics *metrics, const api_served *served)
 {
     st_counters *counters = metrics->counters;
-    /* A row counts its own method; HEAD is counted separately. */
+    /* A row of the table of routes counts its own method and, separately, HEAD. */
     const api_method method = served->route == API_NO_ROUTE ? method_of(served->method)
                               : served->method[0] == 'H'    ? API_METHOD_HEAD
                                                             : API_METHOD_OTHER;

@@ -16,7 +16,7 @@
 
 typedef struct api_metrics api_metrics;
 
-/* Makes counters for a table of this many routes, all zero. Returns NULL when memory is out. */
+/* Makes counters for a table of `routes` routes, all zero. Returns NULL when memory is out. */
 api_metrics *api_metrics_new(size_t routes);
 void api_metrics_free(api_metrics *metrics); /* takes NULL */
 
@@ -36,7 +36,7 @@ typedef enum api_method {
 
 const char *api_method_name(api_method method); /* returns "other" for API_METHOD_OTHER */
 
-/* Classes of statuses; 1xx is no final answer. */
+/* The classes of HTTP statuses. 1xx is missing, because it is no final answer. */
 typedef enum api_class {
     API_CLASS_NONE, /* there was no answer */
     API_CLASS_2XX,
@@ -48,8 +48,9 @@ typedef enum api_class {
 
 const char *api_class_name(api_class of);
 
-/* Requests are counted by series. A row of the table of routes has one series for its own method
- * and one for HEAD; requests that match no row belong to a series of their method. */
+/* The index that stands for requests that match no route. Requests are counted by series: a row of
+ * the table of routes has one series for its own method and one for HEAD; requests that match no
+ * row belong to a series of their method. */
 enum { API_NO_ROUTE = -1 };
 
 /* A request that ended. */
@@ -63,11 +64,12 @@ typedef struct api_served {
 
 void api_count_request(api_metrics *metrics, const api_served *served);
 
-/* Returns the statistics of requests that matched a row with its own method or HEAD, or (`route` is
- * API_NO_ROUTE) matched no row with this method, and were answered in this class. */
+/* Gets the statistics of a series and class of statuses. The series are the requests that matched
+ * row `route` with its own method or with HEAD, or, if `route` is API_NO_ROUTE, those that matched
+ * no row with this method. */
 void api_requests_counted(const api_metrics *metrics, int route, api_method method, api_class of,
                           st_distribution *out);
-/* Returns the number of requests with this problem. */
+/* Returns the number of requests that were refused with this code. */
 uint64_t api_problems_counted(const api_metrics *metrics, int code);
 
 /* --- edits --- */
@@ -79,14 +81,15 @@ typedef enum api_edit_result {
     API_EDIT_RESULTS
 } api_edit_result;
 
-/* Operations are numbered as by he_op_at; undo and redo follow the highest possible number. */
+/* The numbers of operations are those of he_op_at; undo and redo follow the highest possible
+ * number. */
 enum { API_MOST_OPERATIONS = 64, API_UNDO = API_MOST_OPERATIONS, API_REDO, API_OPERATIONS };
 
-/* Counts `count` operations with this number and result. */
+/* Counts `count` operations that have this number and result. */
 void api_count_edits(api_metrics *metrics, size_t number, api_edit_result result, uint64_t count);
 uint64_t api_edits_counted(const api_metrics *metrics, size_t number, api_edit_result result);
 
-/* --- counters without route or operation --- */
+/* --- counters that have neither a route nor an operation --- */
 
 typedef enum api_counter {
     API_COUNT_BEGUN, /* requests */
@@ -108,7 +111,7 @@ typedef enum api_counter {
 void api_count(api_metrics *metrics, api_counter which);
 uint64_t api_counted(const api_metrics *metrics, api_counter which);
 
-/* Sets the maximum number of connections; 0 until the server calls it. */
+/* Sets the maximum number of connections, which is 0 until the server calls this. */
 void api_set_connection_limit(api_metrics *metrics, uint64_t limit);
 uint64_t api_connection_limit(const api_metrics *metrics);
 

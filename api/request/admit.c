@@ -131,8 +131,9 @@ static bool check_variables(api_exchange *x, const api_variables *variables)
     return true;
 }
 
-/* Any page can make a browser send such a request, by an image or a link. The page cannot read the
- * answer, but the server would have to compute it. */
+/* Returns true if the request comes from a page of another site. Any page can make a browser send
+ * such a request, by an image or a link. The page cannot read the answer, but the server would have
+ * to compute it. */
 static bool is_of_other_site(const api_exchange *x)
 {
     const char *site = x->request.headers[API_HEADER_SEC_FETCH_SITE];
@@ -156,8 +157,8 @@ static bool refuse_path(api_exchange *x, const api_path *path)
     return api_fail(x, API_NO_SUCH_ROUTE, "\"%.50s\" is none of %s", missed, list);
 }
 
-/* A path with one '/' too many at its end, such as "/docs/": a GET of the path without it is where
- * the client is sent. The reference is relative, so that it holds behind a proxy that adds a
+/* Redirects a GET whose path has one '/' too many at its end, such as "/docs/", to the path without
+ * it. The reference in Location is relative, so that it is correct behind a proxy that adds a
  * prefix. */
 static bool redirect_to_route(api_exchange *x)
 {
@@ -221,7 +222,8 @@ static bool find_route(api_exchange *x)
     return api_gate_enter(x) && check_variables(x, &variables) && check_query(x);
 }
 
-/* A damaged mesh can be deleted or replaced, nothing else. */
+/* Refuses a request to a mesh that does not exist, or to a damaged one, which can only be deleted
+ * or replaced. */
 static bool take_mesh(api_exchange *x, st_status status)
 {
     bool rids = (x->route->flags & (API_MAY_CREATE | API_INTERRUPTS)) != 0;
@@ -375,8 +377,8 @@ static bool check_body(api_exchange *x)
     if (empty) {
         bool optional =
             x->route->body_kind == API_BODY_NONE || x->route->body_kind == API_BODY_OPTION;
-        /* A form on any page can send an empty body, but only with a form's Content-Type: it is
-         * refused like a body of that type. */
+        /* A form on any page of the web can send an empty body, but only with the Content-Type of a
+         * form. Such a request is refused like one with a body of that type. */
         bool typed = x->route->body_kind == API_BODY_OPTION &&
                      x->request.headers[API_HEADER_CONTENT_TYPE] != NULL && !check_content_type(x);
         return (optional && !typed) || (!typed && api_refuse_empty(x));
@@ -384,7 +386,7 @@ static bool check_body(api_exchange *x)
     if (r->has_length && r->length > api_body_cap(x)) {
         return api_refuse_size(x);
     }
-    /* A body of unknown length may turn out to be empty; it then counts as none. */
+    /* A body of unknown length may turn out to be empty; it then counts as no body. */
     return x->route->body_kind == API_BODY_NONE || (api_coded_body(x) && check_content_type(x));
 }
 

@@ -5,15 +5,15 @@
 
 #include "api/request/exchange.h"
 
-/* Fills the request's part of `x`. Returns false if the request was refused, or answered
- * (OPTIONS). */
+/* Makes these checks and fills the request's part of `x`. Returns false if the request was refused,
+ * or answered (OPTIONS). */
 bool api_admit(api_exchange *x);
 
-/* If x->is_cold, looks for the mesh on disk, as api_admit does in memory. Blocks. Returns false if
- * the request is refused. */
+/* Looks for the mesh on disk if x->is_cold, which means that it is not in memory. Blocks. Returns
+ * false if the request is refused. */
 bool api_load_mesh(api_exchange *x);
-/* If x->is_cold, answers or refuses the request from the stored card of the mesh, without loading
- * the mesh, and returns true if it could. Blocks. */
+/* Tries to answer or refuse a request to a mesh that is not in memory (x->is_cold) from its stored
+ * card (name, revision and counts), without loading the mesh. Returns true if it could. Blocks. */
 bool api_answer_from_card(api_exchange *x);
 
 /* Returns the most bytes that the route's body may have. */

@@ -8,7 +8,8 @@
 
 #include <stdbool.h>
 
-/* X(name, separator): the headers that must be named for a page to read them, in order. */
+/* Each row: X(name, separator), for the headers that must be named so that a page can read them, in
+ * order. */
 #define API_EXPOSED_HEADERS(X)           \
     X("Accept-Encoding", ", ")           \
     X("Accept-Ranges", ", ")             \
@@ -34,11 +35,11 @@
     X("X-Request-Id", ", ")              \
     X("traceparent", "")
 
-/* "Accept-Encoding, Allow, ..." */
+/* The value of Access-Control-Expose-Headers: "Accept-Encoding, Allow, ..." */
 extern const char api_exposed_headers[];
 
-/* Is it a header of the list, one that browsers always show (Cache-Control, Content-Type), or one
- * of CORS (Access-Control-...)? */
+/* Returns true if a header may be sent: it is in the list, or one that browsers always show
+ * (Cache-Control, Content-Type), or one of CORS (Access-Control-...). */
 bool api_header_is_listed(const char *name);
 
 #endif

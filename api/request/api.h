@@ -81,8 +81,8 @@ typedef struct api_answer {
     bool slow;      /* `read` computes for milliseconds: do not call it on a worker */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
-    /* Instead of both: an answer without a known end, and what to send now and then to keep an idle
-     * connection open. NULL: not used. */
+    /* Instead of both, an answer without a known end, and what is sent now and then to keep an idle
+     * connection open. NULL if not used. */
     const api_source *live;
     const char *idle;
     bool close;        /* close the connection after this answer */
@@ -133,8 +133,8 @@ typedef struct api_route_table {
     size_t count;
 } api_route_table;
 
-/* Borrows its arguments: store, rows and pointers in the options outlive the service. Returns NULL
- * when memory is out. */
+/* Makes a service. It borrows its arguments: store, rows and pointers in the options must outlive
+ * it. Returns NULL when memory is out. */
 api_service *api_service_new(st_store *store, api_route_table routes, const api_options *options);
 void api_service_free(api_service *service);
 /* Returns the counters in which the server counts requests and connections; they live as long as
@@ -158,12 +158,12 @@ api_exchange *api_detach(api_exchange *exchange);
 void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
                void *context);
 /* Sets a callback for progress, before api_end: `tell` is called as watch.h says while api_end
- * works on a read. A read that it stops is started again: api_end returns API_WORK. */
+ * works on a read. If `tell` stops a read, the read is started again from its beginning: api_end
+ * returns API_WORK. */
 void api_watch_worker(api_exchange *exchange,
                       bool (*tell)(void *context, const char *phase, double done), void *context);
-/* Sets the problem that the client gets instead of HE_CANCELLED. `tell` calls it before it returns
- * false.
- */
+/* Sets the problem that the client gets instead of HE_CANCELLED. The callback `tell` calls it
+ * before it returns false. */
 void api_give_up(api_exchange *exchange, int code, const char *text);
 /* May the request become a job if its client prefers that? */
 bool api_can_be_job(const api_exchange *exchange);
@@ -173,8 +173,8 @@ const api_answer *api_answer_of(const api_exchange *exchange);
 /* Counts bytes that were transferred, of a body that was not passed to api_body or of the answer,
  * against the limit of the client. */
 void api_charge(api_exchange *exchange, uint64_t bytes);
-/* The fields RateLimit-Policy and RateLimit of a request, for an answer that the server gives in
- * place of the exchange's. Both are "" if the client has no limit. */
+/* The values of the headers RateLimit-Policy and RateLimit for a request, if the server itself
+ * answers in place of the exchange. Both are "" if the client has no limit. */
 typedef struct api_rate_fields {
     char policy[API_RATE_FIELD], left[API_RATE_FIELD];
 } api_rate_fields;
@@ -190,8 +190,8 @@ void api_free(api_exchange *exchange);
  * route, and the problem is the one already in `served`. */
 void api_served_as(const api_service *service, const api_exchange *exchange, api_served *served);
 
-/* Does the whole exchange at once, with the whole body. Returns NULL when memory is out. The caller
- * frees. */
+/* Runs a whole exchange at once, with the whole body, for tests. Returns NULL when memory is out.
+ * The caller frees the exchange. */
 api_exchange *api_handle(api_service *service, const api_request *request, const char *body,
                          size_t length);
 

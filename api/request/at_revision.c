@@ -19,7 +19,7 @@ bool api_at_revision_wanted(api_exchange *x, uint64_t *revision)
     }
     const char *cursor = api_param_text(x, "cursor");
     uint64_t present = x->info.revision, asked = api_param_u64(x, "revision", 0), pinned = 0;
-    /* The reader of the cursor refuses a malformed one. */
+    /* A malformed cursor is refused by api_cursor_pins, which fills the problem. */
     if (cursor != NULL && !api_cursor_pins(cursor, &x->info, &pinned)) {
         return false;
     }

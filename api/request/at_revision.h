@@ -8,10 +8,11 @@
 
 #include "api/request/exchange.h"
 
-/* Does the request want another revision than that of x->info? Sets `revision` to it, or to 0 with
- * the problem filled. */
+/* Returns true if the request wants another revision than that of x->info. Sets `revision` to it,
+ * or to 0 with the problem filled. */
 bool api_at_revision_wanted(api_exchange *x, uint64_t *revision);
-/* Returns false with the problem filled if `revision` is 0 or after the present one (404). */
+/* Checks that the mesh can have this revision. Returns false with the problem filled if `revision`
+ * is 0 or after the present one (404). */
 bool api_at_revision_may(api_exchange *x, uint64_t revision);
 /* Takes the mesh as it was at that revision. It may copy and replay, so do not call it on a worker.
  * Returns false with the problem filled (410, 507). */

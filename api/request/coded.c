@@ -16,7 +16,8 @@ bool api_coded_body(api_exchange *x)
 
 static const api_codings only_identity = {.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
 
-/* Events are small and must not wait in a compressor. */
+/* Returns true if the route answers with a stream of events, which are small and must not wait in a
+ * compressor. */
 static bool is_stream(const api_route *route)
 {
     return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
@@ -57,7 +58,7 @@ static api_header *find_header(api_exchange *x, const char *name)
     return NULL;
 }
 
-/* Types that are compressed already. */
+/* Returns true if the answer has a media type that is compressed already. */
 static bool is_packed(api_exchange *x)
 {
     static const char *const types[] = {"image/png", "image/jpeg", "image/webp", "font/woff2"};

@@ -12,13 +12,13 @@
 
 #include "api/request/exchange.h"
 
-/* Fills x->coding_in for a request with a body, or refuses with 415. */
+/* Reads how the body is compressed into x->coding_in, or refuses with 415. */
 bool api_coded_body(api_exchange *x);
-/* Fills x->codings, or refuses with 406. */
+/* Reads which codings the client accepts into x->codings, or refuses with 406. */
 bool api_coded_accept(api_exchange *x);
 /* Does the answer depend on Accept-Encoding? */
 bool api_coded_varies(const api_exchange *x);
-/* Compresses the complete answer. Without memory for that it stays uncompressed. */
+/* Compresses the complete answer. If there is no memory for that, the answer stays uncompressed. */
 void api_coded_answer(api_exchange *x);
 
 #endif

@@ -240,7 +240,8 @@ static bool read_expected(const api_in *expected, uint64_t *revision)
     return expected == NULL || api_in_u64(expected, 1, (uint64_t)1 << 53, revision);
 }
 
-/* Even a refusal waits until the state that it reports is durable. */
+/* Handles the result of beginning a write. Even a refusal waits until the state that it reports is
+ * durable. */
 static bool write_began(api_exchange *x, st_status status)
 {
     x->info = x->write.info;
@@ -273,8 +274,8 @@ bool api_write_claim(api_exchange *x, const api_in *expected)
     const st_cause cause = api_cause(x);
     return read_expected(expected, &revision) &&
            write_began(x, st_write_claim(x->mesh, &cause, &x->write)) &&
-           /* If they hold now, they hold until the claim ends: no other write can change the
-            * mesh. */
+           /* If the preconditions hold now, they hold until the claim ends, because no other write
+            * can change the mesh. */
            api_preconditions_hold(x, expected == NULL ? NULL : &revision);
 }
 

@@ -152,7 +152,7 @@ const char *api_param_text(const api_exchange *x, const char *name); /* NULL whe
 bool api_param_flag(const api_exchange *x, const char *name);        /* false when absent */
 uint64_t api_param_u64(const api_exchange *x, const char *name, uint64_t fallback);
 double api_param_number(const api_exchange *x, const char *name, double fallback);
-/* index of the choice, -1 when absent */
+/* Returns the index of the choice, -1 if the parameter is absent. */
 int api_param_choice(const api_exchange *x, const char *name);
 /* Returns a bit set of the choices that are named. */
 unsigned api_param_choices(const api_exchange *x, const char *name);
@@ -169,8 +169,9 @@ bool api_write_begin(api_exchange *x, const api_in *expected);
 /* Begins x->write as a claim, for a long edit that works without the lock (store/write.h). The
  * exchange ends it if the handler did not. */
 bool api_write_claim(api_exchange *x, const api_in *expected);
-/* Commits x->write and publishes 204 (api_publish). Returns false with the problem filled and
- * nothing changed if the journal has no space, or if a claimed mesh was deleted meanwhile. */
+/* Commits x->write. From then on the client gets at least 204, even if the answer fails
+ * (api_publish). Returns false with the problem filled and nothing changed if the journal has no
+ * space, or if a claimed mesh was deleted meanwhile. */
 bool api_write_commit(api_exchange *x, const char *ops);
 /* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
@@ -179,12 +180,13 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
 bool api_precondition_absent(api_exchange *x);
 
 /* --- work --- */
-/* Runs `handler` instead of the present one, on a thread that may block. Call it before taking a
- * lock, then return. In api_work it runs at once. */
+/* Makes `handler` run instead of the present handler, on a thread that may block. The present one
+ * must call it before it takes a lock, and then return. In api_work `handler` runs at once. */
 void api_defer(api_exchange *x, void (*handler)(api_exchange *x));
-/* Defers work that may be long. It becomes a job if the client prefers that, or if `seconds` exceed
- * its patience; otherwise it is deferred if `costly`, or called at once. The route must have
- * API_LONG. Handlers that read leave this to mesh_access.h. */
+/* Runs `handler`, whose work may be long. It becomes a job if the client prefers that, or if
+ * `seconds` exceeds the client's patience; otherwise it is deferred to a thread that may block if
+ * `costly` is set, or called at once. The route must have API_LONG. Handlers that read leave this
+ * to mesh_access.h. */
 void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly, double seconds);
 /* Returns the seconds that the client will wait; longer work becomes a job. Negative: all work
  * becomes a job. HUGE_VAL: no work can. */
@@ -207,7 +209,7 @@ void api_publish(api_exchange *x, int status);
 /* Answers with the text that x->out wrote, as application/json or as another type. */
 void api_answer_json(api_exchange *x, int status);
 void api_answer_text(api_exchange *x, int status, const char *type);
-/* Answers with bytes that live as long as the service or the exchange. */
+/* Answers with bytes that must stay valid as long as the service or the exchange. */
 void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
                       size_t length);
 void api_answer_empty(api_exchange *x, int status); /* without a body: 204 and others */
@@ -217,10 +219,12 @@ bool api_answer_minimal(api_exchange *x);
 void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
                        int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
                        void (*free_stream)(void *stream));
-/* Answers with a blob, which it takes if the blob has `free`. A job keeps it as it is. */
+/* Answers with a blob, which it takes if the blob has a function `free`. A job keeps the blob
+ * without copying it. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
-/* Answers without a known end, while the token is valid. Takes `source`, freed with the exchange.
- * `idle` is a literal. */
+/* Answers with a stream without a known end, which is sent while the token is valid. Takes `source`
+ * and frees it with the exchange. `idle`, which is sent to keep an idle connection open, must be a
+ * literal. */
 void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
                      const char *idle);
 /* Sets a header of the answer, replacing one with this name; `value` is copied. Call it before or

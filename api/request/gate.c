@@ -21,7 +21,8 @@ static size_t read_bearer(const char *header, const char **text)
     return strcspn(*text, " \t");
 }
 
-/* Counts the attempt for the address, so that guessing tokens is limited like other requests. */
+/* Refuses a request without a valid token. The attempt is counted for the client's address, so that
+ * guessing tokens is limited like other requests. */
 static bool refuse_unknown(api_exchange *x, bool has_token)
 {
     if (!api_rating_enter(x)) {
@@ -40,7 +41,8 @@ static bool refuse_role(api_exchange *x, api_role needed)
     return false;
 }
 
-/* A dry run is a read, but the server knows only from the body that it is one. */
+/* Returns true if the token may do a dry run of this write. A dry run is a read, but the server
+ * knows only from the body that it is one. */
 static bool may_rehearse(const api_exchange *x)
 {
     return (x->route->flags & API_REHEARSED) != 0 && api_role_allows(x->token->role, API_ROLE_READ);
@@ -53,7 +55,8 @@ const char *api_gate_ticket(const char *query)
     return strncmp(last, API_TICKET, strlen(API_TICKET)) == 0 ? last : NULL;
 }
 
-/* Removes the ticket from the query: the ticket was made for the rest. */
+/* Finds the token by the ticket in the query, and removes the ticket from the query, because it was
+ * made for the rest of the query. */
 static bool take_ticket(api_exchange *x, const char *ticket)
 {
     const char *path = x->request.path, *query = x->request.query;
@@ -71,7 +74,7 @@ static bool take_ticket(api_exchange *x, const char *ticket)
            refuse_unknown(x, true);
 }
 
-/* Nothing may follow the token. */
+/* Finds the token by the header Authorization. */
 static bool take_bearer(api_exchange *x, const char *header)
 {
     const char *text;

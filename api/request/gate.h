@@ -21,10 +21,12 @@
 bool api_gate_enter(api_exchange *x);
 /* Returns false if the token may not see a mesh with this id, whether or not it exists. */
 bool api_gate_sees(const api_exchange *x, const char *mesh);
-/* Returns false with the problem filled. */
+/* Checks that the token may make a mesh with this id. Returns false with the problem filled if
+ * not. */
 bool api_gate_may_create(api_exchange *x, const char *mesh);
-/* Returns false with the problem filled. A handler calls it when it knows that its request is no
- * dry run; the commit calls it once more. */
+/* Checks that the token may change the store. Returns false with the problem filled if it may only
+ * make dry runs. A handler calls it when it knows that its request is no dry run; the commit calls
+ * it once more. */
 bool api_gate_may_change(api_exchange *x);
 
 /* A ticket (api/token/tickets.h) is the last parameter of the query and replaces the Authorization

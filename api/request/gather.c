@@ -1,6 +1,7 @@
 #include "api/request/gather.h"
 
-/* Bytes between two polls of the watch; an answer of known length is read at once. */
+/* The number of bytes that are read between two polls of the watch; an answer of known length is
+ * read at once. */
 enum { PIECE = 256 * 1024 };
 
 static bool read_piece(api_exchange *x, bool *ended)
@@ -34,7 +35,7 @@ void api_gather(api_exchange *x)
         api_fail_core(x, &err);
         return;
     }
-    /* One piece more, for the last read, which finds the end. */
+    /* The room is one piece larger than the answer, for the last read, which finds the end. */
     if (expected > 0 && api_text_room(&x->text, (size_t)expected + PIECE) == NULL) {
         api_fail_memory(x);
         return;

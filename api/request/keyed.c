@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* Includes the terminating 0, so that two texts never hash like their concatenation. */
+/* Adds a text to the hash with its terminating 0, so that two texts never hash like their
+ * concatenation. */
 static void add_text(he_siphash *hash, const char *text)
 {
     he_siphash_add(hash, text == NULL ? "" : text, (text == NULL ? 0 : strlen(text)) + 1);
@@ -53,7 +54,7 @@ void api_keyed_body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* The representation in the ETag of the route's answers. */
+/* Returns the word for the representation in the ETag of the route's answers. */
 static const char *representation_of(const api_route *route)
 {
     if (route->flags & API_KEYED_NEW || strcmp(route->path, "/v1/meshes/{mesh}") == 0) {
@@ -62,7 +63,8 @@ static const char *representation_of(const api_route *route)
     return strstr(route->path, "/attributes/") != NULL ? "attribute" : "edits";
 }
 
-/* The mesh is checked again: the token's prefixes may have changed since it made the mesh. */
+/* Sends the answer that was kept. It checks again whether the token may see the mesh, because the
+ * token's prefixes may have changed since it made the mesh. */
 static void replay(api_exchange *x)
 {
     const st_kept *kept = st_keyed_answer(x->keyed);
@@ -132,8 +134,8 @@ static const char *header_of_answer(const api_exchange *x, const char *name)
     return "";
 }
 
-/* If no record of a change holds the key, the request gets a record of its own, and the answer
- * waits for it. */
+/* Stores the key if no record of a change holds it: the request gets a record of its own, and the
+ * answer waits for it. */
 static void note_unchanged(api_exchange *x, st_kept *kept)
 {
     st_keyed_note(x->store, x->keyed, &x->info, &x->noted);

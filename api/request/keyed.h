@@ -17,16 +17,18 @@
 
 #include "api/request/exchange.h"
 
-/* Checks the header and begins the hash, after the route was found. */
+/* Checks the header Idempotency-Key and begins the hash of the request, after the route was
+ * found. */
 bool api_keyed_begin(api_exchange *x);
 void api_keyed_body(api_exchange *x, const char *bytes, size_t length);
-/* Adds bytes to the hash. The reader of multipart/form-data calls it with the files, not their
- * delimiters. */
+/* Adds bytes of the body to the hash. The reader of multipart/form-data calls it with the files,
+ * not their delimiters. */
 void api_keyed_add(api_exchange *x, const char *bytes, size_t length);
-/* Looks up the key, before the handler. Returns false if the handler must not run: the kept answer
- * was sent, or the request refused. */
+/* Looks up the key before the handler runs. Returns false if the handler must not run: the answer
+ * kept under the key was sent, or the request refused. */
 bool api_keyed_find(api_exchange *x);
-/* Keeps the complete answer, or releases the key. */
+/* Keeps the complete answer under the key; or releases the key if the request was refused or
+ * failed. */
 void api_keyed_settle(api_exchange *x);
 
 #endif

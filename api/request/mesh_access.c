@@ -32,7 +32,7 @@ static bool lock(api_exchange *x)
     return is_there(x);
 }
 
-/* Releases the snapshot or the shared lock. */
+/* Releases the snapshot or the shared lock on the mesh that the handler has read. */
 static void give_back(api_exchange *x)
 {
     if (x->content != NULL && x->snapshot == NULL) {
@@ -45,7 +45,7 @@ static void give_back(api_exchange *x)
     x->content = NULL;
 }
 
-/* Replaces the lock by a snapshot. */
+/* Replaces the shared lock on the mesh by a snapshot of it. */
 static bool take_snapshot(api_exchange *x)
 {
     st_status status = st_snapshot_held(x->mesh, &x->snapshot);
@@ -66,7 +66,9 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
         return false;
     }
     if (x->phase == API_PHASE_BODY) {
-        /* it may copy and replay; a request that is refused must not become a job */
+        /* Taking an earlier revision may copy the mesh and replay changes, so it is deferred to a
+         * thread that may block. A request that will be refused must not become a job, so this was
+         * checked before. */
         x->deferred = api_read;
         return false;
     }
@@ -77,8 +79,8 @@ static bool take_earlier(api_exchange *x, uint64_t revision)
     return true;
 }
 
-/* With the mesh obtained: shall the handler run on this thread, and does the client not have the
- * answer already? */
+/* Decides, after the mesh was obtained, whether the handler runs on this thread. Returns false if
+ * the work is deferred, or if the client has the answer already. */
 static bool is_read_here(api_exchange *x)
 {
     api_cost cost = {0};
@@ -116,8 +118,8 @@ static bool obtain(api_exchange *x)
     return !copies || take_snapshot(x);
 }
 
-/* Before a write: shall the handler run on this thread? A route that may create its mesh may have
- * none to look at. */
+/* Decides, before a write, whether the handler runs on this thread. A route that may create its
+ * mesh may have no mesh to read. */
 static bool look(api_exchange *x)
 {
     api_cost cost = {0};

@@ -15,9 +15,9 @@
 
 #include "api/request/exchange.h"
 
-/* Obtains what x->reading asks for and runs its handler. A failure fills the problem (404, 410,
- * 507). A representation that the client has already is answered 304. Work that is too costly for a
- * worker, or becomes a job, stores this function in x->deferred. */
+/* Obtains what x->reading says the handler reads, and runs the handler. A failure fills the problem
+ * (404, 410, 507). A representation that the client has already is answered 304. Work that is too
+ * costly for a worker, or becomes a job, stores this function in x->deferred. */
 void api_read(api_exchange *x);
 /* Runs the row's `begin` with the mesh that it reads. */
 void api_read_at_head(api_exchange *x);
@@ -35,7 +35,7 @@ bool api_keep_mesh(api_exchange *x);
 void api_begin_elsewhere(api_exchange *x);
 
 /* --- for `cost` of a row --- */
-/* Cost of a handler that visits the whole mesh. */
+/* Estimates the cost of a handler that visits the whole mesh. */
 bool api_cost_of_mesh(api_exchange *x, const he_mesh *mesh, api_cost *out);
 
 #endif

@@ -4,8 +4,9 @@
 
 #include "api/request/exchange.h"
 
-/* Calls st_create_from for the request, with its key. If `id` is NULL the server chooses one, which
- * begins with the first prefix of the token, if it has prefixes. Takes `content` on success. */
+/* Makes a mesh with st_create_from, with the request's Idempotency-Key. If `id` is NULL the server
+ * chooses one, which begins with the first prefix of the token, if it has prefixes. Takes `content`
+ * on success. */
 st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mesh *content,
                        const st_shown *from, st_mesh **out);
 

@@ -7,10 +7,11 @@
 
 #include "api/request/exchange.h"
 
-/* Takes one request from the client's bucket. Called once, when x->token is known, before anything
- * else of the request is read. Returns false with the problem filled. */
+/* Takes one request from the client's bucket. It is called once, when x->token is known, before
+ * anything else of the request is read. Returns false with the problem filled if the client exceeds
+ * its rate. */
 bool api_rating_enter(api_exchange *x);
-/* Takes bytes of a body or of an answer. */
+/* Takes bytes of a body or of an answer from the client's bucket. */
 void api_rating_charge(api_exchange *x, uint64_t bytes);
 
 #endif

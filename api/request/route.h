@@ -41,12 +41,12 @@ typedef struct api_parameter {
     const char *doc;
 } api_parameter;
 
-/* What a handler reads of the mesh that its path names: see mesh_access.h. */
+/* What a handler reads of the mesh whose id is in the path: see mesh_access.h. */
 typedef enum api_reads {
     API_READS_NONE, /* nothing of the mesh */
     API_READS_CARD, /* x->info without the content */
-    /* for a write: `cost` reads the content, as with LOCKED; it is released before the handler,
-     * which begins a write (exchange.h) */
+    /* Only for a write: `cost` reads the content under the shared lock, which is released before
+     * the handler runs and begins a write (exchange.h). */
     API_READS_BEFORE,
     API_READS_LOCKED,  /* the content under the shared lock: for short work */
     API_READS_VIEW,    /* LOCKED on a worker, SNAPSHOT elsewhere, so that writers need not wait */
@@ -80,7 +80,8 @@ enum {
     API_OWN_ACCEPT = 8, /* the handler evaluates Accept (?format= comes first) */
     API_FIXED = 16,     /* not under /v1: independent of the API version */
     API_KEYED = 32,     /* reads Idempotency-Key; the answer is kept with the mesh: keyed.h */
-    /* reads Idempotency-Key for making a mesh; the answer is kept with the store */
+    /* The handler reads Idempotency-Key for making a mesh; the answer is kept with the store, not
+     * with a mesh. */
     API_KEYED_NEW = 64,
     API_LONG = 128,       /* may become a job: reads Prefer, may answer 202 */
     API_INTERRUPTS = 256, /* allowed during a long edit of the mesh */
@@ -88,10 +89,11 @@ enum {
     API_UNLIMITED = 8192, /* not counted by limits of clients: monitoring must get in */
     /* the answer repeats that of another request, which may have had no tag */
     API_TAG_OF_OTHERS = 4096,
-    /* answers show nothing stored and wait for no journal; neither do those of API_FIXED */
+    /* Answers show nothing that is stored, so they wait for no journal; the same holds for those
+     * with API_FIXED. */
     API_STORELESS = 2048,
-    /* a read whose cost grows with the mesh: refused to pages of other sites, which could make the
-     * server work even if they cannot read the answer */
+    /* A read whose cost grows with the mesh. It is refused to pages of other sites, which could
+     * make the server work even though they cannot read the answer. */
     API_EXPENSIVE = 1024
 };
 
@@ -108,8 +110,8 @@ typedef struct api_route {
     const char *name;     /* operationId */
     he_kind kind;         /* kind of the elements it is about, if any */
     const char *relation; /* relation to read; NULL: the elements themselves */
-    /* Chooses a reader by x->media_in, before the body of an upload. NULL: there is nothing to
-     * choose. */
+    /* Chooses a reader by x->media_in, before the body of an upload arrives. NULL if there is
+     * nothing to choose. */
     void (*begin)(api_exchange *x);
     /* what `begin` reads: NONE; CARD, which is x->info; or LOCKED. If the mesh is absent or not in
      * memory, it reads nothing */
@@ -120,10 +122,9 @@ typedef struct api_route {
      * api_read in the end. */
     bool (*decode)(api_exchange *x);
     void (*run)(api_exchange *x); /* called in api_end or in api_work */
-    /* Handles a mesh that is not in memory, on a thread that may block, with x->info from its card:
-     * answers without loading the mesh, or returns with neither answer nor problem. NULL: the mesh
-     * is loaded.
-     */
+    /* Handles a request to a mesh that is not in memory, on a thread that may block, with x->info
+     * from the mesh's card: answers without loading the mesh, or returns with neither answer nor
+     * problem, and then the mesh is loaded. If it is NULL, the mesh is always loaded. */
     void (*cold)(api_exchange *x, st_cold *cold);
     api_reads reads;
     bool (*cost)(api_exchange *x, const he_mesh *mesh,
@@ -135,11 +136,13 @@ typedef struct api_route {
     const char *const *consumes; /* media types of the body; NULL: none */
     const char *const *produces; /* media types of a success; the first is the default */
     const api_parameter *parameters[API_ROUTE_PARAMETERS]; /* ends in NULL */
-    /* headers beside ETag and Location; ends in NULL */
+    /* The headers that 200 answers of the route may have besides ETag and Location; ends in
+     * NULL. */
     const api_told_header *headers[API_ROUTE_HEADERS];
-    /* all statuses besides those of api_route_common; ends in 0 */
+    /* All statuses of the route besides those of api_route_common; ends in 0. */
     int statuses[API_ROUTE_STATUSES];
-    /* names of OpenAPI component schemas; NULL: no body, or not JSON */
+    /* The names of OpenAPI component schemas of the body and the answer; NULL if there is none or
+     * it is not JSON. */
     const char *request, *response;
     const char *line;    /* schema of one line, where application/x-ndjson is produced */
     const char *summary; /* a few words */

@@ -1,4 +1,5 @@
-/* Finds the row of the table that answers a request, and parses its parameters. */
+/* route_find.c - finds the row of the table of routes that answers a request, and parses its
+ * parameters. */
 #include "api/request/route.h"
 
 #include "base/mem.h"
@@ -28,7 +29,7 @@ bool api_choices_parse(const char *const *choices, const char *list, unsigned *o
 
 /* --- the tree of templates --- */
 
-/* Rows with one path, which differ in the method. */
+/* The most rows of the table that have one path and differ in the method. */
 enum { MOST_METHODS = 5 };
 
 /* One segment of templates, below the segments before it. The children of a node are either
@@ -50,7 +51,7 @@ static bool is_variable(const node *n)
     return n->segment[0] == '{';
 }
 
-/* Returns the letter after the brace, which differs for each variable. */
+/* Returns the letter after the brace of a variable, which differs for each variable. */
 static char letter_of(const node *n)
 {
     return is_variable(n) ? n->segment[1] : '\0';
@@ -61,7 +62,7 @@ static bool is_literal(const node *n, const char *text, size_t length)
     return n->length == length && memcmp(n->segment, text, length) == 0;
 }
 
-/* Returns the child of `parent` with this segment, added if missing. */
+/* Returns the child of `parent` with this segment; adds it if it is missing. */
 static node *find_or_add(api_route_tree *tree, node *parent, const char *segment)
 {
     size_t length = strcspn(segment, "/");
@@ -152,7 +153,7 @@ static bool take_variable(const node *n, const char *segment, api_variables *out
     }
 }
 
-/* Returns the child of `n` that matches the segment, or NULL. */
+/* Returns the child of `n` that matches a segment of the path, or NULL. */
 static const node *step(const node *n, const char *segment, api_variables *out)
 {
     size_t length = strlen(segment);
@@ -166,7 +167,8 @@ static const node *step(const node *n, const char *segment, api_variables *out)
     return child;
 }
 
-/* Follows the path as far as templates match: `*taken` segments. */
+/* Follows the path down the tree as far as templates match; `*taken` gets the number of
+ * segments. */
 static const node *walk(const api_route_tree *tree, const api_path *path, api_variables *out,
                         size_t *taken)
 {
@@ -217,7 +219,7 @@ const api_route *api_route_find(const api_route_tree *tree, const char *method,
     const char *wanted = strcmp(method, "HEAD") == 0 ? "GET" : method;
     const node *n = walk(tree, path, out, &taken);
     allow[0] = '\0';
-    /* Only a {name} may contain a slash. */
+    /* The value of {name}, an attribute's name, is the only one that may contain a slash. */
     if (taken < path->count || (path->has_slash && letter_of(n) != 'n')) {
         return NULL;
     }

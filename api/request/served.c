@@ -1,4 +1,4 @@
-/* Requests are counted by the index of their row when they end. */
+/* served.c - finds the row and the problem of a request that has ended, by which it is counted. */
 #include "api/request/exchange.h"
 
 api_metrics *api_metrics_of(const api_service *service)

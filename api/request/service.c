@@ -13,7 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Always made with tokens: a file of tokens that is read later may set limits. */
+/* Makes the buckets for rates whenever the server has tokens, because a file of tokens that is read
+ * later may set limits. */
 static bool make_rates(api_service *service, const api_options *options)
 {
     const uint64_t *most = options->address_limits.most;
@@ -87,8 +88,8 @@ static bool has_header(const api_exchange *x, const char *name)
     return false;
 }
 
-/* Sets a header of every answer. The values live as long as the exchange or for ever, so this works
- * when memory is out. */
+/* Sets a header of any answer. Its name and value must stay valid as long as the exchange, so that
+ * this needs no memory and works when memory is out. */
 static void put_header(api_exchange *x, const char *name, const char *value)
 {
     if (x->answer.header_count < API_ANSWER_HEADERS && !has_header(x, name)) {
@@ -163,7 +164,8 @@ static void answer_published(api_exchange *x)
     }
 }
 
-/* Several representations share one URL: caches must look at Accept. */
+/* Returns true if the route has several representations under one URL, so that caches must look at
+ * Accept. */
 static bool varies(const api_exchange *x)
 {
     const api_route *route = x->route;
@@ -179,8 +181,8 @@ static void end_claim(api_exchange *x)
     }
 }
 
-/* Whatever problem the interrupted work reported, the client gets the reason of the interruption.
- */
+/* Replaces the problem of work that was interrupted: the client gets the reason of the
+ * interruption. */
 static void end_given_up(api_exchange *x)
 {
     if (x->watch.cancelled && x->problem.code != HE_OK) {
@@ -191,15 +193,15 @@ static void end_given_up(api_exchange *x)
     }
 }
 
-/* The changes that the answer waits for. An answer that is not about one mesh alone may show
- * whether other meshes exist, and so may a refusal. */
+/* Returns the position of the journal that the answer must wait for. An answer that is not about
+ * one mesh alone may show whether other meshes exist, and so may a refusal. */
 static st_shown shown(const api_exchange *x)
 {
     if (x->route == NULL || x->at_gate || (x->route->flags & (API_FIXED | API_STORELESS))) {
         return (st_shown){.position = 0};
     }
     /* Failures of the server itself depend on no mesh. They wait for nothing, so that the client
-     * hears of them and not of another loss with the same cause. */
+     * gets this failure and not another loss with the same cause. */
     if (x->problem.code != HE_OK && api_problem_http(&x->problem) >= 500) {
         return (st_shown){.position = 0};
     }
@@ -256,8 +258,8 @@ static api_step finish(api_exchange *x)
     return API_READY;
 }
 
-/* Answers before the body was read. The connection is closed, so that the rest of the body is not
- * taken for the next request. */
+/* Ends an exchange with an answer before the body was read. The connection is closed, so that the
+ * rest of the body is not taken for the next request. */
 static api_step finish_early(api_exchange *x)
 {
     x->answer.close =
@@ -283,8 +285,9 @@ static bool copy_request(api_exchange *x, const api_request *request)
 
 /* --- detaching --- */
 
-/* The connection is gone when the work reads its headers: preconditions when it publishes, Accept
- * when it answers. Returns false, with nothing changed, when memory is out. */
+/* Copies the headers of the request, because the work reads them when the connection is gone:
+ * preconditions when it publishes, Accept when it answers. Returns false, with nothing changed,
+ * when memory is out. */
 static bool copy_headers(api_exchange *x)
 {
     const char *copies[API_REQUEST_HEADERS] = {NULL};
@@ -556,7 +559,7 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
     return step;
 }
 
-/* Frees the decoder, which may hold megabytes. */
+/* Ends the decompression of the body and frees the decoder, which may hold megabytes. */
 static bool end_coding(api_exchange *x)
 {
     bool good = x->unpack == NULL || api_unpack_end(x->unpack, &x->problem);
@@ -636,7 +639,8 @@ static void parse_and_run(api_exchange *x)
     }
 }
 
-/* Runs the handler with its mesh, if it has one. Decoding a large document may take long, too. */
+/* Goes on with the request: decodes a document, which may take long if it is large, and runs the
+ * handler with its mesh, if it has one. */
 static void go_on(api_exchange *x)
 {
     if (!api_keyed_find(x)) {
@@ -649,8 +653,8 @@ static void go_on(api_exchange *x)
     }
 }
 
-/* The mesh was loaded, and the request goes on as on a worker: a short one reads the mesh under its
- * lock without a copy, a long one continues in this thread. */
+/* Loads the mesh and goes on with the request: a short one reads the mesh under its lock without a
+ * copy, a long one continues in this thread. */
 static void load_and_go_on(api_exchange *x)
 {
     if (api_answer_from_card(x) || !api_load_mesh(x)) {

@@ -20,7 +20,8 @@ typedef struct stream {
     size_t sent; /* bytes sent of it */
 } stream;
 
-/* Before `started` is set no wake is needed, because a read follows anyway. */
+/* Wakes the stream because its token was revoked. Before `started` is set no wake is needed,
+ * because a read follows anyway. */
 static void lose_token(api_token_watch *watch)
 {
     stream *s = (stream *)((char *)watch - offsetof(stream, watch));
@@ -44,7 +45,7 @@ static bool is_between_events(const stream *s)
     return !s->begun || (s->tail[0] == '\n' && s->tail[1] == '\n');
 }
 
-/* Returns how many of the bytes belong to the event that was begun. */
+/* Returns how many of these bytes belong to the event that was begun before them. */
 static size_t rest_of_event(const stream *s, const char *bytes, size_t length)
 {
     char before[2] = {s->tail[0], s->tail[1]};

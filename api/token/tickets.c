@@ -5,7 +5,8 @@
 #include <pthread.h>
 #include <string.h>
 
-/* The two hashes lie side by side, so that one comparison in constant time covers both. */
+/* A ticket. Its two hashes lie side by side, so that one comparison in constant time covers
+ * both. */
 typedef struct ticket {
     unsigned char hashes[2 * API_TOKEN_HASH]; /* hash of the ticket, then of its target */
     double expires;

@@ -42,15 +42,15 @@ enum {
 typedef struct api_token {
     char name[API_TOKEN_NAME + 1];
     api_role role;
-    /* Prefixes of the mesh ids that the token can see, in the order of its line. No prefix: it sees
-     * all. */
+    /* The prefixes of mesh ids that the token can see, in the order of its line in the file.
+     * Without a prefix it sees all meshes. */
     char prefixes[API_TOKEN_PREFIXES][API_TOKEN_PREFIX + 1];
     size_t prefix_count;
     double expires; /* seconds since 1970; HUGE_VAL: never */
     unsigned char hash[API_TOKEN_HASH];
     size_t line; /* its line number in the file */
-    /* Limits set by its line or by the server's options, 0 for none (limit.h). They change when the
-     * file is read again, also for requests that hold the token. */
+    /* The limits set by the token's line in the file or by the server's options, 0 for none
+     * (limit.h). They change when the file is read again, also for requests that hold the token. */
     _Atomic uint64_t limits[API_LIMIT_COUNT];
     unsigned own_limits;   /* bit set: limits that its line sets; the others come from options */
     api_rate_key rate_key; /* key of the rate bucket, made from the token's name */
@@ -61,27 +61,30 @@ typedef struct api_token {
 api_token *api_token_hold(api_token *token); /* takes NULL: no token */
 void api_token_release(api_token *token);    /* takes NULL */
 
-/* Returns "read", "write", "admin", "metrics", or "open" for routes. */
+/* Returns the name of a role: "read", "write", "admin", "metrics", or "open" for routes that
+ * require no token. */
 const char *api_role_name(api_role role);
-/* Does the role `has` include the rights of `needs`? */
+/* Returns true if the role `has` includes the rights of the role `needs`. */
 bool api_role_allows(api_role has, api_role needs);
 
-/* Returns the token's limit, 0 for none. A NULL token has no limits. */
+/* Returns a limit of the token, 0 for none. A NULL token has no limits. */
 uint64_t api_token_limit(const api_token *token, api_limit limit);
 
-/* Is the token neither revoked nor expired? `now` is in seconds since 1970. */
+/* Returns true if the token is neither revoked nor expired. `now` is in seconds since 1970. */
 bool api_token_is_current(const api_token *token, double now);
-/* Compares bytes in constant time. */
+/* Returns true if two byte strings are equal; takes constant time, so that it reveals nothing about
+ * secrets. */
 bool api_token_is_equal(const unsigned char *a, const unsigned char *b, size_t length);
-/* Is this the token's hash? Compares in constant time. */
+/* Returns true if this is the hash of the token. Compares in constant time. */
 bool api_token_matches(const api_token *token, const unsigned char hash[API_TOKEN_HASH]);
-/* Can the token see the mesh with this id? A NULL token (the server asks for none) sees all. */
+/* Returns true if the token can see the mesh with this id. A NULL token, which stands for a server
+ * without tokens, sees all meshes. */
 bool api_token_sees(const api_token *token, const char *mesh);
-/* May the token see a job that the token named `holder` started on the mesh with this id ("": no
- * mesh)? Admins and a NULL token may see all. */
+/* Returns true if the token may see a job that the token named `holder` started on the mesh with
+ * this id ("" for none). Admins and a NULL token may see all jobs. */
 bool api_token_owns(const api_token *token, const char *holder, const char *mesh);
-/* Writes the prefixes in the order of ids, without those that another prefix covers. Returns their
- * number. */
+/* Lists the token's prefixes in the order of ids, without those that another prefix covers. Returns
+ * their number. */
 size_t api_token_ranges(const api_token *token, const char *out[API_TOKEN_PREFIXES]);
 
 void api_token_hash(const char *text, size_t length, unsigned char out[API_TOKEN_HASH]);

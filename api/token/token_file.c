@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-/* A field: bytes of the file. */
+/* One field of a line: bytes of the file. */
 typedef struct word {
     const char *at;
     size_t length;
@@ -125,8 +125,7 @@ static bool read_prefixes(const reader *r, word w, api_token *out)
     return true;
 }
 
-/* Does the word have this shape, where '9' stands for a digit? For example "2027-01-01" or
- * "2027-01-01T12:00:00Z". */
+/* Returns true if the word has a shape such as "9999-99-99", where '9' stands for any digit. */
 static bool has_shape(word w, const char *shape)
 {
     bool good = w.length == strlen(shape);
@@ -145,8 +144,8 @@ static int number_at(word w, size_t at, size_t digits)
     return value;
 }
 
-/* The library normalizes a date that does not exist to another one, which shows that it does
- * not. */
+/* Reads the time at which a token expires. The library turns a date that does not exist into
+ * another date, which shows that it does not exist. */
 static bool read_expiry(const reader *r, word w, api_token *out)
 {
     bool timed = has_shape(w, "9999-99-99T99:99:99Z");
@@ -169,7 +168,7 @@ static bool read_expiry(const reader *r, word w, api_token *out)
     return fail(r, "expires= takes a day or time such as 2027-01-01 or 2027-01-01T12:00:00Z");
 }
 
-/* Optional fields after the first three of a line, each allowed once. */
+/* The optional fields that may follow the first three of a line, each only once. */
 static const struct {
     const char *name;
     bool (*read)(const reader *r, word w, api_token *out);
@@ -234,7 +233,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Returns false at the end of the line. */
+/* Gets the next field of a line. Returns false at the end of the line. */
 static bool next_word(const char **at, const char *end, word *out)
 {
     while (*at < end && is_blank(**at)) {

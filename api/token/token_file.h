@@ -32,7 +32,7 @@ typedef struct api_token_list {
     size_t count;
 } api_token_list;
 
-/* Reads the file into `out`.
+/* Reads the file of tokens into `out`.
  * Returns false with `out` empty and a sentence in `message`, which begins with "line N: " if a
  * line is wrong. A file without tokens is refused: it would lock out every client. */
 bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,
@@ -43,9 +43,10 @@ void api_token_list_clear(api_token_list *list);
 enum { API_TOKEN_SHORT_LINE = 160 };
 void api_token_file_line(const char *name, api_role role, const char *token,
                          char out[API_TOKEN_SHORT_LINE]);
-/* Is the text a valid name: 1 to 64 of A-Z a-z 0-9 . _ -, not beginning like a token? */
+/* Returns true if the text is a valid name: 1 to 64 of A-Z a-z 0-9 . _ -, not beginning like a
+ * token. */
 bool api_token_is_name(const char *text, size_t length);
-/* Returns false if there is no such role. */
+/* Finds a role by its name. Returns false if there is no such role. */
 bool api_role_find(const char *text, size_t length, api_role *out);
 
 #endif

@@ -47,8 +47,8 @@ static uint16_t *bucket_of(api_tokens *tokens, const unsigned char hash[API_TOKE
     return &tokens->heads[word % BUCKETS];
 }
 
-/* Compares all tokens of the bucket, so that the time does not show which one matched. Returns NULL
- * if none does. */
+/* Finds the token with this hash. It compares all tokens of the bucket, so that the time does not
+ * show which one matched. Returns NULL if none does. */
 static api_token *find(api_tokens *tokens, const unsigned char hash[API_TOKEN_HASH])
 {
     api_token *found = NULL;
@@ -82,7 +82,8 @@ static void set_limits(api_token *to, const api_token *line, const api_limits *d
     }
 }
 
-/* Replaces each new token that was there before by the old object, which requests hold. */
+/* Replaces each new token whose line is unchanged by the token object from before, to which
+ * requests hold references. */
 static void keep_known(api_tokens *tokens, api_token_list *fresh)
 {
     for (size_t i = 0; i < fresh->count; i++) {

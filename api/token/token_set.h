@@ -1,4 +1,5 @@
-/* token_set.h - the tokens in force: read by every request, replaced when the file is read again.
+/* token_set.h - the tokens in force: looked up by every request, replaced when the file of tokens
+ * is read again.
  *
  *     file --api_tokens_load--> tokens <--api_tokens_find-- requests
  *                                 |
@@ -36,8 +37,8 @@ size_t api_tokens_count(api_tokens *tokens);
  * false when memory is out. */
 bool api_tokens_all(api_tokens *tokens, api_token_list *out);
 
-/* Returns the token with this text, which the caller releases, or NULL if it is unknown or expired:
- * no answer tells which. */
+/* Returns the token with this text, which the caller releases. Returns NULL if it is unknown or
+ * expired; the two cases are not distinguished, so that answers do not reveal which. */
 api_token *api_tokens_find(api_tokens *tokens, const char *text, size_t length, double now);
 
 /* A callback for the end of a token. `gone` is called at most once, under the lock; it may wake
@@ -48,9 +49,10 @@ typedef struct api_token_watch {
     struct api_token_watch *next, **place; /* `place` is NULL: not watching */
 } api_token_watch;
 
-/* If the token is revoked already, calls `gone` before returning. */
+/* Adds a watch for the end of its token. If the token is revoked already, it calls `gone` before it
+ * returns. */
 void api_tokens_watch(api_tokens *tokens, api_token_watch *watch);
-/* `gone` is not called after this returns. */
+/* Removes a watch. After this function has returned, `gone` is not called. */
 void api_tokens_unwatch(api_tokens *tokens, api_token_watch *watch);
 
 #endif
