@@ -1,7 +1,7 @@
-/* GET .../check: broken invariants, and defects that a valid mesh may have.
+/* check.c - GET .../check: broken invariants, and defects that a valid mesh may have.
  *
- * It visits the mesh several times, so for a large mesh it becomes a job if the client would not
- * wait that long. Self-intersections, the most expensive, are searched for only on request. */
+ * A check visits the mesh several times, so for a large mesh it becomes a job if the client would
+ * not wait that long. Self-intersections, which take longest, are searched for only on request. */
 #include "api/request/handlers.h"
 
 #include "api/ask/spatial.h"
@@ -12,12 +12,12 @@
 #include <assert.h>
 #include <stdio.h>
 
-/* Broken invariants and defects of each code that are named one by one; the rest is only
- * counted. */
+/* The number of broken invariants, and of defects of each code, that are named one by one; the rest
+ * is only counted. */
 enum { NAMED = API_PROBLEM_ELEMENTS };
 static_assert((int)NAMED == HE_DEFECTS_LISTED, "as the document says of both");
 
-/* Share of the other defects in the time, if intersections are searched for. */
+/* The share of the progress for all other defects, if intersections are searched for. */
 static const double FOUND = 0.2;
 
 typedef struct report {
@@ -88,7 +88,7 @@ static void write_problems(api_out *out, const report *r)
     api_out_array_end(out);
 }
 
-/* Writes one sentence about a defect. Returns whether its value is written, too. */
+/* Writes one sentence about a defect. Returns true if the value of the defect is written, too. */
 static bool describe(const he_mesh *m, he_defect_code code, const he_defect_found *d, char *text,
                      size_t size)
 {

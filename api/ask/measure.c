@@ -1,4 +1,4 @@
-/* Measures: {"measure":"dihedral","of":{"edge":3}}, of one element or of many.
+/* measure.c - measures of one element or of many: {"measure":"dihedral","of":{"edge":3}}.
  *
  * Values are numbers or vectors. A missing value is null in JSON and NaN in octets. */
 #include "api/ask/question.h"
@@ -23,11 +23,11 @@ typedef struct measure {
     const char *name;
     unsigned components;
     enum { PLAIN, WEIGHTS, CREASE } option;
-    /* Measures one element; NULL where `many` does that too. */
+    /* Measures one element; NULL if `many` is used for that, too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
-    /* Measures a list, or, if `of` is NULL, all live elements in the order of ids. NULL: they are
-     * measured one by one. `most` limits the squared number of corners of the faces around listed
-     * elements. */
+    /* Measures the listed elements, or, if `of` is NULL, all live elements in the order of ids. If
+     * it is NULL, elements are measured one by one. `most` limits the sum of the squared numbers of
+     * corners of the faces around listed elements. */
     he_status (*many)(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
                       uint64_t most, double *out, he_error *err);
 } measure;
@@ -39,7 +39,7 @@ static void put(he_vec3 v, double *out)
     out[2] = v.z;
 }
 
-/* From an array with an entry for each id, keeps those of live elements. */
+/* Keeps from an array with an entry for each id only the entries of live elements. */
 static void compress(const he_mesh *m, he_kind kind, const he_vec3 *rows, double *out)
 {
     for (uint32_t id = 0; id < he_mesh_issued(m, kind); id++) {
@@ -87,7 +87,7 @@ static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t cou
     return status;
 }
 
-/* Computes one member of the curvatures; `at` is its offset. */
+/* Computes one kind of curvature, which is the member at offset `at` of he_curvature. */
 static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
                            uint64_t most, size_t at, double *out, he_error *err)
 {
@@ -116,7 +116,7 @@ CURVATURE(mean_curvatures, mean)
 CURVATURE(gaussian_curvatures, gaussian)
 #undef CURVATURE
 
-/* --- half-edges: corners --- */
+/* --- measures of half-edges, which stand for corners --- */
 
 static he_status corner_angle(const he_mesh *m, uint32_t id, const options *o, double *out,
                               he_error *err)
@@ -328,7 +328,7 @@ static uint64_t about(const he_mesh *m, he_vertex v, uint64_t most)
     return cost;
 }
 
-/* Returns the half-edges of the faces that the measure of one element visits. */
+/* Returns how many half-edges of faces the measure of one element visits. */
 static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t most)
 {
     switch (q->target.kind) {
@@ -347,7 +347,8 @@ static uint64_t cost_of(const he_mesh *m, const asked *q, uint32_t id, uint64_t 
     return 1;
 }
 
-/* Faces with many corners are triangulated, which takes up to the square of their number. */
+/* Returns the cost of triangulating the mesh's faces: it may be the square of the number of a
+ * face's corners. */
 static uint64_t cost_of_cutting(const he_mesh *m)
 {
     uint64_t cost = 0;

@@ -1,5 +1,5 @@
-/* POST .../query: many questions about one revision. Each answer stands at the index of its
- * question. The answer to a failed question is a problem object; the other questions are still
+/* query.c - POST .../query: many questions about one revision. Each answer stands at the index of
+ * its question. The answer to a failed question is a problem object; the other questions are still
  * answered. */
 #include "api/request/handlers.h"
 
@@ -22,7 +22,7 @@ static bool write_problem(api_exchange *x, api_text *scratch)
     return true;
 }
 
-/* Is the problem about one question rather than about the request? */
+/* Returns true if the problem is about one question rather than about the whole request. */
 static bool is_of_question(const api_problem *problem)
 {
     return problem->code != HE_NO_MEMORY && problem->code != HE_CANCELLED;
@@ -51,7 +51,7 @@ static bool answer_each(api_exchange *x, api_asker *a, const api_in *queries)
 
 /* --- octets --- */
 
-/* Two blocks, one after the other, little-endian. */
+/* A binary answer has two blocks, one after the other, little-endian. */
 enum { BLOCKS = 2 };
 
 typedef struct octets {
@@ -91,8 +91,7 @@ static int64_t read_octets(void *stream, char *buffer, size_t size)
     return (int64_t)written;
 }
 
-/* Converts ids to little-endian; compilers see that this does nothing on a little-endian
- * machine. */
+/* Converts ids to little-endian; on a little-endian machine compilers reduce this to nothing. */
 static void order_ids(octets *o, int block, he_ids *list)
 {
     for (size_t i = 0; i < list->count; i++) {

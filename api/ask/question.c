@@ -26,7 +26,7 @@ static uint64_t allowance(const api_asker *a)
     return API_HALFEDGE_STEPS * most * (a->x->phase == API_PHASE_JOB ? API_JOB_TIMES : 1);
 }
 
-/* Calls `answer`. Returns whether the request must start again. */
+/* Runs `answer` with a budget of steps. Returns true if the request must start again elsewhere. */
 static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), bool reads_only)
 {
     api_asker a = {.x = x,
@@ -142,7 +142,7 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
 
 /* --- targets --- */
 
-/* Finds the kind whose plural is a member: {"vertices":...}. */
+/* Finds the kind of element whose plural is a member: {"vertices":...}. */
 static bool find_plural(const api_in *of, he_kind *kind, api_in *member)
 {
     if (!api_in_is_object(of) || !api_in_first(of, member)) {
@@ -270,8 +270,9 @@ static bool read_relation(api_asker *a, const api_in *question, asked *out)
     return true;
 }
 
-/* Returns the number of half-edges visited. A face with few neighbours may have many corners; all
- * other relations return as many ids as they visit half-edges, or half as many. */
+/* Returns the number of half-edges that were visited to find `ids` neighbours. A face with few
+ * neighbours may have many corners; all other relations return as many ids as they visit
+ * half-edges, or half as many. */
 static uint64_t looked_at(const he_mesh *mesh, const asked *q, size_t ids)
 {
     if (q->relation->of != HE_FACE || q->relation->gives != HE_FACE) {
@@ -343,7 +344,8 @@ static bool ask_relation(api_asker *a, const api_in *question)
 
 /* --- find and get --- */
 
-/* Returns the cost of he_find_halfedge: the smaller degree, at most `most`. */
+/* Returns the cost of finding the half-edge between two vertices: the smaller of their degrees, at
+ * most `most`. */
 static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, uint64_t most)
 {
     he_halfedge first_a = he_vertex_halfedge(mesh, a), first_b = he_vertex_halfedge(mesh, b);

@@ -49,11 +49,10 @@ typedef struct api_asker {
 /* Calls `answer` with the mesh in x->content. It writes to x->out and answers, or leaves a problem
  * or `spent`: then the request starts again on the job pool. */
 void api_asker_run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
-/* Checks the body before a job is made, so that the client hears of a mistake at once: calls
- * `answer` with an asker that only reads the body (a->reads_only) and may look up ids in the mesh.
- * With it api_walk_ask, api_question_dense and api_measure_dense return as soon as the question is
- * read, without a result; other questions are not evaluated. Returns false with the problem
- * filled. */
+/* Checks the body before a job is made, so that a mistake is reported at once: calls `answer` with
+ * an asker that only reads the body (a->reads_only) and may look up ids in the mesh. With it
+ * api_walk_ask, api_question_dense and api_measure_dense return as soon as the question is read,
+ * without a result; other questions are not evaluated. Returns false with the problem filled. */
 bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a));
 
 /* Answers a question of any kind, or (api_walk_ask) a walk only. Returns false with nothing written
@@ -61,18 +60,17 @@ bool api_asker_read(api_exchange *x, void (*answer)(api_exchange *x, api_asker *
 bool api_question_ask(api_asker *a, const api_in *question);
 bool api_walk_ask(api_asker *a, const api_in *walk);
 
-/* Is this a relation of many elements? api_question_dense then finds its answer; the caller clears
- * `out`. */
+/* Returns true if the question is about the relation of many elements. api_question_dense then
+ * finds its answer; the caller clears `out`. */
 bool api_question_is_dense(const api_in *question);
 bool api_question_dense(api_asker *a, const api_in *question, he_dense *out);
 
-/* Is this a measure of many elements? api_measure_dense then finds its values, `*count` of them;
- * the caller frees `out`. A missing value is NaN. */
+/* Returns true if the question is about a measure of many elements. api_measure_dense then finds
+ * its values, `*count` of them; the caller frees `out`. A missing value is NaN. */
 bool api_measure_is_dense(const api_in *question);
 bool api_measure_dense(api_asker *a, const api_in *question, double **out, size_t *count);
 
-/* --- called by question.c, defined in traverse.c, measure.c and spatial.c, and what they share
- * --- */
+/* --- functions that traverse.c, measure.c and spatial.c define for question.c or share --- */
 bool api_measure_ask(api_asker *a, const api_in *question);
 bool api_ray_ask(api_asker *a, const api_in *question);
 bool api_closest_ask(api_asker *a, const api_in *question);
@@ -93,17 +91,18 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out);
 #define API_KIND_BIT(kind) (1u << (kind))
 /* Reads {"vertex":5}: a live element of one of the kinds in this bit set. */
 bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *kind, uint32_t *id);
-/* Announces work on the whole mesh outside the budget, with its duration. Returns false, with
- * a->spent, if all announced work takes longer than the client said it waits (or than the default);
- * the request then starts again as a job. */
+/* Announces work on the whole mesh that is not charged to the budget, with its duration. Returns
+ * false, with a->spent, if all announced work takes longer than the client is willing to wait; the
+ * request then starts again as a job. */
 bool api_asker_waits(api_asker *a, double seconds);
 /* Returns how many half-edges may still be visited; api_asker_charge charges for visited ones. */
 uint64_t api_asker_left(const api_asker *a);
 void api_asker_pay(api_asker *a, uint64_t halfedges);
-/* Ends a request that needs more steps, and always returns false: with a->spent on a worker or if
- * the client accepts a job, else with limit_exceeded. `in` is NULL for a request without a body. */
+/* Ends a request that needs more steps than it may take, and always returns false: with a->spent on
+ * a worker or if the client accepts a job, else with limit_exceeded. `in` is NULL for a request
+ * without a body. */
 bool api_asker_exceed(api_asker *a, const api_in *in);
-/* Fills the problem from a refusal of core, at the place `in`. Always returns false. */
+/* Fills the problem from a refusal of core, with the JSON pointer of `in`. Always returns false. */
 bool api_asker_refuse(api_asker *a, const api_in *in, const he_error *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* Spatial questions: rays, nearest points, and self-intersections. */
+/* spatial.c - spatial questions: rays, nearest points, and self-intersections. */
 #include "api/ask/spatial.h"
 
 #include <float.h>
@@ -11,8 +11,8 @@ static bool read_max(const api_in *in, double *out)
     return !api_in_find(in, "max", &max) || api_in_number_within(&max, 0, DBL_MAX, false, out);
 }
 
-/* Corners with weight 0 are left out: a point on an edge has two corners, a point at a vertex
- * one. */
+/* Writes where a ray or a nearest point is on a face. Corners with weight 0 are left out: a point
+ * on an edge has two corners, a point at a vertex one. */
 static void write_hit(api_out *out, const char *key, const he_hit *hit)
 {
     api_out_object_begin(out);
@@ -105,7 +105,8 @@ static bool write_pairs(api_asker *a, size_t limit, bool complete)
     return true;
 }
 
-/* Additional steps for one search per request, enough to search a large mesh. */
+/* Returns the additional steps that one search for intersections in a request gets, enough to
+ * search a large mesh. */
 static uint64_t granted_for(const api_asker *a)
 {
     return a->on_worker || a->has_met ? 0 : API_MEET_STEPS * api_elements_of(a->mesh);

@@ -1,4 +1,4 @@
-/* spatial.h - the search for intersections, as POST .../query and GET .../check share it. */
+/* spatial.h - the search for intersecting faces, which POST .../query and GET .../check share. */
 #ifndef HE_API_ASK_SPATIAL_H
 #define HE_API_ASK_SPATIAL_H
 

@@ -1,4 +1,5 @@
-/* Walks: POST .../traverse, and the walks among the questions of POST .../query.
+/* traverse.c - walks over a mesh: POST .../traverse, and the walks among the questions of POST
+ * .../query.
  *
  * An answer repeats the walk with its defaults filled in, so that it can be understood alone. The
  * whole walk is computed before anything is written. */
@@ -11,7 +12,8 @@
 
 #include <string.h>
 
-/* Half-edges charged for each element that a flood reaches; the average is lower. */
+/* The half-edges that are charged for each element that a breadth-first walk reaches; the average
+ * is lower. */
 enum { FLOOD_COST = 8 };
 
 static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds,
@@ -31,7 +33,7 @@ static void begin_answer(api_asker *a, const char *walk, he_kind kind, uint32_t 
     api_write_reference(a->out, kind, from);
 }
 
-/* Is the walk longer than an answer may be? */
+/* Returns true if a walk has more elements than an answer may have. */
 static bool is_too_long(const he_ids *ids)
 {
     return ids->count > API_MAX_WALK;
@@ -177,9 +179,9 @@ static bool ask_loop(api_asker *a, const api_in *walk)
     return true;
 }
 
-/* --- rings, breadth first --- */
+/* --- rings, which are walks breadth first --- */
 
-/* Returns how many elements a flood may reach. */
+/* Returns how many elements a breadth-first walk may reach. */
 static uint64_t most_of_flood(const api_asker *a)
 {
     if (a->on_worker) {
@@ -189,7 +191,8 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Fills a->first with elements and a->second with depths. `limit` 0: no limit. */
+/* Walks breadth first: fills a->first with elements and a->second with their depths. `limit` = 0 is
+ * no limit. */
 static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from, uint32_t depth,
                   size_t limit)
 {

@@ -2,8 +2,8 @@
 
 #include <stdatomic.h>
 
-/* `bvh` or `abandoned` is set once, under the lock of the place; while neither is set, the tree is
- * being made. */
+/* A tree that is kept or being made. Either `bvh` or `abandoned` is set, once, under the lock of
+ * the place where the tree is kept; while neither is set, the tree is being made. */
 typedef struct api_tree {
     _Atomic uint32_t uses; /* one use while it is kept, one for each asker */
     uint64_t revision;
@@ -50,7 +50,8 @@ static bool must_be_made(const api_tree *tree)
     return tree->bvh == NULL && !tree->abandoned;
 }
 
-/* The caller holds the lock of the place. Returns NULL when memory is out, or with a->spent. */
+/* Finds the tree, or makes an entry for it. The caller holds the lock of the place where the tree
+ * is kept. Returns NULL when memory is out, or with a->spent. */
 static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tree **dropped,
                       bool *made_here)
 {
@@ -86,7 +87,7 @@ static api_tree *take(api_asker *a, const api_in *in, st_derived *place, api_tre
 }
 
 /* Returns the kept tree if it is of this revision. Otherwise returns a new entry, which replaces
- * that of an earlier revision, and the asker must make the tree. */
+ * the tree of an earlier revision; then the asker must make the tree. */
 static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
 {
     api_tree *dropped = NULL;
@@ -97,8 +98,8 @@ static api_tree *find(api_asker *a, const api_in *in, bool *made_here)
     return tree;
 }
 
-/* Waits until another request has made it. Returns HE_CANCELLED if the asker's own watch stops it
- * first. */
+/* Waits until another request has made the tree. Returns HE_CANCELLED if the asker's own watch
+ * cancelled the work first. */
 static he_status await(const api_asker *a, const api_tree *tree, he_error *err)
 {
     for (;;) {
@@ -156,13 +157,13 @@ const he_bvh *api_asker_tree(api_asker *a, const api_in *in)
             return NULL;
         }
         if (tree->bvh == NULL) {
-            /* the request that was making it stopped; its entry is almost empty */
+            /* The request that was making the tree has stopped; its entry is almost empty. */
             api_tree_release(tree);
             continue;
         }
-        /* Charged even if another request made the tree, so that the result depends on the mesh
-         * alone. A worker need not charge: if its steps run out, the request starts again on the
-         * job pool. */
+        /* The cost is charged even if another request made the tree, so that the result depends on
+         * the mesh alone. A worker need not charge it: if its steps run out, the request starts
+         * again on the job pool. */
         if (made_here || !a->on_worker) {
             api_asker_pay(a, cost_of(a));
         }

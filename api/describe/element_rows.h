@@ -1,4 +1,4 @@
-/* element_rows.h - rows of the table of routes that differ in the kind of element.
+/* element_rows.h - rows of the table of routes that differ only in the kind of element.
  *
  * They make rows such as vertices_list, vertex_get and vertex_faces: `one` and `many` are the names
  * of the kind, `what` is the name of a relation in core/query/adjacency.h. The table in routes.c
@@ -43,7 +43,7 @@
 
 #define AROUND "Counter-clockwise from the stored half-edge, each once."
 
-/* All of them, in the order of the table. */
+/* All rows of elements, in the order of the table. */
 #define ELEMENT_ROWS                                                                              \
     ELEMENTS(HE_VERTEX, "vertex", "vertices", "vertices"),                                        \
         ELEMENTS(HE_HALFEDGE, "halfedge", "halfedges", "half-edges"),                             \

@@ -28,7 +28,7 @@ const api_example *api_example_at(size_t i);
  * received, or NULL. */
 const char *api_example_request(const char *route, const char *media);
 const char *api_example_response(const char *route, const char *media);
-/* Returns the first example of a refusal. */
+/* Returns the first example of a refused request. */
 const char *api_example_problem(void);
 
 #endif

@@ -100,7 +100,8 @@ static void write_query_parameter(api_out *out, const api_parameter *parameter)
     api_out_object_end(out);
 }
 
-/* All lines but the last have the schema of a component. */
+/* Writes the schema of a line of a JSON-lines answer. All lines but the last have the schema of a
+ * component. */
 static void write_line_schema(api_out *out, const char *line)
 {
     static const char end[] =
@@ -121,7 +122,8 @@ static void write_line_schema(api_out *out, const char *line)
 /* Writes the media types of a body. API JSON has a schema, mesh files have none. The schema of a
  * line is an extension, since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example`
  * returns an example body for `route`. */
-/* The server takes any field name; clients generated from this document use this one. */
+/* Writes the schema of a body of several files. The server accepts any field name; clients
+ * generated from this document use this one. */
 static void write_files_schema(api_out *out)
 {
     static const char schema[] =
@@ -133,7 +135,8 @@ static void write_files_schema(api_out *out)
     api_out_raw(out, schema, sizeof schema - 1);
 }
 
-/* A body that is no JSON: text, or bytes, which a generated client takes as a blob. */
+/* Writes the schema of a body that is no JSON: text, or bytes, which a generated client takes as a
+ * blob. */
 static void write_bytes_schema(api_out *out, const char *type)
 {
     api_out_key(out, "schema");
@@ -202,7 +205,7 @@ static bool is_stream(const api_route *route)
     return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
 }
 
-/* Headers that are described once, in the components. */
+/* Headers that are described only once, in the components of the document. */
 static const char *const rate_headers[] = {"RateLimit-Policy", "RateLimit", NULL};
 static const char *const coding_headers[] = {"Content-Encoding", "Vary", NULL};
 
@@ -242,7 +245,7 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     }
     if (tagged) {
         /* A dry run makes no state, and the short answer of a published write may not know its
-         * state: neither has a tag. */
+         * state, so neither always has a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
         write_header(out, "ETag", "Names the state that is shown.", always);
     }
@@ -402,7 +405,7 @@ static void write_header_parameters(api_out *out, const api_route *route)
     }
 }
 
-/* Longer than the documentation of any row with one more sentence. */
+/* This is longer than the documentation of any row with one more sentence. */
 enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
@@ -418,8 +421,9 @@ static void write_doc(api_out *out, const api_route *route)
     }
 }
 
-/* A token, or a ticket instead of it, with the role in place of OAuth's scopes (OpenAPI 3.1 allows
- * that for other schemes, too); or nothing, since a server may have no tokens. */
+/* Writes what authorizes a request: a token, or a ticket instead of it, with the role in place of
+ * OAuth's scopes (OpenAPI 3.1 allows that for other schemes, too); or nothing, since a server may
+ * have no tokens. */
 static void write_security(api_out *out, const api_route *route)
 {
     api_out_key(out, "security");

@@ -4,7 +4,7 @@
 
 #include "api/json/json_out.h"
 
-/* Writes the document. `version` is the server's, `url` its public address or NULL. */
+/* Writes the document. `version` is the version of the server, `url` its public address or NULL. */
 void api_openapi_write(api_out *out, const char *version, const char *url);
 
 #endif

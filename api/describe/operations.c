@@ -39,7 +39,7 @@ static const char *param_type(const he_param *param)
     return "";
 }
 
-/* Writes the value of a parameter that is not given. */
+/* Writes the default of a parameter: its value if it is not given. */
 static void write_default(api_out *out, const he_param *param)
 {
     if (param->flags & (HE_REQUIRED | HE_DERIVED)) {
@@ -170,7 +170,7 @@ void api_operations_write(api_out *out)
 
 /* --- schemas of operations --- */
 
-/* "op_" and the name of an operation. */
+/* The room for "op_" and the name of an operation. */
 enum { OP_SCHEMA = 80 };
 
 static const char *name_op_schema(const he_op *op, char name[OP_SCHEMA])
@@ -179,8 +179,8 @@ static const char *name_op_schema(const he_op *op, char name[OP_SCHEMA])
     return name;
 }
 
-/* Members beside the parameters of an operation: "as" in a list of them, the others where it is
- * alone. */
+/* Members that an operation may have besides its parameters: "as" in a list of operations, the
+ * others where it is alone. */
 static const struct {
     const char *name, *json;
 } beside[] = {
@@ -194,7 +194,7 @@ static const struct {
      "{\"type\":\"boolean\",\"description\":\"Alone: answer without changing anything.\"}"},
 };
 
-/* Each writes the members of a schema object. */
+/* Each function writes the members of a schema object. */
 
 static void write_list_schema(api_out *out, unsigned min)
 {
@@ -298,8 +298,8 @@ static void write_param_schema(api_out *out, const he_param *param)
 }
 
 /* Adds to `text` a sentence for each group of members of which exactly one is required. A union of
- * requirements would tell it to programs, too, but generators of clients make nameless types of it.
- */
+ * requirements would express that in the schema, but generators of clients make nameless types of
+ * it. */
 static void describe_groups(api_text *text, const he_op *op)
 {
     for (size_t i = 0; i < he_op_params(op); i++) {
@@ -443,7 +443,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
     api_out_object_end(out);
 }
 
-/* Writes the schema of an operation's results: its name, and results that the call may have had. */
+/* Writes the schema of an operation's results: its name, and the results that a call may have. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
     begin_named(out, op, NULL);

@@ -1,4 +1,4 @@
-/* operations.h - the operation table (op/op.h) as JSON: for clients, and as schemas. */
+/* operations.h - writes the operation table (op/op.h) as JSON: for clients, and as schemas. */
 #ifndef HE_API_DESCRIBE_OPERATIONS_H
 #define HE_API_DESCRIBE_OPERATIONS_H
 

@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The page may run its own scripts and connect to its own server only. */
+/* The Content-Security-Policy of the viewer page, which may run its own scripts and connect to its
+ * own server only. */
 static const char viewer_policy[] =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
@@ -73,7 +74,8 @@ void api_page_get(api_exchange *x)
     const char *bytes, *type, *etag = NULL;
     size_t length;
     bool immutable = false;
-    /* The raw path is used: names of assets need no escapes, and they are looked up in a table. */
+    /* The raw path is used, because names of assets need no escapes and are looked up in a
+     * table. */
     if (options->asset == NULL || !options->asset(options->asset_context, x->request.path, &bytes,
                                                   &length, &type, &etag, &immutable)) {
         api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);

@@ -215,7 +215,7 @@ static const api_route routes[] = {
      .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
             "earlier revision where one is named."},
 
-    /* elements of a mesh: a collection, an element and its neighbours, for each kind */
+    /* --- elements of a mesh: a collection, an element and its neighbours, for each kind --- */
     ELEMENT_ROWS,
 
     {.method = "GET",

@@ -4,7 +4,7 @@
 
 #include "api/request/route.h"
 
-/* Returns the table for api_service_new(). */
+/* Returns the table of routes, which api_service_new() is given. */
 api_route_table api_routes(void);
 /* Returns the statuses that every route may answer, including those that the server causes; ends in
  * 0. */

@@ -16,7 +16,7 @@ typedef struct api_member {
     const char *doc;
 } api_member;
 
-/* Both arrays end at a row without a schema. */
+/* Both arrays end with a row that names no schema. */
 extern const api_member api_answer_members[];
 extern const api_member api_request_members[];
 

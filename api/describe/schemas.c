@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Schemas that are not just a list of members, as JSON Schema. */
+/* Schemas that are not just a list of members, written as JSON Schema. */
 static const struct {
     const char *name, *json;
 } others[] = {
@@ -226,7 +226,7 @@ void api_schema_ref_key(api_out *out, const char *key, const char *name)
     api_schema_ref(out, "schemas", name);
 }
 
-/* The types of the tables that are no array and no other schema. */
+/* The basic types of the tables of members, which are neither arrays nor other schemas. */
 typedef struct base {
     const char *name, *ref, *type, *format;
     bool from_zero;
@@ -244,7 +244,7 @@ static const base bases[] = {
     {"time", NULL, "string", "date-time", false},
 };
 
-/* The members of the schema of a base. */
+/* Writes the members of the schema of a basic type. */
 static void write_base(api_out *out, const char *name, size_t length)
 {
     size_t i = 0;
@@ -292,7 +292,7 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     api_out_object_end(out);
 }
 
-/* Writes the schema whose rows begin at `rows`; returns their number. */
+/* Writes the schema whose rows begin at `rows`; returns the number of its rows. */
 static size_t write_schema(api_out *out, const api_member *rows, bool closed)
 {
     size_t count = 0;

@@ -4,7 +4,7 @@
 
 #include "api/json/json_out.h"
 
-/* Writes the members of components.schemas into the open object. */
+/* Writes the members of components.schemas into the object that is open. */
 void api_schemas_write(api_out *out);
 
 /* Both write {"$ref":"#/components/GROUP/NAME"}; the second one writes a key first and always uses
@@ -14,8 +14,8 @@ void api_schema_ref_key(api_out *out, const char *key, const char *name);
 /* Writes only the member "$ref" of the group "schemas", into the object that is open. */
 void api_schema_reference(api_out *out, const char *name);
 
-/* Write the discriminator of a union: one call of _add for each value of `member`, with the name of
- * the schema it stands for. */
+/* These functions write the discriminator of a union: ..._add is called for each value of `member`,
+ * with the name of the schema that the value stands for. */
 void api_schema_discriminator_begin(api_out *out, const char *member);
 void api_schema_discriminator_add(api_out *out, const char *value, const char *name);
 void api_schema_discriminator_end(api_out *out);

@@ -18,7 +18,7 @@ static const struct {
     {"server", "The server itself: health, version, metrics, documentation, the page."},
 };
 
-/* The first row whose beginning a path has decides. */
+/* A path belongs to the group of the first row with which the path begins. */
 static const struct {
     const char *begin, *tag;
 } beginnings[] = {

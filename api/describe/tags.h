@@ -4,7 +4,7 @@
 
 #include "api/json/json_out.h"
 
-/* The group of the route with this path; a literal. */
+/* Returns the group of the route with this path; a literal. */
 const char *api_tag_of(const char *path);
 /* Writes the member "tags": each group with a sentence about it. */
 void api_tags_write(api_out *out);

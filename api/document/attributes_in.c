@@ -8,7 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Open arrays and objects around what is read. */
+/* How deep in the document the lexer is: the open arrays and objects around the value that is
+ * read. */
 enum {
     IN_DOCUMENT = 1, /* "attributes" is a member of it */
     IN_LIST,
@@ -17,7 +18,7 @@ enum {
     IN_ROW
 };
 
-/* One that was read: a column without rows, and its values, packed. */
+/* One attribute that was read: a column without rows, and its packed values. */
 typedef struct item {
     he_column *column;
     unsigned char *values;
@@ -30,7 +31,7 @@ struct api_attributes_in {
     item items[API_MAX_ATTRIBUTES];
     size_t count;
 
-    /* --- of the open object --- */
+    /* --- the object of the attribute that is being read --- */
     api_members head; /* each member but "values" */
     bool has_values;
     bool has_words, has_numbers; /* among the values */
@@ -117,7 +118,7 @@ static bool end_value(api_attributes_in *in, bool row)
     return true;
 }
 
-/* A value, or a component of one. */
+/* Reads a value of an attribute, or one component of a value. */
 static bool take_value(api_attributes_in *in, const he_lexer *x, he_token token)
 {
     double value = token == HE_TOKEN_NUMBER ? x->number : token == HE_TOKEN_TRUE;
@@ -140,9 +141,9 @@ static bool take_row(api_attributes_in *in, const double *row, size_t count)
     return end_value(in, true);
 }
 
-/* --- an object that has ended --- */
+/* --- the end of an attribute's object --- */
 
-/* From doubles to the rows of a column. */
+/* Converts a double to the type of a column and writes it to a row. */
 static bool pack_number(const he_column *column, double value, unsigned char *to)
 {
     float single = (float)value;
@@ -234,7 +235,8 @@ static bool read_head(api_attributes_in *in, const api_in *root, item *out)
     return api_read_column(root, (he_kind)domain, name, &out->column);
 }
 
-/* The head was parsed by itself: its pointers begin where the object does. */
+/* Puts the path of the attribute before the pointer of a refusal. The members other than "values"
+ * were parsed as a document of their own, so their pointers begin at the attribute's object. */
 static void prefix_pointer(api_attributes_in *in)
 {
     char inner[API_PROBLEM_POINTER];

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The member of the document whose value is read. */
+/* The member of the document whose value is being read. */
 typedef enum member {
     NO_MEMBER, /* between members, and before and after the document */
     VERTICES,
@@ -17,7 +17,8 @@ typedef enum member {
     ATTRIBUTES /* by attributes_in.c */
 } member;
 
-/* Open arrays and objects around what is read. */
+/* How deep in the document the lexer is: the open arrays and objects around the value that is
+ * read. */
 enum {
     IN_DOCUMENT = 1,
     IN_LIST, /* "vertices" or "faces" */
@@ -79,7 +80,8 @@ void api_document_in_free(api_document_in *in)
 
 /* --- refusals --- */
 
-/* The pointer of what is read in the list that is open, `depth` levels deep, or of the document. */
+/* Sets the JSON pointer of the problem to the item that is being read, `depth` levels deep in the
+ * open list, or to the document. */
 static bool point(api_document_in *in, size_t depth)
 {
     const he_lexer_frame *frames = in->lexer.frames;
@@ -96,7 +98,7 @@ static bool point(api_document_in *in, size_t depth)
     return false;
 }
 
-/* Refuse what stands before the next byte, `depth` levels deep. */
+/* Refuses the item that stands before the next byte, `depth` levels deep. */
 static bool refuse_in(api_document_in *in, size_t depth, int code, const char *text)
 {
     api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), code, "%s", text);
@@ -123,7 +125,7 @@ static bool refuse_fault(api_document_in *in)
     if (x->fault == HE_FAULT_ITEM) {
         x->frames[x->depth - 1].index++; /* what stands there would be the next item */
     }
-    /* A number is refused where it ends, as by what reads its value. */
+    /* A bad number is refused at the byte where it ends, as it would be if its value were read. */
     bool number = x->fault == HE_FAULT_NUMBER || x->fault == HE_FAULT_NOT_FINITE;
     api_json_refuse_fault(x, number ? he_lexer_place(x) : x->fault_place, in->problem);
     bool list = in->member == VERTICES || in->member == FACES;
@@ -146,7 +148,7 @@ static bool add_vertex(api_document_in *in, const double *values, size_t count)
     return he_soup_add_vertex(&in->soup, position, &err) == HE_OK || refuse_core(in, IN_LIST, &err);
 }
 
-/* Takes the items that the piece holds whole, from the one ahead on. */
+/* Reads at once the items that the piece contains completely, beginning with the next one. */
 static bool take_items(api_document_in *in, bool *taken)
 {
     he_lexer *x = &in->lexer;
@@ -205,7 +207,8 @@ static bool add_value(api_document_in *in, double value)
     return true;
 }
 
-/* A value of another type than the array that is wanted is not malformed. */
+/* Checks that the next value is an array. A value of another type is refused with its own code,
+ * because the JSON is not malformed. */
 static bool expect_array(api_document_in *in, char c, const char *text)
 {
     bool other = (c != '\0' && strchr("\"{tfn-", c) != NULL) || (c >= '0' && c <= '9');
@@ -279,7 +282,7 @@ static bool gather(api_document_in *in, api_members *to)
     return api_members_begin(to, &in->lexer, in->problem);
 }
 
-/* Behind the colon of a member of the document. */
+/* Begins a member of the document, when the lexer is behind the colon after its name. */
 static bool open_member(api_document_in *in)
 {
     const he_lexer_frame *object = &in->lexer.frames[0];
@@ -304,7 +307,8 @@ static bool open_member(api_document_in *in)
 
 /* --- tokens --- */
 
-/* A value is ahead: may it stand here? `*taken` where it was read at once. */
+/* Decides whether a value that begins here may stand here. `*taken` is set if it was read at
+ * once. */
 static bool expect(api_document_in *in, bool *taken)
 {
     switch (in->member) {
@@ -340,7 +344,7 @@ static bool take(api_document_in *in, he_token token)
     return true;
 }
 
-/* One token, or what is taken at once; `*cut` where the piece is used up. */
+/* Handles one token, or several items at once; `*cut` is set when the piece is used up. */
 static bool step(api_document_in *in, bool *cut)
 {
     bool taken = false, done;

@@ -25,8 +25,8 @@ struct api_document_out {
     api_text text;  /* the text before the vertices, then pieces of the attributes */
     bool from_text; /* begin and end are positions in `text`, not in the buffer */
     uint32_t *rank; /* number of each live vertex; NULL if none is dead */
-    /* By edge of the document: the half-edge in the face that comes first in the document.
-     * NULL if no attribute needs it. */
+    /* The half-edge of each edge of the document that lies in the face written first. NULL if no
+     * attribute needs it. */
     uint32_t *edges;
     size_t column; /* slot of the attribute being written */
     bool begun;    /* its head was written */
@@ -186,15 +186,15 @@ static size_t next_column(const he_mesh *mesh, size_t from)
     return from;
 }
 
-/* Returns the number of values that an attribute has in the document, with dead rows of vertices
- * and faces. */
+/* Returns the number of rows of an attribute to go through, which for vertices and faces includes
+ * deleted elements. */
 static uint64_t count_places(const api_document_out *out, he_kind domain)
 {
     return domain == HE_EDGE || domain == HE_HALFEDGE ? he_mesh_count(out->mesh, domain)
                                                       : he_mesh_issued(out->mesh, domain);
 }
 
-/* Returns the row of the i-th value; HE_NONE for a dead one. */
+/* Returns the row of the i-th value; HE_NONE if that element was deleted. */
 static uint32_t row_at(const api_document_out *out, he_kind domain, uint32_t i)
 {
     switch (domain) {
@@ -227,7 +227,8 @@ static void begin_attribute(api_document_out *out, const he_column *column)
     out->next = 0;
 }
 
-/* Writes what follows the lists: materials, and the end. */
+/* Writes what follows the lists of vertices, faces and attributes: the materials, and the end of
+ * the document. */
 static void end_document(api_document_out *out)
 {
     const he_materials *materials = he_mesh_materials(out->mesh);
@@ -241,7 +242,7 @@ static void end_document(api_document_out *out)
     out->phase = PHASE_DONE;
 }
 
-/* Appends the next part to the text. */
+/* Appends the next part of the attributes to the text. */
 static void fill_attributes(api_document_out *out)
 {
     const he_column *column = he_mesh_column(out->mesh, out->column);
@@ -277,7 +278,8 @@ static void fill_attributes(api_document_out *out)
     out->end = out->text.length;
 }
 
-/* Fills the buffer. Dead rows write nothing, so a call may skip many. */
+/* Fills the buffer with the next bytes of the document. Deleted elements are not written, so a call
+ * may skip many. */
 static void fill(api_document_out *out)
 {
     out->begin = out->end = 0;

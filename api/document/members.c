@@ -12,7 +12,8 @@ void api_members_empty(api_members *m)
     api_text_empty(&m->text);
 }
 
-/* Adds bytes, the first of which the client sent as byte `place`. */
+/* Appends bytes to the gathered members. The first of them is byte `place` of what the client
+ * sent. */
 static bool add(api_members *m, const he_lexer *x, const char *bytes, size_t length, uint64_t place,
                 api_problem *problem)
 {
@@ -50,7 +51,7 @@ bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
            add(m, x, "\":", 2, place, problem);
 }
 
-/* Adds the lexer's piece up to its place. */
+/* Appends the bytes of the lexer's piece that it has passed. */
 static bool add_passed(api_members *m, const he_lexer *x, api_problem *problem)
 {
     const char *from = m->from != NULL ? m->from : x->begin;
@@ -65,8 +66,8 @@ bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *prob
     do {
         api_problem wrong = {0};
         if (!api_json_next(x, &m->values, m->values_most, &token, &wrong)) {
-            /* Too many bytes, wherever the pieces were cut, come before what is wrong after them.
-             */
+            /* If there are too many bytes, that is reported rather than a fault after them. So the
+             * answer does not depend on where the pieces were cut. */
             if (add_passed(m, x, problem)) {
                 *problem = wrong;
             }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Enough to recognize any format. */
+/* The number of bytes from which any format can be recognised. */
 enum { SNIFF_BYTES = 512 };
 
 typedef struct part {
@@ -116,14 +116,15 @@ static bool refuse(api_exchange *x, const api_parts *p)
                     p->wanted == NULL ? "" : p->wanted, names);
 }
 
-/* Files of these types belong to another file and are no meshes. */
+/* Returns true for a file that belongs to another file and is no mesh itself, such as a texture. */
 static bool is_companion(const char *name)
 {
     const char *extension = extension_of(name);
     return api_equal_nocase(extension, "bin") || api_equal_nocase(extension, "mtl");
 }
 
-/* Neither names nor media types decided: looks at the first bytes. */
+/* Finds the mesh file by the first bytes of the files, if neither names nor media types have
+ * decided. */
 static void look_inside(api_parts *p)
 {
     for (size_t i = 0; i < p->count; i++) {

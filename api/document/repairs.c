@@ -36,8 +36,8 @@ static void write_ids(api_out *out, const char *key, const he_repair_account *ac
     api_out_array_end(out);
 }
 
-/* drop_degenerate reports faces as pairs: a face with the number of faces that replaced it. This
- * selects those that were removed (0), or the others. */
+/* Selects from the account of drop_degenerate, which lists faces as pairs (a face, and the number
+ * of faces that replaced it), the faces that were removed (`gone`), or else the others. */
 static he_repair_account degenerate_ones(const he_repair_account *account, bool gone)
 {
     he_repair_account some = {.count = 0};
@@ -65,7 +65,7 @@ static void write_parents(api_out *out, const he_repair_account *account)
     api_out_object_end(out);
 }
 
-/* Writes where in the input the removed things were. */
+/* Writes where in the input the things were that a repair removed. */
 static void write_places(api_out *out, const he_repair_account *account, const he_places *places)
 {
     if (places == NULL || places->unit == HE_PLACE_NONE || places->count == 0) {

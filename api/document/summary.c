@@ -9,7 +9,8 @@
 bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
 {
     he_error err = {0};
-    /* Clears the padding, too, since the store keeps every byte. */
+    /* This clears the padding of the struct, too, because the store keeps every byte of a
+     * summary. */
     memset(out, 0, sizeof *out);
     he_topology topology;
     if (he_topology_find(mesh, &topology, &err) != HE_OK) {
@@ -143,7 +144,8 @@ void api_answer_stored(api_exchange *x, int status, const api_summary *summary,
     write_answer(x, summary, status, extra);
 }
 
-/* Describes the mesh as it was created: other clients may have changed or deleted it by now. */
+/* Fills x->info with the mesh as it was created, because other clients may have changed or deleted
+ * it by now. */
 static void find_facts_as_made(api_exchange *x, const char *name)
 {
     (void)st_read_card(x->mesh, &x->info);
@@ -162,7 +164,8 @@ void api_answer_created(api_exchange *x, const char *name, const api_summary *su
     api_answer_stored(x, 201, summary, extra);
 }
 
-/* A cached summary is left in x->state, and the mesh is not read. */
+/* Estimates the cost of a summary. If the summary is cached, it is put into x->state, and the mesh
+ * is not read. */
 bool api_summary_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     api_summary *kept = api_arena_array(&x->arena, 1, sizeof *kept);
@@ -211,9 +214,9 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
         return;
     }
     if (x->head && x->codings.allowed[API_IDENTITY]) {
-        /* The length is unknown, and with it whether GET would compress the answer. The answer to
-         * HEAD is that without a coding, whose tag is as good as the coded one's in every
-         * precondition. */
+        /* The length of the summary is unknown, so it is unknown whether GET would compress the
+         * answer. The answer to HEAD is the one without a coding, whose tag is as good as that of
+         * the compressed answer in every precondition. */
         x->codings.best = API_IDENTITY;
         api_answer_stream(x, 200, "application/json", -1, read_nothing, NULL, NULL);
     }

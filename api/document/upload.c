@@ -15,14 +15,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Enough to recognize any format. */
+/* The number of bytes from which any format can be recognised. */
 enum { SNIFF_BYTES = 512 };
 
-/* Bytes of a file per vertex or corner: a guess, used only to estimate time.
- */
+/* The guessed bytes of a file for each vertex or corner, used only to estimate time. */
 enum { ELEMENT_BYTES = 5 };
 
-/* Progress of making a mesh after each step; the rest is its summary. */
+/* The progress that is reached after each step of making a mesh; the rest is computing its
+ * summary. */
 static const double READ_SHARE = 0.2, SHAPE_SHARE = 0.2, REPAIR_SHARE = 0.45, BUILD_SHARE = 0.7,
                     FILL_SHARE = 0.75;
 
@@ -33,7 +33,7 @@ typedef struct attribute {
 
 typedef struct upload {
     he_limits limits;
-    /* one of these is the reader; neither while the first bytes are collected */
+    /* One of these two is the reader; both are NULL while the first bytes are collected. */
     api_document_in *document;
     he_reader *reader;
     const he_format *format; /* the reader reads this */
@@ -123,8 +123,8 @@ bool api_upload_begin(api_exchange *x)
     return open_reader(x, u, format);
 }
 
-/* A file with the wrong declared format, or one that is no mesh, is refused with that reason and
- * without a position. The reader itself reports text in UTF-16. */
+/* Refuses a file that is in another format than declared, or no mesh, with that reason and without
+ * a position. (Readers themselves report text in UTF-16.) */
 static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
 {
     const char *foreign = he_foreign_find(u->head, u->head_length);
@@ -160,7 +160,7 @@ static bool choose(api_exchange *x, upload *u)
     while (blank < u->head_length && strchr(" \t\r\n", u->head[blank]) != NULL) {
         blank++;
     }
-    /* glTF is JSON too, with a member that mesh documents do not have */
+    /* A glTF file is JSON, too; it has a member that mesh documents do not have. */
     const he_format *gltf = he_format_find("gltf");
     bool json =
         blank < u->head_length && u->head[blank] == '{' && !gltf->sniff(u->head, u->head_length);
@@ -184,7 +184,7 @@ static bool is_open(const upload *u)
     return u->document != NULL || u->reader != NULL;
 }
 
-/* Keeps as many bytes as fit and returns their number. */
+/* Keeps the first bytes of the body, as many as fit, and returns their number. */
 static size_t keep_head(upload *u, const char *bytes, size_t length)
 {
     size_t room = sizeof u->head - u->head_length, take = length < room ? length : room;
@@ -225,7 +225,8 @@ static bool feed_parts(api_exchange *x, upload *u, const char *bytes, size_t len
     return false;
 }
 
-/* Reads the mesh file, now that it is known, with the other files. */
+/* Reads the mesh file together with the other files, when it is known only at the end which file is
+ * the mesh. */
 static bool end_parts(api_exchange *x, upload *u)
 {
     api_parts_piece late;
@@ -346,7 +347,7 @@ static bool finish_reading(api_exchange *x, upload *u)
     return true;
 }
 
-/* Is the whole file still unread? */
+/* Returns true if no byte of the file has been passed to a reader yet. */
 static bool is_unread(const upload *u)
 {
     return u->reader != NULL && !u->has_import;
@@ -380,7 +381,7 @@ uint64_t api_upload_elements(const api_exchange *x)
     const he_soup *soup = soup_of(u);
     uint64_t elements =
         is_unread(u) ? x->received / ELEMENT_BYTES : soup->vertex_count + soup->corner_count;
-    /* repairs take about as long as building */
+    /* Repairs take about as long as building the mesh. */
     return u->plan.which == 0 ? elements : 2 * elements;
 }
 
@@ -395,8 +396,8 @@ const char *api_upload_name(const api_exchange *x)
     return u->name;
 }
 
-/* Finds the repairs with which the body would pass. When memory is out it finds none and the
- * refusal stays as it is. Returns HE_CANCELLED if the watch stops it. */
+/* Finds the repairs with which the body would be accepted. When memory is out it finds none, and
+ * the refusal stays as it is. Returns HE_CANCELLED if the watch cancelled the work. */
 static he_status advise(upload *u, unsigned *which, he_error *err)
 {
     *which = 0;
@@ -408,7 +409,7 @@ static he_status advise(upload *u, unsigned *which, he_error *err)
     return status == HE_CANCELLED ? status : HE_OK;
 }
 
-/* Defects are named by their place in the body, even if repairs were applied before. */
+/* Names the places of defects in the body, even if repairs have changed the soup before. */
 static void name_defects(api_exchange *x, upload *u)
 {
     x->problem.report = &u->report;
@@ -420,8 +421,8 @@ static void name_defects(api_exchange *x, upload *u)
     }
 }
 
-/* The report explains the refusal only if the work came to its end: work that was cancelled or ran
- * out of memory may have reported other defects before. */
+/* Refuses the body, with the report of the repairs only if the work came to its end: work that was
+ * cancelled or ran out of memory may have reported other defects before. */
 static bool refuse(api_exchange *x, upload *u, he_error *err)
 {
     bool reported = u->report.total > 0 && err->status == u->report.defects[0].reason;
@@ -482,7 +483,8 @@ static he_status name_attributes(upload *u, const he_mesh *mesh, he_error *err)
     return HE_OK;
 }
 
-/* Notes an OFF file that declares a wrong number of edges, which is only known now. */
+/* Adds a warning if an OFF file declares a wrong number of edges, which is known only when the mesh
+ * is built. */
 static void note_edges(upload *u, const he_mesh *mesh)
 {
     const he_import *import = &u->import;
@@ -493,7 +495,8 @@ static void note_edges(upload *u, const he_mesh *mesh)
     }
 }
 
-/* The second half of making a mesh, from the repaired soup on. */
+/* The second half of making a mesh: builds it from the repaired soup and fills in its
+ * attributes. */
 static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
 {
     he_error err = {0};
@@ -572,7 +575,8 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     return true;
 }
 
-/* Writes "lines":[7,12], or "bytes", for the first things that a warning counts. */
+/* Writes where a warning applies, as "lines":[7,12], or "bytes", for the first occurrences that it
+ * counts. */
 static void write_spots(api_out *out, const he_notes *notes, size_t i)
 {
     if (notes->items[i].place == HE_PLACE_NONE || notes->items[i].count == 1) {
@@ -604,7 +608,7 @@ static void write_note(api_out *out, const he_notes *notes, size_t i)
     api_out_object_end(out);
 }
 
-/* Writes a warning about vertices of the mesh, with the place of the first one in the file. */
+/* Writes a warning about vertices of the mesh, with the place of the first of them in the file. */
 static void write_vertices(api_out *out, const upload *u, const char *code, const char *detail,
                            uint64_t count, const he_ids *ids)
 {
@@ -627,7 +631,8 @@ static void write_vertices(api_out *out, const upload *u, const char *code, cons
     api_out_object_end(out);
 }
 
-/* Other programs write one vertex for each corner with different values: warns of such seams. */
+/* Writes a warning about seams that another program left: it wrote one vertex for each corner with
+ * different values. */
 static void write_seams(api_out *out, const upload *u)
 {
     if (u->seams == 0) {

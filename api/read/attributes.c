@@ -1,5 +1,5 @@
-/* GET .../attributes, and the values of one attribute: a page, some by their ids, or all rows as
- * octets. */
+/* attributes.c - GET .../attributes, and the values of one attribute: a page, some by their ids, or
+ * all rows as octets. */
 #include "api/request/handlers.h"
 
 #include "api/document/attribute_path.h"
@@ -107,7 +107,7 @@ static void write_next(api_exchange *x, uint32_t id, uint64_t limit)
                              (unsigned long long)limit, cursor);
 }
 
-/* The rows that the client wants. */
+/* Which rows of an attribute the client wants. */
 typedef struct choice {
     uint64_t from;      /* first id of a page */
     const uint32_t *of; /* these ids only; NULL: a page */
@@ -212,7 +212,7 @@ static void free_rows(void *stream)
     he_mem_free(stream);
 }
 
-/* Copies stored rows; rows that are not stored hold the default. */
+/* Reads the rows of an attribute as octets. Rows that are not stored hold the default. */
 static int64_t read_rows(void *stream, char *buffer, size_t size)
 {
     rows *r = stream;

@@ -1,4 +1,4 @@
-/* POST /v1/admin/backup: the whole store as one file. */
+/* backup.c - POST /v1/admin/backup: the whole store as one file. */
 #include "api/request/handlers.h"
 
 static void make(api_exchange *x)

@@ -1,4 +1,5 @@
-/* GET .../content: a mesh as a file or document, made from a snapshot while it is sent. */
+/* content.c - GET .../content: a mesh as a file or document, made from a snapshot while it is
+ * sent. */
 #include "api/request/handlers.h"
 
 #include "api/document/document_out.h"
@@ -10,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One of the two writers; freed with the exchange. */
+/* The writer of a file format, or of the JSON document; freed with the exchange. */
 typedef struct content {
     he_writer *writer;
     api_document_out *document;
@@ -43,7 +44,8 @@ static bool find_encoding(api_exchange *x, const he_format *format, const char *
     return true;
 }
 
-/* Finds the index of the encoding in ?encoding=; a compressed encoding counts as its own. */
+/* Finds the index of the encoding that ?encoding= names. The compressed form of an encoding counts
+ * as an encoding of its own. */
 static bool choose_encoding(api_exchange *x, const he_format *format, size_t *encoding)
 {
     const char *name = api_param_text(x, "encoding"), *packed = api_param_text(x, "compress");
@@ -52,7 +54,8 @@ static bool choose_encoding(api_exchange *x, const he_format *format, size_t *en
            (packed == NULL || find_encoding(x, format, "compression", packed, encoding));
 }
 
-/* Finds the format; NULL is the JSON document. Returns false if the client accepts none. */
+/* Finds the format that the client wants; NULL is the JSON document. Returns false if the client
+ * accepts none. */
 static bool choose(api_exchange *x, const he_format **format)
 {
     const char *name = api_param_text(x, "format");
@@ -72,7 +75,7 @@ static bool choose(api_exchange *x, const he_format **format)
     return true;
 }
 
-/* Maximum size of the header, and of its last words. */
+/* The maximum size of the header that lists warnings, and of its last words, "and N more". */
 enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
 
 /* Lists what the file cannot represent, so that the client does not lose it unawares. */
@@ -99,7 +102,7 @@ static void answer_losses(api_exchange *x, const he_notes *notes)
 
 enum { REPRESENTATION = 40 };
 
-/* The representation that the client wants. */
+/* The format and encoding that the client wants. */
 typedef struct choice {
     const he_format *format; /* NULL: the JSON document */
     size_t encoding;
@@ -142,7 +145,7 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
     return true;
 }
 
-/* Is the name safe in a header, a shell and a file system? */
+/* Returns true if a name is safe in a header, a shell and a file system. */
 static bool is_plain(const char *name)
 {
     size_t length =
@@ -150,11 +153,13 @@ static bool is_plain(const char *name)
     return name[length] == '\0' && length > 0 && length <= HE_BESIDE_NAME && name[0] != '.';
 }
 
-/* A material library gets the file name by which the mesh's OBJ file refers to it. */
+/* Suggests a file name to the client. A material library gets the name by which the mesh's OBJ file
+ * refers to it. */
 static void name_file(api_exchange *x, const he_format *format)
 {
     const char *names[HE_COLUMN_COMPONENTS];
-    /* A file is made while it is sent: a part of it would cost as much as the whole. */
+    /* Ranges are not supported: a file is made while it is sent, so a part of it would cost as much
+     * as the whole. */
     api_answer_header(x, "Accept-Ranges", "none");
     bool library = format != NULL && strcmp(format->name, "mtl") == 0;
     if (library && he_mtl_names(x->content, names) > 0 && is_plain(names[0])) {

@@ -1,4 +1,5 @@
-/* GET .../vertices, halfedges, edges, faces: a page of a collection, or all of it as lines. */
+/* element_pages.c - GET .../vertices, halfedges, edges, faces: a page of a collection, or all of it
+ * as lines. */
 #include "api/request/handlers.h"
 
 #include "api/read/elements.h"
@@ -47,7 +48,7 @@ static void write_page(api_exchange *x, uint64_t from)
     api_answer_json(x, 200);
 }
 
-/* Reads the first id of the page. */
+/* Reads the id at which the page begins. */
 static bool read_from(api_exchange *x, uint64_t *from)
 {
     const char *cursor = api_param_text(x, "cursor");
@@ -66,7 +67,8 @@ static void answer_page(api_exchange *x)
 
 /* --- the whole collection, one line per element --- */
 
-/* Bytes made at a time; the line of a face with many corners may be longer. */
+/* The number of bytes that are made at a time; the line of a face with many corners may be
+ * longer. */
 enum { LINES_BUFFER = 64 * 1024 };
 
 typedef struct lines {
@@ -153,8 +155,8 @@ static bool wants_lines(const api_exchange *x)
     return strcmp(x->media_out, "application/x-ndjson") == 0;
 }
 
-/* Lines are made from a copy of the mesh. Writing an element takes as long as copying about
- * twenty. */
+/* Estimates the cost of a collection. Its lines are made from a copy of the mesh, and writing an
+ * element takes as long as copying about twenty. */
 bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const char *of_pages = api_param_text(x, "limit") != NULL ? "limit" : "cursor";

@@ -1,4 +1,4 @@
-/* elements.h - one element as a JSON object, with all its links.
+/* elements.h - writes one element as a JSON object, with all its links.
  *
  * The element must be live; nothing is checked. Each writer returns how many half-edges and values
  * it wrote, which is its cost: a vertex or a face may have as many as the whole mesh. */
@@ -13,7 +13,7 @@ uint32_t api_write_halfedge(api_out *out, const he_mesh *mesh, he_halfedge h);
 uint32_t api_write_edge(api_out *out, const he_mesh *mesh, he_edge e);
 /* Writes a face; the normal of a degenerate face is zero. */
 uint32_t api_write_face(api_out *out, const he_mesh *mesh, he_face f);
-/* Calls the writer of the kind. */
+/* Writes an element with the function for its kind. */
 uint32_t api_write_element(api_out *out, const he_mesh *mesh, he_kind kind, uint32_t id);
 
 /* Writes {"vertex":5}. */

@@ -1,12 +1,12 @@
-/* GET .../events: the changes of a mesh as they happen. */
+/* event_stream.c - GET .../events: the changes of a mesh as they happen. */
 #include "api/request/handlers.h"
 
 #include "api/event/event_follow.h"
 #include "api/event/events.h"
 
-/* A browser that reconnects repeats its request with Last-Event-ID, which is newer than the `since`
- * in the URL. An id that this server did not make is treated as one of another incarnation, because
- * a refusal would end an EventSource for good. */
+/* Reads from where the client wants events. A browser that reconnects repeats its request with
+ * Last-Event-ID, which is newer than the `since` in the URL. An id that this server did not make is
+ * treated as one of another incarnation, because a refusal would end an EventSource for good. */
 static bool read_since(api_exchange *x, st_since *since)
 {
     const char *last = x->request.headers[API_HEADER_LAST_EVENT_ID];

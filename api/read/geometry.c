@@ -1,9 +1,9 @@
-/* GET .../geometry: the arrays from which a renderer draws a mesh, or the changes in them; see
- * geometry_rows.h for the layout.
+/* geometry.c - GET .../geometry: the arrays from which a renderer draws a mesh, or the changes in
+ * them; see geometry_rows.h for the layout.
  *
- * The slots of a mesh's triangles are computed when they are first needed and kept with the mesh; a
- * later request brings them up to date. A few changed rows are drawn under the read lock; all rows,
- * or many, from a snapshot. */
+ * The slots of a mesh's triangles (their rows in the arrays) are computed when they are first
+ * needed and kept with the mesh; a later request brings them up to date. A few changed rows are
+ * drawn under the read lock; all rows, or many, from a snapshot. */
 #include "api/request/handlers.h"
 
 #include "api/read/geometry_rows.h"
@@ -19,7 +19,7 @@ typedef struct geometry {
     api_rows rows;
 } geometry;
 
-/* The outcome of using the kept slots. */
+/* The outcome of using the slots that are kept with the mesh. */
 typedef enum geometry_step {
     TAKEN,   /* g->rows is filled */
     MISSING, /* no slots are kept */
@@ -110,7 +110,7 @@ static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *
     return api_rows_take_all(&g->rows, slots, &err) == HE_OK ? TAKEN : fail(g->x, &err);
 }
 
-/* Fills g->rows from slots at the present revision. */
+/* Fills g->rows from slots that are up to date with the present revision. */
 static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slots)
 {
     api_exchange *x = g->x;
@@ -138,7 +138,8 @@ static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slot
     return is_not_modified(x, slots, since) ? ANSWERED : TAKEN;
 }
 
-/* The caller holds the read lock. Slots that cannot be brought up to date are dropped. */
+/* Fills g->rows from the kept slots, if possible. The caller holds the read lock. Slots that cannot
+ * be brought up to date are dropped. */
 static geometry_step take_kept(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -204,7 +205,7 @@ static void answer_stream(api_exchange *x, geometry *g)
                       free_geometry);
 }
 
-/* Answers with changed rows, drawn under the read lock while they are few. */
+/* Answers with the changed rows, which are drawn under the read lock if they are few. */
 static geometry_step answer_changes(geometry *g, const he_mesh *mesh)
 {
     api_exchange *x = g->x;
@@ -235,7 +236,7 @@ static geometry_step make_slots(geometry *g)
     api_exchange *x = g->x;
     he_error err = {0};
     he_slots *slots = NULL;
-    /* 53 bits, so that JSON readers represent it exactly. */
+    /* The number of the layout has 53 bits, so that JSON readers represent it exactly. */
     uint64_t layout = st_random() >> 11 | 1;
     if (he_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
         return fail(x, &err);
@@ -243,7 +244,7 @@ static geometry_step make_slots(geometry *g)
     return keep_or_take(g, slots);
 }
 
-/* A few changed rows are sent under the lock; otherwise the handler takes a snapshot. */
+/* Sends a few changed rows under the lock; for more, the handler must take a snapshot. */
 static geometry_step answer_or_take(geometry *g)
 {
     api_exchange *x = g->x;

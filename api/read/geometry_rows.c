@@ -189,7 +189,8 @@ static bool put_vertex(api_rows *r)
     return true;
 }
 
-/* Slots of a face are consecutive, so its triangles are visited once. */
+/* Writes the row of a triangle. The slots of a face are consecutive, so its triangles are computed
+ * once. */
 static bool put_triangle(api_rows *r)
 {
     if (r->next == triangle_rows(r)) {
@@ -208,7 +209,7 @@ static bool put_triangle(api_rows *r)
     return true;
 }
 
-/* Writes the next piece of the current part: the header, four ids, or a row. */
+/* Writes the next piece of the current part of the answer: the header, four ids, or a row. */
 static bool put(api_rows *r)
 {
     switch (r->part) {

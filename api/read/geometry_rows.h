@@ -35,7 +35,7 @@
 
 enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
 
-/* The rows to send, and how many were read. {0} is empty. */
+/* The rows of an answer, and how many of them were read. {0} is empty. */
 typedef struct api_rows {
     uint64_t revision, base, layout;
     he_frame frame;
@@ -50,14 +50,15 @@ typedef struct api_rows {
     unsigned char buffer[API_ROWS_AT_ONCE * API_ROW_BYTES];
 } api_rows;
 
-/* Both choose rows: all, or those changed since a revision. The slots are not needed afterwards.
+/* Both choose the rows to send: all, or those changed since a revision. The slots are not needed
+ * afterwards.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if only all rows can answer the request.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */
 HE_NODISCARD he_status api_rows_take_all(api_rows *rows, const he_slots *slots, he_error *err);
 HE_NODISCARD he_status api_rows_take_changes(api_rows *rows, const he_slots *slots, uint64_t since,
                                              uint64_t most, he_error *err);
-/* Returns the number of rows to send. */
+/* Returns the number of rows of the answer. */
 uint64_t api_rows_count(const api_rows *rows);
 /* Prepares to read the rows from a mesh at their revision, which must not change until the last row
  * was read. On failure nothing is prepared.

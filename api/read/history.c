@@ -1,4 +1,4 @@
-/* GET .../edits: what each revision changed. */
+/* history.c - GET .../edits: what each revision changed. */
 #include "api/request/handlers.h"
 
 #include "api/event/changes.h"
@@ -48,7 +48,7 @@ static void write_entry(api_out *out, const st_entry *entry)
     api_out_object_end(out);
 }
 
-/* A page: entries from revision `first` down to the one after `last`. */
+/* A page of the history: entries from revision `first` down to the one after `last`. */
 typedef struct page {
     uint64_t first, last, limit;
 } page;
@@ -76,7 +76,8 @@ static void write_entries(api_exchange *x, const page *p, uint64_t *next)
     *next = more ? revision : 0;
 }
 
-/* The cursor is a revision number, so edits made meanwhile do not move it. */
+/* Writes the cursor of the next page. It is a revision number, so edits made meanwhile do not move
+ * it. */
 static void write_next(api_exchange *x, const page *p, uint64_t next)
 {
     char cursor[API_CURSOR];
@@ -111,7 +112,7 @@ static void write_history(api_exchange *x, const page *p)
     api_out_object_end(out);
 }
 
-/* Returns false if the cursor is invalid. */
+/* Reads the cursor of a page. Returns false if it is invalid. */
 static bool read_cursor(api_exchange *x, const char *cursor, page *p)
 {
     st_entry entry;

@@ -1,4 +1,4 @@
-/* GET and DELETE /v1/jobs: the state and the results of work that was answered 202. */
+/* jobs.c - GET and DELETE /v1/jobs: the state and the results of work that was answered 202. */
 #include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "api/request/handlers.h"
@@ -28,7 +28,8 @@ void api_job_get(api_exchange *x)
     api_answer_json(x, 200);
 }
 
-/* Sends the kept headers of an answer, except those that the answer sets on its own. */
+/* Sends the headers that were kept with a job's answer, except those that the answer sets on its
+ * own. */
 static void answer_kept_headers(api_exchange *x, const api_job *job)
 {
     for (size_t i = 0; i < API_JOB_HEADERS; i++) {
@@ -134,8 +135,8 @@ static void show_brief(void *context, const api_job *job)
     p->last = job->number;
 }
 
-/* The cursor is the number of the last job, after a letter that keeps clients from using it as
- * one. */
+/* Reads the cursor of a page: the number of the last job, after a letter that keeps clients from
+ * using a job's number as a cursor. */
 static bool read_cursor(api_exchange *x, uint64_t *after)
 {
     const char *cursor = api_param_text(x, "cursor");

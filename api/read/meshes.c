@@ -1,5 +1,5 @@
-/* The collection and its members, except the making of content: list, summary, name, deletion,
- * copy. */
+/* meshes.c - the collection of meshes and its members, except the making of content: list, summary,
+ * name, deletion, copy. */
 #include "api/request/handlers.h"
 
 #include "api/document/summary.h"
@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The cursor is the id of the last mesh, after a letter that keeps clients from using it as one. */
+/* Reads the cursor of a page: the id of the last mesh, after a letter that keeps clients from using
+ * an id as a cursor. */
 static bool read_list_cursor(api_exchange *x, const char **after)
 {
     const char *cursor = api_param_text(x, "cursor");
@@ -25,8 +26,8 @@ static bool read_list_cursor(api_exchange *x, const char **after)
     return true;
 }
 
-/* Totals of the whole server, which help a client decide what to delete. A token with prefixes does
- * not see them, since they include meshes of others. */
+/* Writes totals of the whole server, which help a client decide what to delete. A token with
+ * prefixes does not see them, since they include meshes of others. */
 static void write_server(api_exchange *x)
 {
     uint64_t used, budget;
@@ -41,14 +42,15 @@ static void write_server(api_exchange *x)
     }
 }
 
-/* Cards per batch; when memory is short, large blocks are refused first. */
+/* The number of cards (descriptions of meshes) that are read at once; when memory is short, large
+ * blocks are refused first. */
 enum { CARDS = 32 };
 
 /* State of writing a page. */
 typedef struct list_page {
     st_card *cards;      /* an array of CARDS */
     size_t limit, given; /* in items */
-    /* the search goes on after this; at the start of a range it is no valid id */
+    /* The search goes on after this id; at the start of a range it is no valid id. */
     char from[ST_MESH_ID + 1];
     char last[ST_MESH_ID + 1]; /* id of the last item */
     bool more;                 /* there is a next page */
@@ -59,7 +61,7 @@ static bool write_range(api_exchange *x, list_page *p, const char *prefix)
 {
     size_t count = 0, asked;
     do {
-        /* One more than needed shows whether there is a next page. */
+        /* One card more than needed is read, which shows whether there is a next page. */
         size_t left = p->limit - p->given + 1;
         asked = left < CARDS ? left : CARDS;
         st_status status = st_cards(x->store, p->from, p->cards, asked, &count);
@@ -101,7 +103,8 @@ static void go_to(list_page *p, const char *prefix)
     }
 }
 
-/* Reads only ids that the token sees, however many others there are. */
+/* Writes the page. It reads only ids that the token can see, however many other meshes there
+ * are. */
 static bool write_items(api_exchange *x, list_page *p)
 {
     const char *ranges[API_TOKEN_PREFIXES];
@@ -164,7 +167,7 @@ void api_meshes_list(api_exchange *x)
 
 static const char *const patch_members[] = {"name", NULL};
 
-/* RFC 7396: null removes a member, which makes the name empty. */
+/* Changes the name of a mesh. By RFC 7396, null removes a member, which makes the name empty. */
 void api_mesh_patch(api_exchange *x)
 {
     const char *name = NULL;
@@ -198,7 +201,7 @@ void api_mesh_patch(api_exchange *x)
 
 void api_mesh_delete(api_exchange *x)
 {
-    /* Renaming has the preconditions of any write. */
+    /* Beginning a write checks the preconditions of the request, as for any write. */
     if (!api_write_begin(x, NULL)) {
         return;
     }
@@ -225,7 +228,7 @@ void api_mesh_delete_cold(api_exchange *x, st_cold *cold)
 
 static const char *const copy_members[] = {"id", "name", NULL};
 
-/* The id of the copy; NULL: the server chooses one. */
+/* The wanted id of the copy; NULL if the server is to choose one. */
 typedef struct copy_request {
     const char *id, *name;
 } copy_request;
@@ -255,7 +258,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
            api_in_string(&member, ST_MESH_NAME, &r->name);
 }
 
-/* Share of copying in the progress; the rest is the summary. */
+/* The share of copying in the progress; the rest is computing the summary. */
 static const double COPY_SHARE = 0.4;
 
 bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
@@ -272,7 +275,8 @@ bool api_mesh_copy_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     return read_copy(x, r) && api_preconditions_hold(x, NULL);
 }
 
-/* Copies the content and computes its summary, before other requests can change it. */
+/* Copies the content of a mesh and computes the copy's summary, before other requests can change
+ * the copy. */
 static bool make_copy(api_exchange *x, he_mesh **out, api_summary *summary)
 {
     he_mesh *fresh = NULL;

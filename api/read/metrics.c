@@ -1,7 +1,6 @@
-/* GET /metrics: each family of metric_rows.h, from counters and from the present state.
+/* metrics.c - GET /metrics: each family of metric_rows.h, from counters and from the present state.
  *
- * Nothing here blocks, so a worker can answer: locks are held only for moments.
- */
+ * Nothing here blocks, so a worker can answer: locks are held only for moments. */
 #include "api/metric/metric_page.h"
 
 #include "api/json/problem.h"
@@ -9,7 +8,7 @@
 #include "system/memory.h"
 #include "system/process.h"
 
-/* Everything that is read once per page. */
+/* All that is read once for a page of metrics. */
 typedef struct sources {
     const api_service *service;
     const api_metrics *metrics;
@@ -69,7 +68,8 @@ static uint64_t total_of(const st_distribution *distribution)
     return total;
 }
 
-/* A series appears with its first request, since most possible series never get one. */
+/* Writes the samples of a series of requests. A series appears with its first request, since most
+ * possible series never get one. */
 static void put_series(sources *s, const char *route, int number, api_method method,
                        const char *method_name, bool times)
 {
@@ -109,8 +109,8 @@ static void put_problems(sources *s)
     }
 }
 
-/* The difference of two counters that are read one after the other; requests that end in between
- * never make it negative. */
+/* Returns the difference of two counters. They are read in such an order that requests which end in
+ * between never make it negative. */
 static uint64_t difference(const api_metrics *metrics, api_counter begun, api_counter ended)
 {
     const uint64_t ends = api_counted(metrics, ended), begins = api_counted(metrics, begun);

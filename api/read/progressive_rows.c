@@ -75,7 +75,8 @@ static unsigned char *put_element(unsigned char *at, const he_mesh *base, he_kin
     return at;
 }
 
-/* Splits are sent from the last to the first; those before `first` are not sent. */
+/* Drops the splits before `first`, which are not sent. Splits are sent from the last to the
+ * first. */
 static void drop_splits(he_progressive *mesh, size_t first)
 {
     if (first == 0) {
@@ -91,7 +92,7 @@ static void drop_splits(he_progressive *mesh, size_t first)
     memmove(mesh->moved.ids, mesh->moved.ids + moved, mesh->moved.count * sizeof *mesh->moved.ids);
 }
 
-/* Frees unused capacity of the lists; failure does no harm. */
+/* Frees unused capacity of the lists. If that fails, nothing is lost. */
 static void fit(he_progressive *mesh)
 {
     he_progressive_split *splits = he_mem_array(mesh->splits, mesh->count + 1, sizeof *splits);

@@ -58,9 +58,9 @@ void api_progressive_clear(api_progressive *p);
  * `high` must be set. `watch` may be NULL.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
 HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_watch *watch, he_error *err);
-/* Returns the size of the answer; call it after write. */
+/* Returns the size of the answer in bytes; it must be called after api_progressive_write. */
 int64_t api_progressive_bytes(const api_progressive *p);
-/* Reads the next bytes; returns 0 at the end. */
+/* Reads the next bytes of the answer; returns 0 at its end. */
 size_t api_progressive_read(api_progressive *p, char *buffer, size_t size);
 
 #endif

@@ -1,5 +1,5 @@
-/* GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: the token of a request, a ticket that
- * replaces it, and reading the file of tokens again. */
+/* token.c - GET /v1/token, POST /v1/tickets and POST /v1/admin/reload: the token of a request, a
+ * ticket that replaces it, and reading the file of tokens again. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without tokens every client is an admin. */
+/* Answers with the rights of the request's token. On a server without tokens every client is an
+ * admin. */
 void api_token_get(api_exchange *x)
 {
     const api_token *token = x->token;

@@ -1,4 +1,4 @@
-/* The mesh as a whole: GET .../boundaries, .../components. */
+/* topology.c - the mesh as a whole: GET .../boundaries and .../components. */
 #include "api/request/handlers.h"
 
 #include "mesh/walk.h"

@@ -1,4 +1,5 @@
-/* PUT, PATCH and DELETE .../attributes/{domain}/{name}: they are edits. */
+/* attribute_write.c - PUT, PATCH and DELETE .../attributes/{domain}/{name}, which are edits of a
+ * mesh. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -11,7 +12,7 @@
 
 #include <string.h>
 
-/* State of a request between decoding and answer. */
+/* The state of a request between the decoding of its body and its answer. */
 typedef struct writing {
     api_text body; /* body of a PUT */
     api_document document;
@@ -175,8 +176,8 @@ static bool refuse_body(api_exchange *x, const writing *w)
                     (unsigned long long)body_cap(w), w->octets ? "" : ": octets may have more");
 }
 
-/* Limits the body to the size of valid octets. It is known before the body arrives if the mesh is
- * in memory. */
+/* Limits the body to the size of valid octets, which is known before the body arrives if the mesh
+ * is in memory. */
 static void set_maximum(api_exchange *x, writing *w)
 {
     uint64_t most = body_cap(w);
@@ -349,7 +350,7 @@ void api_attribute_put(api_exchange *x)
 
 /* --- PATCH --- */
 
-/* Reads the ids that a request names; NULL: all. */
+/* Reads the ids that a request names; NULL stands for all live elements. */
 static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uint32_t **ids,
                      size_t *count)
 {
@@ -368,7 +369,7 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
     return api_in_ids(in, 1, &x->arena, ids, count);
 }
 
-/* Sets the pointer of a refusal to the last place that names the element. */
+/* Sets the JSON pointer of a refusal to the last place in `ids` that names the element. */
 static void point_at_id(const api_exchange *x, const api_in *ids)
 {
     api_in child, found;

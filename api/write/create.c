@@ -1,4 +1,4 @@
-/* POST /v1/meshes and PUT /v1/meshes/{mesh}: making and replacing the content of a mesh. */
+/* create.c - POST /v1/meshes and PUT /v1/meshes/{mesh}: creates a mesh, or replaces its content. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -7,7 +7,8 @@
 #include "api/document/summary.h"
 #include "api/document/upload.h"
 
-/* Both routes read the body in one way; they differ in where the mesh is stored. */
+/* Reads a piece of the body. Both routes do that in one way; they differ in where the mesh is
+ * stored. */
 static void body(api_exchange *x, const char *bytes, size_t length)
 {
     if (x->problem.code == HE_OK) {
@@ -15,7 +16,7 @@ static void body(api_exchange *x, const char *bytes, size_t length)
     }
 }
 
-/* Refuses an invalid id before the client sends the body. */
+/* Refuses an invalid id before the client has sent the body. */
 void api_meshes_create_begin(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
@@ -41,7 +42,7 @@ static bool forget_removed(api_exchange *x)
     return true;
 }
 
-/* Refuses failed preconditions before the client sends the body. */
+/* Refuses failed preconditions before the client has sent the body. */
 void api_mesh_put_begin(api_exchange *x)
 {
     bool good = x->is_cold; /* a mesh on disk is checked after the body */
@@ -60,7 +61,7 @@ void api_mesh_put_body(api_exchange *x, const char *bytes, size_t length)
     body(x, bytes, length);
 }
 
-/* A new mesh before it is stored, with facts computed before other requests can change it. */
+/* A mesh before it is stored, with facts that are computed before other requests can change it. */
 typedef struct made {
     he_mesh *mesh;
     api_summary summary;
@@ -81,14 +82,14 @@ static bool build(api_exchange *x, made *out)
     return true;
 }
 
-/* Returns the name of a new mesh. */
+/* Returns the name that a new mesh gets. */
 static const char *first_name(const api_exchange *x)
 {
     const char *name = api_upload_name(x);
     return name == NULL ? "" : name;
 }
 
-/* Stores the mesh; takes `mesh` on success. `id` NULL: the store chooses one. */
+/* Stores a new mesh; takes `mesh` on success. If `id` is NULL, the store chooses one. */
 static st_status store_new(api_exchange *x, const char *id, he_mesh *mesh)
 {
     return api_mesh_new(x, id, first_name(x), mesh, NULL, &x->mesh);
@@ -138,7 +139,8 @@ static bool replace_damaged(api_exchange *x, const made *m)
     return status != ST_ABSENT;
 }
 
-/* Replaces the content. Returns false, with nothing changed, if the mesh was deleted meanwhile. */
+/* Replaces the content of a mesh. Returns false, with nothing changed, if the mesh was deleted
+ * meanwhile. */
 static bool replace(api_exchange *x, const made *m)
 {
     if (st_unreadable(x->mesh) != ST_OK) {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* State of decoding one operation. */
+/* The state of decoding one operation. */
 typedef struct decoder {
     const api_in *object;
     const api_references *references;
@@ -17,7 +17,7 @@ typedef struct decoder {
     api_call *call;
 } decoder;
 
-/* Reads an id into `one`, or a reference's ids into `found`. */
+/* Reads an id into `one`, or the ids that a reference stands for into `found`. */
 static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_t *one,
                        api_found *found)
 {
@@ -56,7 +56,8 @@ static bool decode_element(const decoder *d, const he_param *param, const api_in
     return true;
 }
 
-/* Two passes: the first adds up the length, because references may insert lists. */
+/* Reads a list of ids in two passes: the first adds up the length, because references may insert
+ * lists. */
 static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in *in, he_arg *arg)
 {
     if (!api_in_array(in, min, SIZE_MAX)) {
@@ -228,7 +229,7 @@ static bool decode_value(const decoder *d, const he_param *param, const api_in *
     case HE_PARAM_MATRIX:
         return decode_matrix(in, arg);
     case HE_PARAM_CYCLE:
-        /* Too few corners are refused by the operation, not by the decoder. */
+        /* A list of too few corners is refused by the operation itself, not by the decoder. */
         return decode_list(d, param->kind, 0, in, arg);
     case HE_PARAM_TEXT:
         return api_in_string(in, SIZE_MAX, &arg->text);

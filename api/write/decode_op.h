@@ -1,4 +1,5 @@
-/* decode_op.h - from {"op":"edge_split","edge":5,"t":0.5} to the arguments of its row.
+/* decode_op.h - decodes an operation such as {"op":"edge_split","edge":5,"t":0.5} to the arguments
+ * that its row of the operation table requires.
  *
  * The operation table has all rules: the members with type and range, which of them exclude each
  * other, which are required. Unknown members, ids that are not whole numbers below 2^32 - 2, points
@@ -27,16 +28,16 @@ typedef struct api_found {
 
 /* Resolves references. */
 typedef struct api_references {
-    /* Finds the ids of `kind` that `text` (with its '$') stands for. Returns false with a refusal
-     * at `at`. */
+    /* Finds the ids of elements of `kind` that the reference `text` (with its '$') stands for.
+     * Returns false with a refusal at `at`. */
     bool (*find)(void *context, const api_in *at, const char *text, he_kind kind, api_found *out);
     void *context;
 } api_references;
 
 /* Finds other meshes. */
 typedef struct api_meshes {
-    /* Finds the mesh with an id, NULL if its content was not taken yet. Returns false with a
-     * refusal at `at`. */
+    /* Finds the mesh with an id; *out is NULL if its content was not loaded yet. Returns false with
+     * a refusal at `at`. */
     bool (*find)(void *context, const api_in *at, const char *id, const he_mesh **out);
     void *context;
 } api_meshes;

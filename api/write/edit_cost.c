@@ -11,7 +11,8 @@ void api_edit_cost_clear(api_edit_cost *cost)
     }
 }
 
-/* Adds one id. Above what a worker may visit it is enough to know that there are more. */
+/* Adds one id to the elements that an edit visits. If there are more than a worker may visit, it is
+ * enough to know that. */
 static he_status gather(api_edit_cost *cost, const he_param *param, uint32_t id, he_error *err)
 {
     he_ids *lists = (param->flags & HE_REACHES) != 0 ? cost->reached : cost->named;
@@ -42,8 +43,8 @@ he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error 
     return status;
 }
 
-/* Returns the steps around the origin of `first`, or (`turn` is false) around its face or hole; at
- * most `most`. */
+/* Returns the number of steps around the origin of `first`, or, if `turn` is false, around its face
+ * or hole; at most `most`. */
 static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_t most)
 {
     he_halfedge h = first;
@@ -55,8 +56,9 @@ static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_
     return count;
 }
 
-/* Splitting an edge does not walk around the hole beside it, however long that is; only an
- * operation that names a half-edge of the hole does. */
+/* Returns the number of half-edges around an edge. Splitting an edge does not walk around the hole
+ * beside it, however long that is; only operations that name a half-edge of the hole do
+ * (`holes`). */
 static uint64_t about_edge(const he_mesh *mesh, he_edge e, bool holes, uint64_t most)
 {
     uint64_t count = 0;
@@ -105,7 +107,8 @@ static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     return count;
 }
 
-/* Returns the edges at the corners of a loop, or (`faces`) the corners of the faces around them. */
+/* Returns the number of edges at the corners of a loop, or, with `faces`, the number of corners of
+ * the faces around them. */
 static uint64_t along(const he_mesh *mesh, he_halfedge first, bool faces, uint64_t most)
 {
     he_halfedge h = first;
@@ -173,7 +176,7 @@ bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint6
 
 /* --- the charges of a list of operations --- */
 
-/* Smaller degrees are not cached. */
+/* Degrees below this are not cached. */
 enum { HUB = 256 };
 
 /* Returns the steps around a vertex, or around the face of `first`, from the cache if possible. */
@@ -223,7 +226,7 @@ static uint64_t walk_about_corners(const he_mesh *mesh, he_halfedge h, uint64_t 
     return count;
 }
 
-/* What sorting, comparing and relinking one face takes, in steps. */
+/* The steps that sorting, comparing and relinking one face is worth. */
 enum { FACE_STEPS = 250 };
 
 static uint64_t walk_about_faces(const he_mesh *mesh, he_vertex v, uint64_t most, api_hubs *hubs)

@@ -1,4 +1,4 @@
-/* edit_cost.h - is an edit too much for a worker?
+/* edit_cost.h - estimates whether an edit takes too long for a worker thread.
  *
  * The cost of a local operation depends on the surroundings of its elements: the degree of a
  * vertex, the corners of a face, the length of a hole and, if its row has HE_REACHES, the
@@ -10,7 +10,8 @@
 
 #include "api/write/decode_op.h"
 
-/* {0} is empty. Elements named by references are not known yet and left out. */
+/* The elements whose surroundings an edit visits. {0} is empty. Elements named by references are
+ * not known yet and are missing. */
 typedef struct api_edit_cost {
     he_ids named[HE_KIND_COUNT];
     he_ids reached[HE_KIND_COUNT]; /* elements of parameters with HE_REACHES */
@@ -21,8 +22,8 @@ void api_edit_cost_clear(api_edit_cost *cost);
 /* Collects the elements that `call` names, up to API_COSTLY_ELEMENTS. Returns HE_NO_MEMORY if
  * memory is out. */
 HE_NODISCARD he_status api_edit_cost_add(api_edit_cost *cost, const api_call *call, he_error *err);
-/* Are there more than `most` half-edges around the named elements, or more elements than were
- * collected? Visits hardly more than `most`. */
+/* Returns true if there are more than `most` half-edges around the named elements, or more elements
+ * than were collected. Visits hardly more than `most` half-edges. */
 bool api_edit_cost_exceeds(const api_edit_cost *cost, const he_mesh *mesh, uint64_t most);
 
 /* A cache of degrees while a list of operations runs. A list of a megabyte can name one vertex of

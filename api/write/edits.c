@@ -1,4 +1,5 @@
-/* POST .../edits: one operation, or a list that is applied whole or not at all. */
+/* edits.c - POST .../edits: one operation, or a list of operations that is applied as a whole or
+ * not at all. */
 #include "api/request/handlers.h"
 
 #include "api/request/gate.h"
@@ -12,7 +13,7 @@
 
 #include <string.h>
 
-/* State of a request between decoding and answer. */
+/* The state of a request between the decoding of its body and its answer. */
 typedef struct edits {
     api_in list; /* cursor at the array of operations; unused for a single one */
     api_item op; /* the current item of the list */
@@ -52,8 +53,8 @@ typedef struct edits {
     size_t revision_at; /* position in the answer of the revision, which is known at the commit */
 } edits;
 
-/* Progress of a long edit after copying, after the operations, and after finding the changes; the
- * rest is writing the answer. */
+/* The progress that a long edit has reached after copying, after the operations, and after finding
+ * the changes; the rest is writing the answer. */
 static const double COPY_SHARE = 0.2, OPS_SHARE = 0.7, CHANGES_SHARE = 0.95;
 
 static const char *const list_members[] = {"expected_revision", "dry_run", "ops", NULL};
@@ -113,7 +114,8 @@ static bool note(edits *e, const api_in *in, const api_call *call)
            api_problem_set_core(in->problem, &err);
 }
 
-/* Finds all mistakes in the document before the first operation runs. */
+/* Checks all operations, so that every mistake in the document is found before the first operation
+ * runs. */
 static bool check_ops(const api_exchange *x, edits *e)
 {
     api_call call;
@@ -148,7 +150,7 @@ static bool read_request(api_exchange *x, edits *e)
         return false;
     }
     e->is_list = api_in_find(root, "ops", &e->list);
-    /* The array is empty here: its items are read from the text. */
+    /* The array in the document is empty, because its items are read from the text one by one. */
     e->count = e->is_list ? x->ops.count : 1;
     if (e->is_list && (!api_in_only(root, list_members) || !api_in_array(&e->list, 0, 0) ||
                        !check_count(&e->list, e->count))) {
@@ -170,7 +172,8 @@ static uint64_t issued(const he_mesh *mesh)
            he_mesh_issued(mesh, HE_FACE);
 }
 
-/* A short list may name the whole mesh in every operation, or one vertex of high degree. */
+/* Returns false if the list exceeds a limit of work. A short list may name the whole mesh in every
+ * operation, or one vertex of high degree. */
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
@@ -188,10 +191,10 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     return true;
 }
 
-/* Polls of the watch that even the smallest operation makes. */
+/* The number of times that even the smallest operation polls the watch. */
 enum { PHASES = 24 };
 
-/* Charges one operation. Returns false if the list must continue on another thread. */
+/* Charges the cost of one operation. Returns false if the list must continue on another thread. */
 static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const api_call *call)
 {
     bool whole = he_op_is_whole(call->op, call->args);
@@ -233,8 +236,8 @@ static attribute_count count_attributes(const he_mesh *mesh)
     return count;
 }
 
-/* Limits attributes that an operation adds like those that a request adds: they may come from
- * another mesh, a first material, or corners that a weld keeps apart. */
+/* Applies the limits for attributes of a request to those that an operation has added: they may
+ * come from another mesh, a first material, or corners that a weld keeps apart. */
 static bool within_attributes(attribute_count before, const he_mesh *mesh, const api_in *in)
 {
     attribute_count after = count_attributes(mesh);
@@ -282,7 +285,8 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* A poll takes a system call, so a list polls once per this many operations or this much work. */
+/* The list polls the watch once for this many operations, or for a certain amount of work, because
+ * a poll takes a system call. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
@@ -332,7 +336,7 @@ static bool write_answer(api_exchange *x, edits *e)
     return !x->text.failed || api_fail_memory(x);
 }
 
-/* A dry run answers with the revision that the edit would have. */
+/* Answers the request. A dry run is answered with the revision that the edit would have made. */
 static void answer(api_exchange *x, const edits *e)
 {
     api_out_fill(&x->text, e->revision_at, x->info.revision + (e->dry_run && e->effect ? 1 : 0));
@@ -344,7 +348,7 @@ static void answer(api_exchange *x, const edits *e)
     }
 }
 
-/* Runs the operations on x->write.content. Returns true if the result shall be committed. */
+/* Runs the operations on x->write.content. Returns true if the result is to be committed. */
 static bool edit(api_exchange *x, edits *e)
 {
     he_mesh *mesh = x->write.content;
@@ -359,7 +363,7 @@ static bool edit(api_exchange *x, edits *e)
     if (e->results.failed) {
         return api_fail_memory(x);
     }
-    /* the rest of the work is limited by the rows of the delta, which were charged */
+    /* The rest of the work is limited by the rows of the delta, which were charged already. */
     e->paid = UINT64_MAX;
     he_watch_span(&x->watch, CHANGES_SHARE);
     if (st_write_changes(&x->write, &err) != HE_OK) {
@@ -406,7 +410,7 @@ static void unlimit_work(api_exchange *x, const edits *e)
     x->watch.cancelled = x->watch.cancelled && !e->exceeded;
 }
 
-/* Resets a list that was rolled back. */
+/* Resets the state of a list that was rolled back, so that it can start again. */
 static void start_over(edits *e)
 {
     e->looked_at = e->steps = e->work = 0;
@@ -445,8 +449,8 @@ static void count_operations(const api_exchange *x, const edits *e)
     }
 }
 
-/* Refuses the request if its first operation is sure to fail: nothing changes the mesh before
- * it. */
+/* Refuses the request early if its first operation is sure to fail, because nothing changes the
+ * mesh before that operation. */
 static bool foresee(api_exchange *x, edits *e)
 {
     const api_in *in = e->is_list ? &e->op.in : &x->root;
@@ -468,13 +472,14 @@ static bool foresee(api_exchange *x, edits *e)
     return false;
 }
 
-/* Claims the mesh before the client gets 202, so that a conflict is reported at once. */
+/* Claims the mesh (reserves it for an edit that works on a copy) before the client gets 202, so
+ * that a conflict is reported at once. */
 static bool claim(api_exchange *x, edits *e)
 {
     return api_write_claim(x, e->has_expected ? &e->expected : NULL) && foresee(x, e);
 }
 
-/* Ends what limit_work began; `good`: commit the write. */
+/* Ends what limit_work began, and, if `good` is set, commits the write. */
 static void end_edit(api_exchange *x, edits *e, bool good)
 {
     if (good) {
@@ -499,7 +504,8 @@ static void run_claimed(api_exchange *x)
 {
     edits *e = x->state;
     he_error err = {0};
-    /* Nothing is left to move to in a job, or if the client prefers to wait. */
+    /* In a job, or if the client prefers to wait, there is no other thread to move the work to, so
+     * it is not limited. */
     e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
     he_watch_span(&x->watch, COPY_SHARE);
     if (!api_others_take(x, &e->others)) {
@@ -517,7 +523,8 @@ static void run_claimed(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* Moves the list from a worker to the pool, or from there to a job; with many rows, to a claim. */
+/* Moves the list from a worker to the pool, or from there to a job; if it changes many rows, to a
+ * claim, which works on a copy. */
 static void go_on_elsewhere(api_exchange *x, edits *e)
 {
     bool on_worker = x->phase == API_PHASE_BODY;
@@ -552,9 +559,10 @@ static void run(api_exchange *x)
     end_edit(x, e, good);
 }
 
-/* A list of many operations, or one that visits the whole mesh or a huge element, belongs on a
- * thread that may block. Work on a really large mesh must not keep it locked. The handler chooses
- * the thread, because a claim must be made before the client is answered. */
+/* Estimates the cost of a list of operations. A list of many operations, or one that visits the
+ * whole mesh or a huge element, belongs on a thread that may block. Work on a very large mesh must
+ * not keep it locked. The handler chooses the thread, because a claim must be made before the
+ * client is answered. */
 bool api_edits_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     edits *e = x->state;

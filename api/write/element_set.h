@@ -1,5 +1,5 @@
-/* element_set.h - {"selected":true}: the live elements of a kind whose bool attribute of this name
- * is true, in the order of ids. It may replace a list of ids. */
+/* element_set.h - sets of elements such as {"selected":true}: the live elements of a kind whose
+ * bool attribute of this name is true, in the order of ids. A set may replace a list of ids. */
 #ifndef HE_API_WRITE_ELEMENT_SET_H
 #define HE_API_WRITE_ELEMENT_SET_H
 

@@ -5,8 +5,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* Returns the slot of the name, or the empty one where it belongs. The table is never full. The key
- * is secret, so that clients cannot choose colliding names. */
+/* Returns the slot of the hash table for this name, or the empty one where it belongs. The table is
+ * never full. The key of the hash is secret, so that clients cannot choose colliding names. */
 static size_t find_slot(const api_names *names, const char *text, size_t length)
 {
     size_t slot = (size_t)he_siphash_of(names->secret, text, length) & (names->table_size - 1);
@@ -126,7 +126,7 @@ void api_names_clear(api_names *names)
     api_names_init(names, names->secret);
 }
 
-/* Keeps the table at most half full. */
+/* Grows the hash table so that it is at most half full. */
 static bool grow(api_names *names)
 {
     if (names->count == names->capacity) {

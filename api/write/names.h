@@ -18,7 +18,8 @@
 #include "api/write/decode_op.h"
 
 typedef struct api_name {
-    /* in `texts`, because the document of an operation is freed when the next one is read */
+    /* The name is stored in `texts`, because the document of an operation is freed when the next
+     * one is read. */
     const char *name;
     const he_op *op;
     bool bound;
@@ -38,9 +39,10 @@ typedef struct api_names {
 /* Initializes `names`, which must not move afterwards: references.context points to it. */
 void api_names_init(api_names *names, const uint64_t secret[2]);
 void api_names_clear(api_names *names);
-/* Adds the name of an operation, if it has one. `at` is the operation's object. */
+/* Adds the name of an operation, if it has one. `at` is the JSON object of the operation. Returns
+ * false if the name exists already. */
 bool api_names_add(api_names *names, const api_in *at, const api_call *call);
-/* Takes the results if the operation has a name (leaving {0}), else does nothing. */
+/* Takes the results of an operation if it has a name, and leaves {0}; otherwise does nothing. */
 void api_names_bind(api_names *names, const api_call *call, he_results *results);
 /* Drops all results, before the list is run again. */
 void api_names_unbind(api_names *names);

@@ -1,4 +1,4 @@
-/* others.h - other meshes that a request names, as `append` does.
+/* others.h - other meshes that a request names, as the operation `append` does.
  *
  * While the request is decoded, each mesh is found and a reference held. One snapshot of each is
  * taken later, on a thread that may block and before any lock is held, because the locks of two
@@ -29,12 +29,12 @@ typedef struct api_others {
 /* Initializes the list. Each mesh is listed once. The `find` of `meshes` refuses a mesh that does
  * not exist and more than API_MAX_OTHERS. */
 void api_others_init(api_others *others, api_exchange *asker);
-/* Loads the meshes that are not in memory. Blocks. Returns false with x->problem filled. */
+/* Loads those meshes that are not in memory. Blocks. Returns false with x->problem filled. */
 bool api_others_load(api_exchange *x, api_others *others);
-/* Returns the number of elements of all of them now, to choose where the work is done. */
+/* Returns the present number of elements of all these meshes, to choose where the work is done. */
 uint64_t api_others_elements(const api_others *others);
-/* Takes the snapshots; returns false with x->problem filled. api_others_release gives the snapshots
- * back, api_others_clear the references, too. */
+/* Takes a snapshot of each mesh; returns false with x->problem filled. api_others_release gives the
+ * snapshots back; api_others_clear gives the references back, too. */
 bool api_others_take(api_exchange *x, api_others *others);
 void api_others_release(api_others *others);
 void api_others_clear(api_others *others);

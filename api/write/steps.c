@@ -1,9 +1,9 @@
-/* Undo and redo: POST .../undo and .../redo. */
+/* steps.c - undo and redo: POST .../undo and .../redo. */
 #include "api/request/handlers.h"
 
 #include "api/event/changes.h"
 
-/* State of a request between decoding and answer. */
+/* The state of a request between the decoding of its body and its answer. */
 typedef struct steps {
     st_action which;
     api_in expected, to;
@@ -133,7 +133,7 @@ void api_steps_post(api_exchange *x)
     }
 }
 
-/* Deltas of many rows belong on a thread that may block. */
+/* Estimates the cost of the steps. Deltas of many rows belong on a thread that may block. */
 bool api_steps_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
 {
     const steps *s = x->state;
