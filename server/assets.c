@@ -64,7 +64,8 @@ static const char *media_type(const char *name)
     return "application/octet-stream";
 }
 
-/* FNV-1a (Fowler, Noll, Vo): the tag of a file's content; it need not resist attackers. */
+/* Hashes the content of a file by FNV-1a (Fowler, Noll, Vo) for its tag, which need not resist
+ * attackers. */
 static uint64_t hash(const char *bytes, size_t length)
 {
     uint64_t value = UINT64_C(0xcbf29ce484222325);
@@ -74,8 +75,8 @@ static uint64_t hash(const char *bytes, size_t length)
     return value;
 }
 
-/* Does the name end in -HASH.suffix, as bundlers write it: eight or more letters and digits, with
- * capitals only or hexadecimal? */
+/* Returns true if a name ends in -HASH.suffix, as bundlers write it: eight or more letters and
+ * digits, with only capitals or hexadecimal digits. */
 static bool carries_hash(const char *name)
 {
     const char *dot = strchr(name, '.');
@@ -117,7 +118,7 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
-/* Skips what is not a regular file. */
+/* Reads a file of the page into memory. Skips it if it is not a regular file. */
 static bool add_file(srv_assets *assets, int folder, const char *name, const char *prefix,
                      char *message, size_t size)
 {
@@ -149,7 +150,7 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     return ok;
 }
 
-/* Adds a file that is served under a name without a suffix. */
+/* Adds an HTML page, which is served under a name without a suffix. */
 static bool add_page(srv_assets *assets, int folder, const char *name, const char *path,
                      char *message, size_t size)
 {

@@ -14,11 +14,11 @@ typedef struct srv_assets srv_assets;
 
 enum { SRV_ASSET_COUNT = 512, SRV_ASSET_BYTES = 64 << 20 };
 
-/* Returns NULL when memory is out. If the folder cannot be used, `message` says why; otherwise it
- * is "". */
+/* Reads the files of the page. Returns NULL when memory is out. If the folder cannot be used,
+ * `message` says why; otherwise it is "". */
 srv_assets *srv_assets_load(const char *folder, char *message, size_t size);
 void srv_assets_free(srv_assets *assets);
-/* The `asset` of api_options; `context` is the srv_assets. */
+/* Finds a file for a request, as the `asset` of api_options; `context` is the srv_assets. */
 bool srv_assets_find(void *context, const char *path, const char **bytes, size_t *length,
                      const char **type, const char **etag, bool *immutable);
 

@@ -34,8 +34,8 @@ static void free_backup(void *self)
     he_mem_free(b);
 }
 
-/* Replaces an old file of this name, which a killed process may have left. Returns -1 with a
- * sentence in `message`. */
+/* Makes the file of a backup. It replaces an old file of this name, which a killed process may have
+ * left. Returns -1 with a sentence in `message` on failure. */
 static int make_file(const char *folder, char *message, size_t size)
 {
     char path[PATH_MAX], why[ST_SQLITE_MESSAGE];

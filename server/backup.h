@@ -8,15 +8,15 @@
 
 #include <stdatomic.h>
 
-/* Only one backup exists at a time. */
+/* The backups of a daemon, of which only one exists at a time. */
 typedef struct srv_backups {
     const char *folder; /* of the store */
     _Atomic bool taken;
 } srv_backups;
 
-/* The `backup` of api_options; `context` is an srv_backups, which outlives the blob. The file is
- * made in the store's folder, where space is most likely, and unlinked when complete, so that it
- * disappears with the blob or with the process. */
+/* Makes a backup, as the `backup` of api_options; `context` is an srv_backups, which outlives the
+ * blob. The file is made in the store's folder, where space is most likely, and unlinked when it is
+ * complete, so that it disappears with the blob or with the process. */
 st_status srv_backup_make(void *context, api_blob *out, char *message, size_t size);
 
 #endif

@@ -193,7 +193,7 @@ static bool read_switch(const char *text, bool *out)
     return true;
 }
 
-/* `source` is what the user wrote: "--listen" or "HEDGE_LISTEN". */
+/* Reads the value of an option. `source` is what the user wrote: "--listen" or "HEDGE_LISTEN". */
 static bool read_value(srv_config *config, const srv_option *row, const char *text,
                        const char *source, char *message, size_t size)
 {
@@ -245,7 +245,8 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
     return false;
 }
 
-/* The words are separated by '|' in the placeholder that --help shows. */
+/* Finds the index of a word that an option allows. The words are separated by '|' in the
+ * placeholder that --help shows. */
 bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out)
 {
     const size_t length = strlen(text);
@@ -329,7 +330,7 @@ static bool read_environment(srv_config *config, char *(*environment)(const char
     return true;
 }
 
-/* Accepts "-h" and "-V", which are customary. */
+/* Returns the long form of an argument: it accepts "-h" and "-V", which are customary. */
 static const char *spelled_out(const char *argument)
 {
     return strcmp(argument, "-h") == 0   ? "--help"
@@ -462,7 +463,8 @@ static bool check(const srv_config *config, char *message, size_t size)
     return true;
 }
 
-/* `file` NULL: there is no file. */
+/* Reads the file, the environment and the arguments, in this order. `file` is NULL if there is no
+ * file. */
 static bool read_places(srv_config *config, const char *file, int argc, char *const *argv,
                         char *(*environment)(const char *name), char *message, size_t size)
 {
@@ -478,7 +480,8 @@ static bool read_places(srv_config *config, const char *file, int argc, char *co
            read_flags(config, argc, argv, message, size);
 }
 
-/* Reads flags and environment twice: they name the file, and they override it. */
+/* Reads the configuration. Flags and environment are read twice: first because they name the file,
+ * and again because they override it. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size)
 {

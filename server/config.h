@@ -13,10 +13,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* How often list options may be given, all of them together. */
+/* The largest total number of times that all list options together may be given. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* The values of choices, in the order in which their rows name them.
+/* The values of options that are one of several words, in the order in which the options' rows name
+ * them.
  *
  * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury more important
  * ones. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
@@ -64,7 +65,8 @@ typedef struct srv_config {
     const char *verified;                /* a file; NULL: verify the store */
     const char *token_name, *token_role; /* arguments of new_token; NULL: not given */
 
-    /* Owned texts: those that list members point into, and the configuration file. */
+    /* Texts that the configuration owns: those that list members point into, and the configuration
+     * file. */
     char *owned[SRV_MAX_LISTS];
     unsigned owned_count;
     char *file_text;
@@ -80,8 +82,9 @@ void srv_config_clear(srv_config *config);
 /* Returns the folder of the store; NULL if meshes are in memory only. */
 const char *srv_config_folder(const srv_config *config);
 
-/* Writes the URL of such a daemon on this machine: "http://127.0.0.1:8080", "https://...",
- * "unix:/run/hedge/socket". `listen` is the address with the port that is in use, or NULL. */
+/* Writes the URL of a daemon with this configuration on this machine: "http://127.0.0.1:8080",
+ * "https://...", "unix:/run/hedge/socket". `listen` is the address with the port that is in use, or
+ * NULL. */
 enum { SRV_URL_TEXT = 8 + SRV_ADDRESS_TEXT };
 void srv_config_url(const srv_config *config, const char *listen, char out[SRV_URL_TEXT]);
 

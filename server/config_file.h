@@ -13,8 +13,8 @@
 
 #include "server/config.h"
 
-/* Returns false with a sentence in `message`, which begins with the file and the line. `config`
- * owns the text until srv_config_clear. */
+/* Reads settings from a file. Returns false with a sentence in `message`, which begins with the
+ * file and the line. `config` owns the text until srv_config_clear. */
 bool srv_config_read_file(srv_config *config, const char *path, char *message, size_t size);
 
 #endif

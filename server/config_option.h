@@ -1,4 +1,4 @@
-/* config_option.h - one row of THE table of options, for the sources that read and print it. */
+/* config_option.h - one row of the table of options, for the sources that read and print it. */
 #ifndef HE_SERVER_CONFIG_OPTION_H
 #define HE_SERVER_CONFIG_OPTION_H
 
@@ -39,13 +39,13 @@ extern const size_t srv_option_count;
 
 const srv_option *srv_option_find(const char *name, size_t length);
 void srv_option_variable(const srv_option *row, char out[SRV_VARIABLE_TEXT]);
-/* May it be in a configuration file? */
+/* Returns true if the option may stand in a configuration file. */
 bool srv_option_is_setting(const srv_option *row);
-/* Can it be given without a value, as in "--samples"? */
+/* Returns true if the option can be given without a value, as in "--samples". */
 bool srv_option_is_switch(const srv_option *row);
 
-/* Finds the text among the words of an SRV_CHOICE and sets `out` to its index. Returns false if it
- * is none of them. */
+/* Finds a word among the words that an option of the kind SRV_CHOICE allows, and sets `out` to its
+ * index. Returns false if it is none of them. */
 bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 /* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);

@@ -51,8 +51,8 @@ static int restore(const char *folder, const char *file)
 
 /* --- each mesh in turn --- */
 
-/* Processes a mesh, or what is left of one (`whole` is false). Returns false with a line on
- * stderr. */
+/* A function that processes a mesh, or what is left of a damaged one (`whole` is false). Returns
+ * false with a line on stderr on failure. */
 typedef bool visit(void *context, const st_mesh_info *info, const he_mesh *content, bool whole);
 
 static void stay_open(void *self)
@@ -60,7 +60,7 @@ static void stay_open(void *self)
     (void)self;
 }
 
-/* Prints the damage and passes what is left to `each`. */
+/* Prints the damage of a mesh, and passes what is left of it to `each`. */
 static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage, visit *each,
                           void *context)
 {
@@ -110,7 +110,8 @@ static bool visit_mesh(const st_journal *journal, const st_card *card, visit *ea
     return good;
 }
 
-/* The id becomes a file name. In a damaged or forged file it may be anything. */
+/* Returns true if the text is a valid id of a mesh. The id becomes a file name, and in a damaged or
+ * forged store it may be anything. */
 static bool is_id(const char *id)
 {
     return id[0] != '\0' && id[0] != '.' &&
@@ -154,7 +155,7 @@ static void say_fault(void *context, const char *what)
     printf("%s: DAMAGED: %s\n", path, what);
 }
 
-/* Opens the file and visits its meshes. A damaged file is read as far as possible. */
+/* Opens a store and visits its meshes. A damaged file is read as far as possible. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;
@@ -191,7 +192,7 @@ static bool say_whole(void *context, const st_mesh_info *info, const he_mesh *co
 
 /* --- dump --- */
 
-/* On failure no file is left. */
+/* Writes a mesh as a GLB file. On failure no file is left. */
 static bool write_glb(const char *path, const he_mesh *content)
 {
     char bytes[4096];
@@ -223,8 +224,9 @@ typedef struct dump {
     FILE *list;
 } dump;
 
-/* Ids are letters, digits, '-', '_' and '.', and so are valid file names. What is left of a damaged
- * mesh gets its revision into the name, so that it is not mistaken for the whole mesh. */
+/* Writes a mesh to a file named after its id. Ids consist of letters, digits, '-', '_' and '.', so
+ * they are valid file names. What is left of a damaged mesh gets its revision into the name, so
+ * that it is not mistaken for the whole mesh. */
 static bool dump_mesh(void *context, const st_mesh_info *info, const he_mesh *content, bool whole)
 {
     const dump *d = context;

@@ -5,10 +5,10 @@
 
 #include "server/config.h"
 
-/* Does the configuration ask for one of them? */
+/* Returns true if the configuration asks for one of these operations. */
 bool srv_maintenance_asked(const srv_config *config);
-/* Runs it and prints the result on stdout. Returns the exit status of the process: 0, or 1 with the
- * reason on stderr. */
+/* Runs the operation that the configuration asks for, and prints the result on stdout. Returns the
+ * exit status of the process: 0, or 1 with the reason on stderr. */
 int srv_maintenance_run(const srv_config *config);
 
 #endif

@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One byte more than allowed shows that the file is too large. */
+/* The most bytes that are read of the file of tokens: one more than allowed shows that it is too
+ * large. */
 enum { MOST = API_TOKENS_FILE + 1 };
 
 bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t size)

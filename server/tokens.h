@@ -5,12 +5,12 @@
 
 #include "api/token/token_set.h"
 
-/* Puts the tokens of the file in force. Returns false with a sentence in `message`, which names the
- * file and the faulty line; the old tokens then stay in force. */
+/* Reads the file of tokens and puts its tokens in force. Returns false with a sentence in
+ * `message`, which names the file and the faulty line; the old tokens then stay in force. */
 bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t size);
 
-/* Prints a new token, and below it the line for the file. Returns the exit status of the process:
- * 0, or 2 with a line on stderr if the name or the role is invalid. */
+/* Prints a new token, and below it the line for the file of tokens. Returns the exit status of the
+ * process: 0, or 2 with a line on stderr if the name or the role is invalid. */
 int srv_tokens_new(const char *name, const char *role);
 
 #endif

@@ -1,12 +1,12 @@
-/* version.h - the version of hedged. A release is tagged v and SRV_VERSION; `make lint` compares
- * the two. */
+/* version.h - the version of hedged. The tag of a release is "v" followed by SRV_VERSION; `make
+ * lint` compares the two. */
 #ifndef HE_SERVER_VERSION_H
 #define HE_SERVER_VERSION_H
 
 #define SRV_VERSION "0.1.0"
 
-/* The git commit of the build; it ends in "+" if files were changed since. "" if the sources had no
- * git and make was not given COMMIT=. */
+/* The git commit of the build; it ends in "+" if files were changed since. It is "" if the sources
+ * are not in a git repository and make was not given COMMIT=. */
 extern const char srv_commit[];
 
 #endif

@@ -43,7 +43,8 @@ static void tell_stop(srv_log *log, const char *reason)
     srv_log_end(log, &line);
 }
 
-/* Returns false if work did not end: then nothing that it may use can be freed. */
+/* Stops all parts of the daemon. Returns false if some work did not end: then nothing that it may
+ * use can be freed. */
 static bool stop(srv_parts *parts, const siginfo_t *reason)
 {
     char text[64];
@@ -103,8 +104,8 @@ int srv_daemon_run(const srv_started *started)
         srv_notify(text);
         wait_for_stop(&parts, &signals, &reason);
         if (!stop(&parts, &reason)) {
-            /* Threads are still working on memory that must stay. The journal is left as after a
-             * kill, which it is designed for. */
+            /* Threads are still working on memory, so nothing is freed. The journal is left as it
+             * would be after a kill, which it is designed to survive. */
             srv_log_free(parts.log);
             _exit(1);
         }

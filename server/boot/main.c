@@ -12,7 +12,8 @@
 
 enum { MISUSE = 2 };
 
-/* The third parameter is not in the C standard, but all systems that hedged runs on have it. */
+/* The third parameter of main, the environment, is not in the C standard, but all systems that
+ * hedged runs on have it. */
 int main(int argc, char **argv, char **environment)
 {
     srv_config config;

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A client that connects to the address of `listen` may name that address as the host. */
+/* Allows requests whose Host header names the address on which the daemon listens. */
 static void allow_own_host(srv_parts *parts, const srv_address *address)
 {
     srv_names *hosts = &parts->policy.hosts;
@@ -17,10 +17,9 @@ static void allow_own_host(srv_parts *parts, const srv_address *address)
     }
 }
 
-/* Programs wait for the first line. The second is for a person at a terminal: it names localhost if
- * the daemon listens on all addresses, since a browser would send 0.0.0.0 as the Host, which is
- * refused.
- */
+/* Prints that the daemon is ready. Programs wait for the first line. The second line is for a
+ * person at a terminal: it names localhost if the daemon listens on all addresses, since a browser
+ * would send 0.0.0.0 as the Host, which is refused. */
 static void tell_ready(const srv_parts *parts)
 {
     char port[SRV_URL_TEXT];
@@ -60,7 +59,7 @@ bool srv_open_certificates(srv_parts *parts)
            srv_open_failed(parts, message);
 }
 
-/* Writes the address with the port that is in use. */
+/* Stores the daemon's URL, with the port that is in use. */
 static void name_url(srv_parts *parts, srv_address *address)
 {
     char text[SRV_ADDRESS_TEXT];

@@ -30,7 +30,7 @@ static bool open_threads(srv_parts *parts)
            srv_open_failed(parts, "no memory or threads to start");
 }
 
-/* Sets *made if the store is new, so that samples may be added. */
+/* Opens the journal. Sets *made if the store is new, so that samples may be added. */
 static bool open_journal(const srv_parts *parts, st_journal *out, bool *made)
 {
     const char *folder = srv_config_folder(parts->config);

@@ -28,7 +28,7 @@ static bool reload_tokens(srv_parts *parts, char *message, size_t size)
     return true;
 }
 
-/* Can a running daemon change this setting? */
+/* Returns true if a running daemon can change this setting. */
 static bool is_reloaded(const srv_option *row)
 {
     static const char *const names[] = {"log", "log-format", "log-level", "slow"};
@@ -51,8 +51,8 @@ static bool differs(const srv_option *row, const srv_config *one, const srv_conf
     return differ;
 }
 
-/* Reads all settings again. Only the file can have changed since the start, and flags and variables
- * still override it. */
+/* Reads all settings again. Only the configuration file can have changed since the start, and flags
+ * and variables still override it. */
 static bool reload_settings(srv_parts *parts, char *message, size_t size)
 {
     const srv_started *started = parts->started;
@@ -96,14 +96,15 @@ static bool reload_certificates(srv_parts *parts, char *message, size_t size)
     return true;
 }
 
-/* What is read again, in this order. */
+/* The functions that read something again, in the order in which they are called. */
 static bool (*const reloads[])(srv_parts *parts, char *message, size_t size) = {
     reload_settings,
     reload_tokens,
     reload_certificates,
 };
 
-/* systemd needs the start time to distinguish this reload from an earlier one. */
+/* Notifies systemd that a reload has begun, with the time, which systemd needs to distinguish this
+ * reload from an earlier one. */
 static void tell_systemd_begun(void)
 {
     char text[64];

@@ -35,7 +35,8 @@ static size_t open_files(void)
     return (size_t)files.rlim_cur;
 }
 
-/* A few descriptors are reserved to answer 503 to connections over the limit. */
+/* Chooses the numbers of connections and sockets. A few descriptors are reserved to answer 503 to
+ * connections over the limit. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options)
 {
     size_t files = open_files();

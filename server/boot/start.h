@@ -5,7 +5,7 @@
 #include "server/config.h"
 #include "server/log/log.h"
 
-/* Is the log on standard error JSON? */
+/* Returns true if the log on standard error is written as JSON. */
 bool srv_start_is_json(const srv_config *config);
 /* Returns the log settings of the configuration. */
 srv_log_settings srv_start_log_settings(const srv_config *config);

@@ -12,9 +12,9 @@ typedef struct srv_watch {
     uint64_t fed; /* when systemd was last notified that a worker answered, st_clock_micros */
 } srv_watch;
 
-/* Call it about once a second, with a `watch` that is zero at first. Returns unused memory to the
- * system, logs when the disk is full, has space again or failed, and notifies systemd's
- * watchdog. */
+/* Does the periodic work; it must be called about once a second, with a `watch` that is zero at
+ * first. Returns unused memory to the system, logs when the disk is full, has space again or
+ * failed, and notifies systemd's watchdog. */
 void srv_watch_look(srv_watch *watch, const srv_parts *parts);
 
 #endif

@@ -47,7 +47,8 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
     }
 }
 
-/* Keeps percent-escapes, because the router decodes the path segment by segment. */
+/* Leaves percent-escapes in a path as they are, because the router decodes the path segment by
+ * segment. */
 static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text)
 {
     (void)context;
@@ -55,8 +56,9 @@ static size_t keep_escapes(void *context, struct MHD_Connection *connection, cha
     return strlen(text);
 }
 
-/* A connection over the maximum of its address gets that answer once and is closed. Connections of
- * a trusted proxy are not counted, because they belong to all its clients. */
+/* Counts a connection of an address. A connection over the maximum of its address gets one answer,
+ * which says so, and is closed. Connections of a trusted proxy are not counted, because they belong
+ * to all its clients. */
 static void count_peer(srv_http *http, srv_connection *c)
 {
     size_t count;
@@ -91,8 +93,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
         api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
-            /* Bytes that cannot be checked are not served: libmicrohttpd sees the end of the stream
-             * at once. */
+            /* Bytes that cannot be checked are not served: the socket is shut down, so that
+             * libmicrohttpd sees the end of the stream at once. */
             shutdown(fd, SHUT_RDWR);
         }
     } else {
@@ -108,8 +110,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
     }
 }
 
-/* Refuses connections beyond those that are answered 503, connections for which there is no memory,
- * and all connections when the server is stopping. */
+/* Refuses connections beyond the number that can still be answered 503, connections for which there
+ * is no memory, and all connections when the server is stopping. */
 static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer, socklen_t length)
 {
     (void)peer;
@@ -128,8 +130,8 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     return MHD_NO;
 }
 
-/* gnutls calls it for each handshake, perhaps twice. Returns the pair to which the connection holds
- * a reference. */
+/* Returns the certificate and key to which the connection holds a reference. gnutls calls this for
+ * each handshake, perhaps twice. */
 static int show_certificate(gnutls_session_t session, const struct gnutls_cert_retr_st *info,
                             gnutls_pcert_st **chain, unsigned int *length,
                             gnutls_ocsp_data_st **ocsp, unsigned int *ocsp_length,
@@ -164,8 +166,8 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         flags |= MHD_USE_TLS;
     }
     struct MHD_OptionItem numbers[] = {
-        /* In strict mode it would answer with pages of its own what http_syntax.h has refused
-         * already. */
+        /* In strict mode libmicrohttpd would answer what http_syntax.h has refused already, with
+         * pages of its own. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
         /* libmicrohttpd divides the limit by the number of workers, but one worker may get all
@@ -189,7 +191,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         MHD_OPTION_SOCK_ADDR, &o->address.socket.any, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes,
         NULL, MHD_OPTION_URI_LOG_CALLBACK, request_begin, http, MHD_OPTION_NOTIFY_COMPLETED,
         request_completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http,
-        /* These come last, because without TLS the list ends here. */
+        /* These options come last, because without TLS the list ends here. */
         tls ? MHD_OPTION_HTTPS_CERT_CALLBACK2 : MHD_OPTION_END, show_certificate,
         MHD_OPTION_HTTPS_PRIORITIES, srv_tls_priorities, MHD_OPTION_END);
 }
@@ -259,13 +261,13 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     if (http == NULL) {
         return true;
     }
-    /* From now on accept_policy refuses all connections. MHD_quiesce_daemon cannot do that: it
-     * removes the listening socket from the workers' epoll sets while they may do the same, and the
-     * library aborts if both try. */
+    /* From now on accept_policy refuses all connections. MHD_quiesce_daemon cannot be used for
+     * that: it removes the listening socket from the workers' epoll sets while the workers may do
+     * the same, and the library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
     srv_live_stop(http->live);
-    /* After the deadline only suspended requests are waited for. */
+    /* After the deadline, the stop waits only for suspended requests. */
     if (!srv_gate_close(&http->gate, millis)) {
         return false;
     }

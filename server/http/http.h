@@ -17,7 +17,7 @@
 
 typedef struct srv_http srv_http;
 
-/* Everything is borrowed and outlives the server. */
+/* What the server is started with. Everything is borrowed and must outlive the server. */
 typedef struct srv_http_options {
     srv_address address;
     int listening;                  /* a listening socket; -1: the server binds `address` */
@@ -36,7 +36,7 @@ typedef struct srv_http_options {
     uint64_t heartbeat_micros;  /* of silence, after which an open stream sends a comment */
 } srv_http_options;
 
-/* Connections that may wait to be accepted (the listen backlog). */
+/* The number of connections that may wait to be accepted (the listen backlog). */
 enum { SRV_BACKLOG = 1024 };
 
 /* Starts to accept connections. Returns NULL with a sentence in `message` if it cannot. */

@@ -15,7 +15,7 @@
 
 enum { SRV_ID_PREFIX = 8 };
 
-/* Makes request ids: a prefix of this server and a counter. */
+/* Makes request ids, which consist of a prefix of this server and a counter. */
 typedef struct srv_ids {
     char prefix[SRV_ID_PREFIX + 1];
     _Atomic uint64_t next;
@@ -23,8 +23,8 @@ typedef struct srv_ids {
 
 void srv_ids_init(srv_ids *ids);
 
-/* Copies the client's X-Request-Id if it is 1 to SRV_REQUEST_ID letters, digits and . _ -, or makes
- * a new one. */
+/* Chooses the id of a request: copies the client's X-Request-Id if it is 1 to SRV_REQUEST_ID
+ * letters, digits and . _ -, or makes a new one. */
 void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1]);
 
 /* The client of a request. */
@@ -40,8 +40,8 @@ typedef struct srv_client {
 bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_client *client,
                        api_problem *problem);
 
-/* Applies P1 to P6 of http_policy.h to a request with valid framing. Returns false with the problem
- * filled. `cors` is set to the origin to name in the answer, or NULL. */
+/* Applies rules P1 to P6 of http_policy.h to a request with valid framing. Returns false with the
+ * problem filled if it is refused. `cors` is set to the origin to name in the answer, or NULL. */
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
                srv_client *client, const char **cors, api_problem *problem);
 

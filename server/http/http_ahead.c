@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-/* A full piece takes some milliseconds to compress and is more than a socket takes at once. The
- * first is smaller, and each is twice as long as the last, so that little work is lost if the
- * client reads nothing. */
+/* The sizes of pieces. A full piece takes some milliseconds to compress, and is more than a socket
+ * takes at once. The first piece is smaller, and each is twice as long as the last, so that little
+ * work is lost if the client reads nothing. */
 enum { PIECE = 128 * 1024, FIRST_PIECE = 16 * 1024 };
 
 void srv_ahead_clear(srv_ahead *ahead)

@@ -18,7 +18,8 @@
 
 enum { SRV_AHEAD_WAIT = -2 };
 
-/* Stored in the request; the caller uses only the members up to `resume`. */
+/* An answer that is made ahead. It is stored in the request; the caller uses only the members up to
+ * `resume`. */
 typedef struct srv_ahead {
     int64_t (*read)(void *context, char *buffer, size_t size); /* as in api_answer */
     void *context;
@@ -32,7 +33,8 @@ typedef struct srv_ahead {
 
 void srv_ahead_clear(srv_ahead *ahead);
 
-/* Returns the number of bytes, 0 at the end, -1 on failure, or SRV_AHEAD_WAIT. */
+/* Takes the piece that was made. Returns the number of bytes, 0 at the end, -1 on failure, or
+ * SRV_AHEAD_WAIT if the next piece must be made first. */
 int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size);
 /* Makes the next piece, after SRV_AHEAD_WAIT. The caller must not touch the request afterwards. If
  * the queue of the threads is full, the piece is made by the calling thread. */

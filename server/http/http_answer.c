@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 
 enum {
-    /* bytes requested from a reader at once, in memory of libmicrohttpd */
+    /* The number of bytes requested from a reader at once, in memory of libmicrohttpd. */
     ANSWER_BLOCK = 64 * 1024,
     LIVE_BLOCK = 1024 /* small, as there may be thousands; used for HTTP/1.0 only */
 };
@@ -44,8 +44,8 @@ static void widen(srv_request *r)
     }
 }
 
-/* When this much was sent, the client must have read some of it, because it is more than the
- * buffers hold. */
+/* Enlarges the socket's buffer when so much was sent that the client must have read some of it,
+ * because it is more than the buffers hold. */
 static void widen_after(srv_request *r, uint64_t position)
 {
     if (position >= SRV_SEND_BUFFER) {
@@ -70,7 +70,8 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
-/* Called by the thread that makes a piece ahead, while the request is suspended. */
+/* Makes a piece of the answer; called by the thread that makes it ahead, while the request is
+ * suspended. */
 static int64_t read_ahead(void *context, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -81,7 +82,7 @@ static int64_t read_ahead(void *context, char *buffer, size_t size)
     return got;
 }
 
-/* Takes the pieces that another thread makes. */
+/* Takes the pieces of an answer that another thread makes. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -121,7 +122,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
-        /* While waiting, the request needs only its headers in the buffer. */
+        /* While the stream waits, the request needs only its headers in the buffer. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_live_aside(&r->stream);
         return 0;
@@ -143,15 +144,16 @@ void srv_answer_refuse(srv_request *r, int code, const char *text)
     r->step = API_READY;
 }
 
-/* Describes the answer: the exchange's, or a refusal without an exchange. The description is valid
- * until the request ends. */
+/* Describes the answer of a request: that of its exchange, or a refusal if it has no exchange. The
+ * description is valid until the request ends. */
 static void describe(srv_request *r, srv_wire *wire)
 {
     *wire = (srv_wire){.close = r->close};
     if (r->exchange != NULL) {
         const api_answer *answer = api_answer_of(r->exchange);
         srv_wire_answer(wire, answer);
-        /* When the whole body was read, no rest of it can be mistaken for a request. */
+        /* If the whole body was read, no rest of it can be mistaken for the next request, so the
+         * connection may stay open. */
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
@@ -182,9 +184,9 @@ static bool is_streamed(const srv_request *r)
     return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
 }
 
-/* Making a piece takes up to a millisecond. With a few downloads the worker makes them itself,
- * which saves the detour through the pool; a thousand would keep it from other work for a
- * second. */
+/* Decides whether another thread makes the pieces of an answer. Making a piece takes up to a
+ * millisecond. With a few downloads the worker makes them itself, which saves the detour through
+ * the pool; a thousand would keep it from other work for a second. */
 static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);
@@ -240,7 +242,8 @@ bool srv_answer_send(srv_request *r)
     srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
                          st_clock_micros());
     if (is_live(r)) {
-        /* A stream may be silent without limit; the connection is closed after it. */
+        /* A stream may be silent without limit, so it has no timeout; the connection is closed
+         * after it. */
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     }
     if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
@@ -258,9 +261,9 @@ bool srv_answer_send(srv_request *r)
     return queued == MHD_YES;
 }
 
-/* libmicrohttpd accepts no response while a body is arriving. So that a client that sends without
- * end learns why it is cut off, the answer is written directly to the socket; closing the
- * connection then drains the rest of the body. */
+/* Answers while a body is still arriving, when libmicrohttpd accepts no response. So that a client
+ * that sends without end learns why it is cut off, the answer is written directly to the socket;
+ * closing the connection then drains the rest of the body. */
 void srv_answer_cut_off(srv_request *r)
 {
     srv_wire wire;

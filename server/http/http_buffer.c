@@ -38,7 +38,7 @@ typedef struct buffer {
 } buffer;
 
 /* The idle buffers of a worker, in the order in which they became idle. Only the worker uses the
- * list, without a lock; connections left when the worker has ended are closed by the thread that
+ * list, so it has no lock; connections left when the worker has ended are closed by the thread that
  * stops the server. */
 typedef struct lane {
     uint32_t first, last;
@@ -53,7 +53,8 @@ static struct {
     lane lanes[LANES];
     pthread_mutex_t lock; /* protects the members below */
     size_t lanes_used;
-    /* lists of free buffers with and without pages; number of buffers ever used */
+    /* The lists of free buffers with pages (warm) and without (cold), and the number of buffers
+     * ever used (fresh). */
     uint32_t warm, cold, fresh;
     uint64_t put; /* when a buffer last joined the warm list */
     _Atomic size_t warm_count;
@@ -82,7 +83,8 @@ bool srv_buffers_reserve(size_t most)
         he_mem_free(all.buffers);
         return false;
     }
-    /* A huge page would allocate the pages beside the one that is written. */
+    /* A huge page would allocate the pages beside the one that is written, so huge pages are
+     * excluded. */
     madvise(memory, most * all.bytes, MADV_NOHUGEPAGE);
     all.memory = memory;
     return true;
@@ -204,7 +206,8 @@ static int give_back_free(int timeout)
     return more ? 0 : sooner(timeout);
 }
 
-/* Returns the milliseconds that the worker may wait before the next check. */
+/* Returns the pages of idle buffers to the system. Returns the milliseconds that the worker may
+ * wait before the next check. */
 static int give_back_idle(int timeout)
 {
     if (own == NULL || own->first == SRV_NO_BUFFER) {
@@ -242,7 +245,8 @@ static void *take(void)
     }
     uint32_t i = SRV_NO_BUFFER;
     if (own == NULL) {
-        /* More threads than lists: servers were started and stopped many times in this process. */
+        /* There are more threads than lists: servers were started and stopped many times in this
+         * process. */
     } else if (all.warm != SRV_NO_BUFFER) {
         i = pop(&all.warm);
         atomic_fetch_sub_explicit(&all.warm_count, 1, memory_order_relaxed);
@@ -284,8 +288,8 @@ static void put(uint32_t i)
 typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
 typedef int (*unmap_function)(void *, size_t);
 
-/* Without a reservation the program may not even have begun, and a sanitizer may not be
- * initialized: so the system call is made directly, without instrumentation. */
+/* For functions that may be called before the program has begun, when a sanitizer is not
+ * initialised yet: they must not be instrumented, and make the system call directly. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
 /* Finds the next definition after this program's: the C library's, or a sanitizer's before it. */
@@ -340,7 +344,7 @@ UNWATCHED int munmap(void *address, size_t length)
     return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
 }
 
-/* epoll_pwait without a signal mask does exactly what epoll_wait does. */
+/* Replaces epoll_wait by epoll_pwait without a signal mask, which does exactly the same. */
 int epoll_wait(int set, struct epoll_event *events, int most, int timeout)
 {
     return epoll_pwait(set, events, most, give_back_idle(give_back_free(timeout)), NULL);

@@ -24,11 +24,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Large enough for the largest head that http_syntax.h lets through and the head of its answer, and
- * above 32 KiB, up to which libmicrohttpd uses malloc(). Not larger, because libmicrohttpd zeroes
- * it after each request: 64 connections with 128 KiB each do not fit into the cache, which costs
- * more than half of the throughput.
- */
+/* The size of a buffer: large enough for the largest head that http_syntax.h lets through and the
+ * head of its answer, and above 32 KiB, up to which libmicrohttpd uses malloc(). Not larger,
+ * because libmicrohttpd zeroes it after each request: 64 connections with 128 KiB each do not fit
+ * into the cache, which costs more than half of the throughput. */
 enum { SRV_BUFFER_BYTES = 36 * 1024 };
 
 enum { SRV_NO_BUFFER = UINT32_MAX };
@@ -42,8 +41,9 @@ bool srv_buffers_reserve(size_t most);
  * call. libmicrohttpd takes the buffer of a connection right before it reports the connection. */
 uint32_t srv_buffer_taken(void);
 
-/* Says that the buffer's connection is idle, or (srv_buffer_use) has begun a request. Called by the
- * worker that took it, with the microseconds of the monotonic clock. SRV_NO_BUFFER does nothing. */
+/* Declares the connection of a buffer idle; srv_buffer_use declares that it has begun a request.
+ * Must be called by the worker that took the buffer, with the microseconds of the monotonic clock.
+ * SRV_NO_BUFFER does nothing. */
 void srv_buffer_rest(uint32_t buffer, uint64_t now);
 void srv_buffer_use(uint32_t buffer);
 

@@ -56,8 +56,8 @@ struct srv_deadlines {
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
 {
     if (c != NULL) {
-        /* Written first, so that a thread that reads the new stage, or zero bytes, also reads the
-         * new start time. */
+        /* The start time is written before the stage and the bytes, so that a thread that reads the
+         * new stage, or zero bytes, also reads the new start time. */
         atomic_store_explicit(&c->since, now, memory_order_relaxed);
         atomic_store_explicit(&c->bytes, 0, memory_order_release);
         atomic_store_explicit(&c->stage, (int)stage, memory_order_release);
@@ -140,8 +140,8 @@ static void count_kept(srv_connection *c, uint64_t kept)
     c->kept = kept;
 }
 
-/* Bytes of an answer in the kernel, with its bookkeeping; 0 if unknown. A Unix socket has no queue
- * of its own: everything is in the reader's. */
+/* Returns the bytes of an answer that the kernel still holds, with its bookkeeping; 0 if unknown. A
+ * Unix socket has no queue of its own: everything is in the reader's queue. */
 static uint64_t kept_by_kernel(const srv_connection *c)
 {
     uint32_t info[SK_MEMINFO_VARS] = {0};
@@ -169,7 +169,8 @@ static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
     return told;
 }
 
-/* May bytes of an answer be waiting? In IDLE only until none was found waiting once. */
+/* Returns true if bytes of an answer may be waiting to be read. In the stage IDLE that is so only
+ * until none was found waiting once. */
 static bool may_wait(const srv_connection *c, int stage, uint64_t since)
 {
     return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
@@ -196,9 +197,9 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
                                    c->acked, now);
 }
 
-/* Has the client closed its side before its request was complete? It must be seen twice without
- * progress in between, because the handler may still be working on bytes that arrived together with
- * the end. */
+/* Returns true if the client has closed its side before its request was complete. It must be seen
+ * twice without progress in between, because the handler may still be working on bytes that arrived
+ * together with the end. */
 static bool is_request_cut(srv_connection *c)
 {
     char byte;
@@ -216,7 +217,8 @@ static bool is_request_cut(srv_connection *c)
     return again;
 }
 
-/* Counts a connection that is closed for being too slow. Later sweeps may find it again. */
+/* Counts a connection that is closed for being too slow, only once, because later sweeps may find
+ * it again. */
 static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
 {
     const int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
@@ -230,12 +232,13 @@ static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
     c->late = true;
 }
 
-/* Closes the connection if it has to be closed, and returns whether it did. */
+/* Closes the connection if it is too slow; returns true if it did. */
 static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t now)
 {
     bool stuck = is_answer_stuck(c, &d->options, now);
     if (stuck) {
-        /* Without this the kernel would go on sending what is in its buffer. */
+        /* The connection is reset: otherwise the kernel would go on sending what is in its
+         * buffer. */
         struct linger reset = {.l_onoff = 1, .l_linger = 0};
         setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
         count_late(d, c, true);
@@ -278,7 +281,7 @@ static int sweep(srv_deadlines *d)
     return d->next == NULL ? SWEEP_MILLIS : 0;
 }
 
-/* Returns true when the drain is finished. */
+/* Reads and discards what a client still sends. Returns true when the drain is finished. */
 static bool drain_once(drain *one, uint64_t now)
 {
     char buffer[16 * 1024];
@@ -324,7 +327,7 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* Nothing to read: the list is checked anyway. */
+            /* There is nothing to read from the counter; the list is checked anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);
@@ -408,7 +411,8 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     return c;
 }
 
-/* Works on a duplicate, which keeps the connection open after its owner has closed the socket. */
+/* Begins to drain a connection. It works on a duplicate of the socket, which keeps the connection
+ * open after its owner has closed the socket. */
 static void begin_drain(srv_deadlines *d, int socket)
 {
     if (d->drain_count == DRAINS || d->ending) {

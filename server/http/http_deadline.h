@@ -104,35 +104,36 @@ typedef struct srv_connection {
     char peer[SRV_ADDRESS_TEXT];
 } srv_connection;
 
-/* Returns NULL when memory, descriptors or threads are out. */
+/* Makes the watch over connections, with its thread. Returns NULL when memory, descriptors or
+ * threads are out. */
 srv_deadlines *srv_deadlines_new(const srv_deadline_options *options);
-/* No connection may be left. */
+/* Ends the thread and frees the watch. No connection may be left. */
 void srv_deadlines_free(srv_deadlines *deadlines);
 
-/* `session` is NULL without TLS. Returns NULL when memory is out; the socket is then not
- * watched. */
+/* Adds a connection whose time is to be limited. `session` is NULL without TLS. Returns NULL when
+ * memory is out; the socket is then not watched. */
 srv_connection *srv_deadlines_add(srv_deadlines *deadlines, int socket, const struct sockaddr *peer,
                                   gnutls_session_t session, uint32_t buffer);
-/* Call it before the socket is closed. Takes NULL. */
+/* Removes a connection, which may be NULL. It must be called before the socket is closed. */
 void srv_deadlines_remove(srv_deadlines *deadlines, srv_connection *connection);
 size_t srv_deadlines_count(const srv_deadlines *deadlines);
 
 /* Both take NULL. */
 void srv_connection_enter(srv_connection *connection, srv_stage stage, uint64_t now);
 void srv_connection_moved(srv_connection *connection, uint64_t bytes);
-/* Did the client leave while its request is worked on? Returns true if the connection was reset, or
- * if the client closed its side and the request has been in this stage for SRV_CLOSED_MICROS. (A
+/* Returns true if the client has left while its request is worked on: if the connection was reset,
+ * or if the client closed its side and the request has been in this stage for SRV_CLOSED_MICROS. (A
  * client that closed only its writing side may still read, but cannot be distinguished from one
  * that is gone.) Called by the thread that works on the request. */
 enum { SRV_CLOSED_MICROS = 1000000 };
 bool srv_connection_is_left(const srv_connection *connection, uint64_t now);
 
-/* Has the connection exceeded the time of its stage at `now`? `crowded`: there are too many
- * connections. Not used for answers. */
+/* Returns true if the connection has exceeded the time of its stage at `now`. `crowded` says that
+ * there are too many connections. It is not used for answers. */
 bool srv_connection_is_late(const srv_connection *connection, const srv_deadline_options *options,
                             bool crowded, uint64_t now);
-/* Does the client read its answer too slowly? Must be called repeatedly, with the bytes waiting in
- * the socket and all bytes ever acknowledged. */
+/* Returns true if the client reads its answer too slowly. It must be called repeatedly, with the
+ * bytes waiting in the socket and all bytes ever acknowledged. */
 bool srv_connection_is_stuck(srv_connection *connection, const srv_deadline_options *options,
                              uint64_t outstanding, uint64_t acknowledged, uint64_t now);
 

@@ -16,8 +16,8 @@ enum {
     WORKER_MICROS = 20000 /* that a worker spends on a read before it goes to the pool */
 };
 
-/* Unless the comment says otherwise, functions of this file return false to close the
- * connection. */
+/* All functions of this file that return bool return false to close the connection, unless their
+ * comment says otherwise. */
 
 /* --- waiting --- */
 
@@ -36,7 +36,8 @@ static bool begin_wait(srv_request *r, srv_state why)
     return allowed;
 }
 
-/* The worker serves its other connections before it returns to this one. */
+/* Suspends and resumes the connection, so that the worker serves its other connections before it
+ * returns to this one. */
 static bool give_way(srv_request *r)
 {
     srv_timing_enter(&r->timing, SRV_PART_QUEUE);
@@ -47,7 +48,8 @@ static bool give_way(srv_request *r)
     return true;
 }
 
-/* D1. Suspends first: as soon as the wait is registered, another thread may resume the request. */
+/* Sends the answer when it is durable (rule D1). It suspends the connection before it registers the
+ * wait, because as soon as the wait is registered, another thread may resume the request. */
 static bool answer_when_durable(srv_request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
@@ -78,7 +80,7 @@ static bool answer_held(srv_request *r)
     return srv_answer_send(r);
 }
 
-/* The exchange becomes a job: another exchange answers the client. */
+/* Turns the exchange into a job; another exchange answers the client. */
 static void detach(srv_request *r)
 {
     api_exchange *answer = api_detach(r->exchange);
@@ -89,7 +91,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* May the worker continue a read, or have its other connections waited too long? */
+/* Returns true if the worker may continue a read, and false if its other connections have waited
+ * too long. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -98,7 +101,7 @@ static bool is_short(void *context, const char *phase, double done)
     return st_clock_micros() < r->work_until;
 }
 
-/* Is the client still there, and is there time left? */
+/* Returns true if the client still waits for the answer and there is time left. */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -156,8 +159,8 @@ static bool begin_work(srv_request *r)
 
 /* --- reading --- */
 
-/* Are the bytes no valid request (http_syntax.h)? Then libmicrohttpd parses an ending that the
- * client did not send. */
+/* Returns true if the bytes of the request were no valid request (http_syntax.h). Then
+ * libmicrohttpd parses an ending that the client did not send. */
 static bool is_faulty(const srv_request *r, api_problem *problem)
 {
     return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
@@ -176,7 +179,7 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
     return MHD_YES;
 }
 
-/* Returns false with r->refusal filled. */
+/* Finds the address of the client. Returns false with r->refusal filled. */
 static bool find_client(srv_request *r, const srv_head *head)
 {
     snprintf(r->client.address, sizeof r->client.address, "%s",
@@ -193,8 +196,8 @@ static api_metrics *metrics_of(const srv_request *r)
     return api_metrics_of(r->http->options.service);
 }
 
-/* Returns false with r->refusal filled, and with r->close set if the reason is the connection
- * rather than the request. */
+/* Checks whether the request may run. Returns false with r->refusal filled, and with r->close set
+ * if the reason is the connection rather than the request. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     srv_http *http = r->http;
@@ -213,8 +216,9 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     return srv_admit(http->options.policy, head, framing, &r->client, &r->cors, &r->refusal);
 }
 
-/* The values of headers belong to libmicrohttpd, which keeps them until the request has completed,
- * or to r->joined. Before that the exchange is freed, or has become a job that copied them. */
+/* Begins the exchange of a request. The values of headers belong to libmicrohttpd, which keeps them
+ * until the request has completed, or to r->joined. Before that the exchange is freed, or has
+ * become a job that copied them. */
 static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {
@@ -241,8 +245,9 @@ static void begin_exchange(srv_request *r, const srv_head *head, const srv_frami
     }
 }
 
-/* The answer is known before the body arrived. A small body is read and discarded, so that the
- * connection can be used again; a client that waits for 100 Continue gets the answer at once. */
+/* Answers a request whose answer is known before its body arrived. A small body is read and
+ * discarded, so that the connection can be used again; a client that waits for 100 Continue gets
+ * the answer at once. */
 static bool answer_early(srv_request *r, bool expects)
 {
     if (r->whole || (!expects && r->announced <= SWALLOW)) {
@@ -289,7 +294,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     bool known = find_client(r, &head);
     if (is_faulty(r, &r->refusal) ||
         !srv_framing_read(&head, r->client.scheme == SRV_SCHEME_HTTPS, &framing, &r->refusal)) {
-        /* The end of the body is unknown, so it cannot be skipped. */
+        /* The end of the body is unknown, so the body cannot be skipped. */
         r->step = API_READY;
         r->announced = UINT64_MAX;
         return answer_early(r, true);
@@ -316,7 +321,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
-/* Skipped bytes of a body count against the client's limit, too. */
+/* Counts bytes against the client's limit; those of a body that is skipped count, too. */
 static void charge(const srv_request *r, uint64_t bytes)
 {
     if (r->exchange != NULL) {
@@ -333,7 +338,8 @@ static void refuse_fault(srv_request *r)
     r->socket->drain = true;
 }
 
-/* Reduces `size` to the bytes that must be passed again. */
+/* Passes a piece of the body to the exchange. Reduces `size` to the bytes that must be passed
+ * again. */
 static bool read_body(srv_request *r, const char *bytes, size_t *size)
 {
     if (is_faulty(r, NULL)) {

@@ -9,7 +9,7 @@ typedef struct line_sum {
     size_t count, bytes;
 } line_sum;
 
-/* Returns the position after the joined value. */
+/* Joins all lines of a header. Returns the position after the joined value. */
 static char *join(const srv_head *head, api_request_header header, char *out)
 {
     for (size_t i = 0; i < head->field_count; i++) {

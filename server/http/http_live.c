@@ -23,7 +23,7 @@ struct srv_live {
     bool stopping, ending;
 };
 
-/* --- lists, under the lock --- */
+/* --- lists of streams, under the lock --- */
 
 static void add_last(srv_live *live, srv_stream *stream)
 {
@@ -101,7 +101,8 @@ static void wait_for_change(srv_live *live)
     ready_gone(live);
 }
 
-/* Resumes each ready stream; afterwards it must not be touched, because it may be freed at once. */
+/* Resumes each stream that is ready. After that a stream must not be touched, because it may be
+ * freed at once. */
 static void resume_all(srv_live *live)
 {
     srv_stream *ready = live->ready;
@@ -206,8 +207,8 @@ void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source
 {
     *stream = (srv_stream){
         .live = live, .source = source, .idle = idle, .resume = resume, .socket = socket};
-    /* Edge-triggered: it is reported once. If the socket cannot be watched, a dead client is
-     * noticed at the second heartbeat. */
+    /* The end of the client is reported once, because the watch is edge-triggered. If the socket
+     * cannot be watched, a dead client is noticed at the second heartbeat. */
     struct epoll_event closed = {.events = EPOLLRDHUP | EPOLLET, .data.ptr = stream};
     if (socket >= 0 && epoll_ctl(live->watch, EPOLL_CTL_ADD, socket, &closed) != 0) {
         stream->socket = -1;
@@ -248,7 +249,8 @@ int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
     return got;
 }
 
-/* A stream that was woken while it was pulled is ready at once. */
+/* Puts a stream aside until there is something to send. A stream that was woken while it was pulled
+ * is ready at once. */
 void srv_live_aside(srv_stream *stream)
 {
     srv_live *live = stream->live;

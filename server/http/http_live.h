@@ -36,18 +36,18 @@ typedef struct srv_stream {
     struct srv_stream *next, *previous;
 } srv_stream;
 
-/* Returns NULL when memory, descriptors or threads are out. */
+/* Makes the object that streams share, with its thread. Returns NULL when memory, descriptors or
+ * threads are out. */
 srv_live *srv_live_new(uint64_t heartbeat_micros);
 /* No stream may be left. */
 void srv_live_free(srv_live *live);
 
-/* Begins a stream. The thread calls `resume` once for each srv_live_aside. `socket` is the
- * client's; -1: it is not watched for the client's end. */
+/* Begins a stream. The thread calls `resume` once for each srv_live_aside. `socket` is the client's
+ * socket, which is watched for the end of the connection; -1 means that it is not watched. */
 void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
                     int socket, void (*resume)(srv_stream *stream));
-/* Ends a stream before its storage and its socket are freed; it must not be aside. Does nothing if
- * it was not begun.
- */
+/* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
+ * the stream was not begun. */
 void srv_live_end(srv_stream *stream);
 /* Reads like the read of api_source; returns -1 also when the client is gone. After API_READ_WAIT
  * the caller suspends the connection, calls srv_live_aside, and must not touch the request

@@ -106,7 +106,8 @@ const char *srv_policy_cors(const srv_policy *policy, const char *origin)
     return NULL;
 }
 
-/* Does `origin` name the authority in Host? A missing port is the default of the scheme. */
+/* Returns true if `origin` is the origin of the authority in Host. A missing port is the default of
+ * the scheme. */
 static bool is_own_origin(const char *origin, const char *host, srv_scheme scheme)
 {
     long port;

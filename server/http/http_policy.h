@@ -38,8 +38,8 @@ typedef struct srv_policy {
     srv_proxies proxies;
 } srv_policy;
 
-/* Is this a host that requests may name ("name", "name:port", "[::1]:port")? NULL is allowed: an
- * HTTP/1.0 client may leave Host out, browsers never do. Returns false with wrong_host. */
+/* Checks that a request may name this host ("name", "name:port", "[::1]:port"). NULL is allowed: an
+ * HTTP/1.0 client may leave Host out, and browsers never do. Returns false with wrong_host. */
 bool srv_policy_host(const srv_policy *policy, const char *host, size_t length,
                      api_problem *problem);
 /* What a request says about its origin; all members but the method may be NULL. */
@@ -48,13 +48,13 @@ typedef struct srv_sender {
     srv_scheme scheme; /* the scheme of the connection */
 } srv_sender;
 
-/* May the request run? Returns false with foreign_origin. */
+/* Checks whether a request with this origin may run. Returns false with foreign_origin. */
 bool srv_policy_origin(const srv_policy *policy, const srv_sender *sender, api_problem *problem);
-/* Is this Host (which may be NULL) a configured name, so that P6 applies? */
+/* Returns true if this Host (which may be NULL) is a configured name, so that rule P6 applies. */
 bool srv_policy_is_name(const srv_policy *policy, const char *host);
 /* Returns the configured origin equal to `origin`, or NULL. */
 const char *srv_policy_cors(const srv_policy *policy, const char *origin);
-/* Is the method safe in the sense of RFC 9110: GET, HEAD, OPTIONS? */
+/* Returns true if the method is safe in the sense of RFC 9110: GET, HEAD or OPTIONS. */
 bool srv_policy_is_read(const char *method);
 
 #endif

@@ -13,7 +13,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* The kernel allocates pages of this table only where descriptors are used. */
+/* The watched connection of each descriptor. The kernel allocates pages of this table only where
+ * descriptors are used. */
 static _Atomic(srv_connection *) watched[SRV_MAX_DESCRIPTORS];
 
 static bool fits(int socket)
@@ -21,7 +22,7 @@ static bool fits(int socket)
     return socket >= 0 && socket < SRV_MAX_DESCRIPTORS;
 }
 
-/* Returns NULL if the socket is not watched. */
+/* Returns the watched connection of a socket; NULL if the socket is not watched. */
 static srv_connection *find(int socket)
 {
     return fits(socket) ? atomic_load_explicit(&watched[socket], memory_order_acquire) : NULL;
@@ -91,7 +92,8 @@ static ssize_t receive(void *context, char *buffer, size_t size)
     }
     ssize_t got = recvmsg(c->socket, &message, 0);
     if (got > 0) {
-        /* If the kernel does not report it, any read may have been the last. */
+        /* If the kernel does not report whether more is to come, any read may have been the
+         * last. */
         c->may_have_ended = (size_t)got < size && (!c->tells_end || left_to_read(&message) > 0);
     }
     return got;
@@ -123,7 +125,8 @@ bool srv_recv_has_ended(const srv_connection *c)
 
 bool srv_recv_send(srv_connection *c, const char *bytes, size_t length)
 {
-    /* Answers that the client has not read yet may fill the buffer that the socket began with. */
+    /* The socket's buffer is enlarged first, because answers that the client has not read yet may
+     * fill the smaller buffer that the socket began with. */
     const int most = SRV_SEND_BUFFER;
     (void)setsockopt(c->socket, SOL_SOCKET, SO_SNDBUF, &most, sizeof most);
     return c->session != NULL

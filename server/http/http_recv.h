@@ -37,27 +37,28 @@
 
 #include <sys/types.h>
 
-/* Linux allows a process no more descriptors than this, unless fs.nr_open was raised. */
+/* The largest number of descriptors that Linux allows a process, unless fs.nr_open was raised. */
 enum { SRV_MAX_DESCRIPTORS = 1 << 20 };
 
-/* From now on recv() of the connection's socket passes through its state machine, which must be
+/* Makes all recv() calls for the connection's socket pass through its state machine, which must be
  * {0}. Returns false if the descriptor is outside of the table: the socket must then not be
  * served. */
 bool srv_recv_watch(srv_connection *connection);
-/* Call it before the socket is closed. */
+/* Ends the checking of a socket. It must be called before the socket is closed. */
 void srv_recv_forget(int socket);
 /* Returns the connection of a TLS session, or NULL if it is not watched. */
 srv_connection *srv_recv_find(gnutls_session_t session);
-/* Has the client closed its side, without another request after the present one? Then the present
- * answer is the last. Called by the worker of the connection. Takes NULL and returns false. */
+/* Returns true if the client has closed its side and sends no other request after the present one,
+ * so that the present answer is the last. Called by the worker of the connection. Takes NULL and
+ * returns false. */
 bool srv_recv_has_ended(const srv_connection *connection);
 
 /* Writes to the client directly; libmicrohttpd must not be in the middle of an answer. Returns
  * false if the socket, which does not block, did not take all of it. */
 bool srv_recv_send(srv_connection *connection, const char *bytes, size_t length);
 
-/* Reads with `receive`, which returns like recv(), and checks the bytes. Returns like recv(): -1
- * with EAGAIN after the ending of a fault. */
+/* Reads bytes with the function `receive`, which returns like recv(), and checks them. Returns like
+ * recv(): -1 with EAGAIN after the ending of a fault. */
 ssize_t srv_recv_checked(srv_syntax *syntax, char *buffer, size_t size,
                          ssize_t (*receive)(void *context, char *buffer, size_t size),
                          void *context);

@@ -18,8 +18,8 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
     srv_connection *socket = socket_of(connection);
-    /* Counts the request first, in all cases, as http_syntax.h has counted it (S4). A request that
-     * was not counted there has bypassed the check. */
+    /* The request is counted first, in all cases, because http_syntax.h has counted it, too (rule
+     * S4). A request that was not counted there has bypassed the check. */
     if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
         return NULL;
     }
@@ -48,7 +48,8 @@ static void copy_text(char *out, size_t size, const char *text)
     out[length] = '\0';
 }
 
-/* A stream lasts as long as its client listens, so it is never slow. */
+/* Returns true if a request took long enough to be logged as slow. A stream lasts as long as its
+ * client listens, so it is never slow. */
 static bool is_slow(const srv_request *r, uint64_t took)
 {
     const uint64_t slow_us = srv_log_get(r->http->options.log).slow_us;

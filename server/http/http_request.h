@@ -48,7 +48,7 @@
 
 typedef enum srv_state { SRV_FRESH, SRV_BODY, SRV_WORK, SRV_HELD, SRV_DONE, SRV_CUT } srv_state;
 
-/* Made and freed by http.c; outlives its requests. */
+/* The server. It is made and freed by http.c, and outlives its requests. */
 struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
@@ -123,8 +123,8 @@ static inline const char *srv_request_client(const srv_request *r)
  * request; that thread then resumes it with MHD_resume_connection, exactly once. Returns false if
  * the gate is closed: nothing is suspended, and the connection must be closed. */
 bool srv_request_suspend(srv_request *r);
-/* Notes that the worker owns the request again. Call it first in each callback before which the
- * request may have been suspended. */
+/* Records that the worker owns the request again. It must be called first in each callback before
+ * which the request may have been suspended. */
 void srv_request_resumed(srv_request *r);
 
 #endif

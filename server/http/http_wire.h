@@ -30,7 +30,8 @@ void srv_wire_answer(srv_wire *wire, const api_answer *answer);
  * NULL problem describes 204 without a body. */
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
                       api_text *text);
-/* Lets pages of `origin` read the answer (P4). `preflight`: also lists what they may send. */
+/* Lets pages of `origin` read the answer (rule P4 of http_policy.h). With `preflight` it also lists
+ * what they may send. */
 void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight);
 
 /* Writes the answer to a connection directly (srv_recv_send), with Connection: close. Returns false

@@ -7,12 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Written without printf, because at high rates formatting takes time from requests. */
+/* Lines of requests are written without printf, because at high rates formatting takes time from
+ * requests. */
 
 static const char *const part_names[SRV_PARTS] = {"receive", "queue", "lock",
                                                   "work",    "store", "send"};
 
-/* Escapes every byte that is not printable ASCII: the logged text was never decoded. */
+/* Appends a text and escapes every byte that is not printable ASCII, because the text comes from
+ * the client and was never decoded. */
 static void append_text(char line[SRV_ACCESS_LINE], size_t *at, const char *text)
 {
     for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
@@ -96,7 +98,8 @@ static size_t end_line(char line[SRV_ACCESS_LINE], size_t at)
     return at;
 }
 
-/* Appends 2026-01-31T12:00:00.000Z info ::1 GET /v1/meshes 200. */
+/* Appends the part of a line that people read first, such as 2026-01-31T12:00:00.000Z info ::1 GET
+ * /v1/meshes 200. */
 static void append_readable(char line[SRV_ACCESS_LINE], size_t *at, const srv_access *access,
                             const char *kind)
 {
@@ -126,8 +129,8 @@ static void append_ids(char line[SRV_ACCESS_LINE], size_t *at, const srv_access 
     }
 }
 
-/* The fields are bounded so that SRV_ACCESS_LINE holds even a path in which every byte is escaped;
- * a request id was checked, and a method is a token. */
+/* Writes the line of a request. The fields are bounded so that SRV_ACCESS_LINE holds even a path in
+ * which every byte is escaped; a request id was checked, and a method is a token. */
 size_t srv_access_format(const srv_access *access, bool json, char line[SRV_ACCESS_LINE])
 {
     size_t at = 0;

@@ -30,7 +30,8 @@ typedef enum srv_part {
     SRV_PARTS
 } srv_part;
 
-/* The query is never logged: it may hold a ticket or private data. */
+/* What is logged of one request. The query is missing because it may hold a ticket or private
+ * data. */
 typedef struct srv_access {
     double time; /* when it ended, in seconds since 1970 */
     char request_id[SRV_REQUEST_ID + 1];
@@ -47,9 +48,10 @@ typedef struct srv_access {
     char span_id[SRV_SPAN_ID + 1];   /* of this request, sent back in traceparent */
 } srv_access;
 
-/* Writes the line, terminated by a newline and NUL; returns its length without the NUL. */
+/* Writes the line of a request, terminated by a newline and NUL; returns its length without the
+ * NUL. */
 size_t srv_access_format(const srv_access *access, bool json, char line[SRV_ACCESS_LINE]);
-/* Writes the line with the parts of the time of a slow request. */
+/* Writes the line that shows where the time of a slow request went. */
 size_t srv_access_format_slow(const srv_access *access, bool json, char line[SRV_ACCESS_LINE]);
 
 #endif

@@ -14,8 +14,8 @@ const char *srv_level_name(srv_level level)
     return names[level];
 }
 
-/* Safe on a terminal: bytes that would move the cursor or end the line, and bytes that are not
- * UTF-8, are written as numbers. */
+/* Appends a value in a form that is safe on a terminal: bytes that would move the cursor or end the
+ * line, and bytes that are not UTF-8, are written as numbers. */
 static void add_readable(api_text *text, const char *value)
 {
     for (size_t left = strlen(value), size; left > 0; value += size, left -= size) {

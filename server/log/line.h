@@ -20,7 +20,7 @@ typedef enum srv_level {
 
 const char *srv_level_name(srv_level level); /* returns "error", ... */
 
-/* {0} until srv_line_begin is called. */
+/* A line that is being written. It is {0} until srv_line_begin is called. */
 typedef struct srv_line {
     api_text text;
     api_out out; /* writes the JSON format */
@@ -34,7 +34,8 @@ void srv_line_begin(srv_line *line, bool json, srv_level level, const char *form
 
 void srv_line_text(srv_line *line, const char *name, const char *value);
 void srv_line_number(srv_line *line, const char *name, uint64_t value);
-/* Fields between open and close are, in JSON, members of an object with this name. */
+/* Opens an object: in JSON, fields between open and close are members of an object with this
+ * name. */
 void srv_line_open(srv_line *line, const char *name);
 void srv_line_close(srv_line *line);
 

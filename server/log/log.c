@@ -20,7 +20,7 @@ enum {
     ENDING_MILLIS = 500
 };
 
-/* A line of the daemon itself, or the record of a request. */
+/* One entry of the ring: a line of the daemon itself, or the record of a request. */
 typedef struct entry {
     char *line; /* owned by the ring; NULL: `access` is used */
     size_t length;
@@ -44,8 +44,9 @@ struct srv_log {
     pthread_t thread;
 };
 
-/* If the log cannot be written to, the server goes on. If its reader takes nothing, the end of the
- * log waits for it only briefly. A pipe that is ready takes PIPE_BUF bytes without blocking. */
+/* Writes bytes to the log. If the log cannot be written to, the server goes on. If its reader takes
+ * nothing, srv_log_free waits for it only briefly. A pipe that is ready takes PIPE_BUF bytes
+ * without blocking. */
 static void write_all(srv_log *log, const char *bytes, size_t length)
 {
     while (length > 0 && log->waited < ENDING_MILLIS / POLL_MILLIS) {
@@ -79,9 +80,9 @@ static void write_dropped(srv_log *log, uint64_t dropped)
     write_all(log, line, (size_t)length);
 }
 
-/* Waking a thread costs a request more than its record does, so the thread is woken for the first
- * record and then lets others gather. The lock is held. Returns false when everything is written
- * and the log ends. */
+/* Waits until there are entries in the ring. Waking a thread costs a request more than its record
+ * does, so the log's thread is woken for the first record and then lets others gather. The lock is
+ * held. Returns false when everything is written and the log ends. */
 static bool wait_for_entries(srv_log *log)
 {
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
@@ -97,8 +98,8 @@ static bool wait_for_entries(srv_log *log)
     return log->count > 0 || log->dropped > 0;
 }
 
-/* Lines of the daemon itself are written directly; those of requests are formatted into `room`,
- * which holds two. */
+/* Writes an entry. Lines of the daemon itself are written directly; those of requests are formatted
+ * into `room`, which holds two. */
 static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], size_t *at)
 {
     const bool json = atomic_load(&log->json);
@@ -114,7 +115,8 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
     *at += e->slow ? srv_access_format_slow(&e->access, json, room + *at) : 0;
 }
 
-/* Other threads do not touch entries in the ring until `count` is reduced. */
+/* The log's thread: writes the entries of the ring. Other threads do not touch entries in the ring
+ * until `count` is reduced. */
 static void *run(void *context)
 {
     srv_log *log = context;
@@ -202,7 +204,8 @@ srv_log_settings srv_log_get(const srv_log *log)
     };
 }
 
-/* Returns a free entry, or NULL and counts a dropped one. The lock is held. */
+/* Returns a free entry of the ring; if there is none, counts a dropped one and returns NULL. The
+ * lock is held. */
 static entry *take_entry(srv_log *log)
 {
     if (log->count == log->capacity) {
@@ -219,7 +222,8 @@ static void wake(srv_log *log)
     }
 }
 
-/* Takes the text, which is a whole line or failed for lack of memory. */
+/* Puts a line into the ring and takes its text, which is a whole line or failed for lack of
+ * memory. */
 static void add_line(srv_log *log, api_text *text)
 {
     pthread_mutex_lock(&log->lock);

@@ -26,7 +26,8 @@ typedef struct srv_log_settings {
 /* Makes a log that writes to `fd`, which it borrows. Returns NULL when memory or threads are
  * out. */
 srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings);
-/* Writes what is left, for half a second at most. Takes NULL. */
+/* Writes what is left in the ring, for half a second at most, and frees the log, which may be
+ * NULL. */
 void srv_log_free(srv_log *log);
 
 /* All functions below may be called by any thread at any time. */
@@ -34,7 +35,7 @@ void srv_log_free(srv_log *log);
 void srv_log_set(srv_log *log, const srv_log_settings *settings);
 srv_log_settings srv_log_get(const srv_log *log);
 
-/* Writes a line that is only a message. */
+/* Writes a line that consists only of a message. */
 void srv_log_tell(srv_log *log, srv_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Writes a line with fields: call begin, then srv_line_text and the others of line.h, then
@@ -44,8 +45,8 @@ void srv_log_end(srv_log *log, srv_line *line);
 /* Writes a line unchanged, in both formats and at every level, for programs that wait for it. */
 void srv_log_plain(srv_log *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Logs a request that has ended: the usual line, if requests are logged, and another one if
- * `slow`. */
+/* Logs a request that has ended: the usual line, if requests are logged, and another line with its
+ * times if `slow` is set. */
 void srv_log_request(srv_log *log, const srv_access *access, bool slow);
 
 #endif

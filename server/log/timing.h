@@ -8,7 +8,8 @@
 
 #include "server/log/access.h"
 
-/* Stored in the request; written by the thread that currently handles the request. */
+/* Where the time of a request went so far. It is stored in the request, and written by the thread
+ * that currently handles the request. */
 typedef struct srv_timing {
     bool on;         /* false: nothing is measured */
     srv_part part;   /* the present part */
@@ -17,7 +18,7 @@ typedef struct srv_timing {
     uint64_t parts[SRV_PARTS];
 } srv_timing;
 
-/* Begins SRV_PART_RECEIVE at `now`. */
+/* Begins the measurement at `now`, with the part SRV_PART_RECEIVE. */
 void srv_timing_begin(srv_timing *timing, uint64_t now);
 void srv_timing_enter(srv_timing *timing, srv_part part);
 /* Ends the measurement at `now`; the last interval belongs to the present part. */

@@ -11,7 +11,8 @@ void srv_spans_init(srv_spans *spans)
     atomic_init(&spans->next, 1);
 }
 
-/* SplitMix64 (Steele, Lea, Flood 2014): a bijection, so two numbers never give the same id. */
+/* Mixes the bits of a number as SplitMix64 does (Steele, Lea, Flood 2014). It is a bijection, so
+ * two numbers never give the same id. */
 static uint64_t mix(uint64_t z)
 {
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -19,7 +20,7 @@ static uint64_t mix(uint64_t z)
     return z ^ z >> 31;
 }
 
-/* Makes 16 digits that are not all zero, which would be invalid. */
+/* Makes a span id of 16 digits that are not all zero, which would be invalid. */
 static void put_new_id(srv_spans *spans, char out[SRV_SPAN_ID])
 {
     uint64_t id = 0;
@@ -47,7 +48,7 @@ static bool is_zero(const char *text, size_t count)
     return strspn(text, "0") >= count;
 }
 
-/* Offsets in a traceparent of version 00. */
+/* The offsets of the fields in a traceparent of version 00. */
 enum { TRACE_AT = 3, PARENT_AT = 36, FLAGS_AT = 53 };
 
 static bool is_well_formed(const char *value, size_t length)

@@ -22,7 +22,7 @@
 
 enum { SRV_TRACEPARENT = 55 };
 
-/* All digits are hexadecimal, in lower case. */
+/* The trace context of a request. All digits are hexadecimal, in lower case. */
 typedef struct srv_trace {
     char trace_id[SRV_TRACE_ID + 1];    /* "": the request is in no trace */
     char parent_id[SRV_SPAN_ID + 1];    /* "": this request begins the trace */

@@ -1,5 +1,5 @@
-/* address.h - HOST:PORT with a numeric address, or unix:PATH. The only name that is resolved is
- * localhost. */
+/* address.h - network addresses of the form HOST:PORT with a numeric address, or unix:PATH. The
+ * only name that is resolved is localhost. */
 #ifndef HE_SERVER_NET_ADDRESS_H
 #define HE_SERVER_NET_ADDRESS_H
 
@@ -33,7 +33,7 @@ bool srv_address_parse(const char *text, srv_address *out);
 bool srv_address_parse_port(const char *text, unsigned *port);
 /* Returns the path of a Unix socket; NULL for other addresses. */
 const char *srv_address_path(const srv_address *address);
-/* Can only programs of this machine connect to it? */
+/* Returns true if only programs of this machine can connect to the address. */
 bool srv_address_is_local(const srv_address *address);
 /* Sets the port of an address that is no path. */
 void srv_address_set_port(srv_address *address, unsigned port);
@@ -50,7 +50,7 @@ void srv_address_of_peer(int socket, const struct sockaddr *peer, char out[SRV_A
  * because a client may have all addresses below these. On a Unix socket each user has a key. */
 api_rate_key srv_address_key(const char *text);
 
-/* Is `text` of this length an IPv4 or (without brackets) IPv6 loopback address? */
+/* Returns true if `text` of this length is an IPv4 or (without brackets) IPv6 loopback address. */
 bool srv_address_text_is_loopback(const char *text, size_t length);
 
 #endif

@@ -44,7 +44,7 @@ static bool split(const char *url, target *out)
            srv_address_parse(authority, &out->address);
 }
 
-/* Returns the number of bytes of the answer. */
+/* Sends a request on a socket without TLS and returns the number of bytes of the answer. */
 static size_t ask_plain(int fd, const char *request, size_t length, char *answer, size_t size)
 {
     size_t got = 0;
@@ -56,7 +56,8 @@ static size_t ask_plain(int fd, const char *request, size_t length, char *answer
     return got;
 }
 
-/* Returns the status, 0 if there was no answer. */
+/* Sends the request of the health check. Returns the status of the answer, 0 if there was no
+ * answer. */
 static int ask(const target *to)
 {
     char request[512], answer[STATUS_LINE];

@@ -1,4 +1,4 @@
-/* healthcheck.h - `hedged --healthcheck`: is a daemon answering? */
+/* healthcheck.h - `hedged --healthcheck`: asks a daemon whether it answers. */
 #ifndef HE_SERVER_NET_HEALTHCHECK_H
 #define HE_SERVER_NET_HEALTHCHECK_H
 

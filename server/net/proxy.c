@@ -89,7 +89,7 @@ bool srv_proxies_has(const srv_proxies *proxies, const char *address)
     return false;
 }
 
-/* --- one element of a list --- */
+/* --- one element of a list of proxies and clients --- */
 
 /* Parses "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" or "[2001:db8::1]:80" and
  * writes the address like srv_address_format. */
@@ -130,8 +130,8 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
            inet_ntop(address.family, address.address, out, SRV_ADDRESS_TEXT) != NULL;
 }
 
-/* T1. Handles an element; `address` is NULL if it has none. Returns whether it is, so far, the one
- * that counts. */
+/* Handles an address of the list by rule T1 (proxy.h); `address` is NULL if the element has none.
+ * Returns true if it is, so far, the one that counts. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -219,7 +219,8 @@ static size_t token_length(const char *text)
                         "!#$%&'*+-.^_`|~");
 }
 
-/* Reads name=token or name="text"; returns NULL if it is neither, else the position after it. */
+/* Reads a pair name=token or name="text"; returns the position after it, NULL if the text is
+ * neither. */
 static const char *read_pair(const char *at, pair *out)
 {
     size_t length = 0;
@@ -276,7 +277,7 @@ static const char *skip_blanks(const char *at)
     return at + strspn(at, " \t");
 }
 
-/* Returns false if it is malformed. */
+/* Reads the value of a Forwarded header. Returns false if it is malformed. */
 static bool read_forwarded(srv_told *told, const srv_proxies *proxies, const char *at)
 {
     for (;;) {

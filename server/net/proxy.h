@@ -27,7 +27,7 @@
 
 enum { SRV_MAX_PROXIES = 32 };
 
-/* The addresses that share their first `bits` bits with `address`. */
+/* A network: all addresses that share their first `bits` bits with `address`. */
 typedef struct srv_network {
     int family; /* AF_INET, AF_INET6; AF_UNIX: every peer on a Unix socket */
     uint8_t address[16];
@@ -39,16 +39,17 @@ typedef struct srv_proxies {
     size_t count;
 } srv_proxies;
 
-/* Adds "10.0.0.7", "10.0.0.0/8", "2001:db8::/32", or "unix". Returns false if the text is none of
- * these, or if there are too many. */
+/* Adds a trusted proxy: "10.0.0.7", "10.0.0.0/8", "2001:db8::/32", or "unix". Returns false if the
+ * text is none of these, or if there are too many. */
 bool srv_proxies_add(srv_proxies *proxies, const char *text);
-/* Is this address (as srv_address_format writes it without a port) one of a proxy? */
+/* Returns true if the address (as srv_address_format writes it without a port) is that of a trusted
+ * proxy. */
 bool srv_proxies_has(const srv_proxies *proxies, const char *address);
 
 typedef enum srv_scheme { SRV_SCHEME_UNKNOWN, SRV_SCHEME_HTTP, SRV_SCHEME_HTTPS } srv_scheme;
 
-/* What lines of one kind of header have said so far; {0} before the first line. Only proxy.c uses
- * the members. */
+/* What the lines of one kind of header have said so far; {0} before the first line. Only proxy.c
+ * uses the members. */
 typedef struct srv_told {
     char address[SRV_ADDRESS_TEXT]; /* "": none */
     srv_scheme scheme;
@@ -62,12 +63,13 @@ typedef struct srv_forwarding {
     bool no_scheme; /* the last word of X-Forwarded-Proto is no scheme */
 } srv_forwarding;
 
-/* Takes a header line, in the order in which they arrived; headers with other names are ignored. */
+/* Reads a header line. Lines must be passed in the order in which they arrived; headers with other
+ * names are ignored. */
 void srv_forwarding_read(srv_forwarding *told, const srv_proxies *proxies, const char *name,
                          const char *value);
-/* Evaluates the lines after the last one: writes the client's address to `address`, which is
- * unchanged if there was none, and the scheme. Returns NULL, or a sentence that says why the
- * request is refused; then nothing is written. */
+/* Evaluates the header lines after the last one was read: writes the client's address to `address`,
+ * which is unchanged if there was none, and the scheme. Returns NULL, or a sentence that says why
+ * the request is refused; then nothing is written. */
 const char *srv_forwarding_end(const srv_forwarding *told, char address[SRV_ADDRESS_TEXT],
                                srv_scheme *scheme);
 

@@ -33,8 +33,8 @@ static int lock_folder(const char *path)
     return fd;
 }
 
-/* Removes an abandoned socket at the path. Returns NULL, or why the path cannot be used. A listener
- * that does not accept at the moment (EAGAIN) is still a listener. */
+/* Removes an abandoned socket file at the path. Returns NULL, or a sentence that says why the path
+ * cannot be used. A listener that does not accept at the moment (EAGAIN) is still a listener. */
 static const char *make_room(const srv_address *address, const char *path)
 {
     struct stat found;
@@ -59,8 +59,8 @@ static const char *make_room(const srv_address *address, const char *path)
     return unlink(path) == 0 ? NULL : strerror(errno);
 }
 
-/* The file has its mode from the beginning: bind() uses the socket's mode, reduced by the umask of
- * this process. */
+/* Binds the socket to its file. The file has its mode from the beginning: bind() uses the socket's
+ * mode, reduced by the umask of this process. */
 static const char *bind_to(int fd, const srv_address *address, const char *path, int backlog,
                            srv_unix_socket *made)
 {

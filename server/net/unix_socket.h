@@ -11,7 +11,7 @@
 
 #include <sys/types.h>
 
-/* A file that this process has made. */
+/* The file of a socket that this process has made. */
 typedef struct srv_unix_socket {
     char path[SRV_MAX_PATH + 1]; /* "": none */
     dev_t device;

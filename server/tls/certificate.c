@@ -57,7 +57,8 @@ static bool load(file *f, char *message, size_t size)
     return ok;
 }
 
-/* Overwrites the bytes, so that the key does not stay in freed memory. */
+/* Frees the contents of a file. The bytes are overwritten first, so that the key does not stay in
+ * freed memory. */
 static void unload(file *f)
 {
     if (f->text != NULL) {

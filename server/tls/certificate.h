@@ -16,15 +16,17 @@ enum {
     SRV_MAX_CHAIN = 16        /* certificates in a file: the server's own and its intermediates */
 };
 
-/* TLS 1.2 and 1.3; of 1.2 only cipher suites with forward secrecy and authenticated encryption. */
+/* The priorities for gnutls: TLS 1.2 and 1.3; of 1.2 only cipher suites with forward secrecy and
+ * authenticated encryption. */
 extern const char srv_tls_priorities[];
 
 typedef struct srv_certificates srv_certificates;
 typedef struct srv_certificate srv_certificate;
 
-/* Makes an empty object without a pair. Returns NULL when memory is out. */
+/* Makes an object without a pair of certificate and key. Returns NULL when memory is out. */
 srv_certificates *srv_certificates_new(void);
-/* Takes NULL. Referenced pairs stay until they are released. */
+/* Frees the object, which may be NULL. Pairs to which references are held stay until these are
+ * released. */
 void srv_certificates_free(srv_certificates *certificates);
 
 /* Puts the pair of these two files in force: in PEM, the chain beginning with the server's own

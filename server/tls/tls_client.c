@@ -2,7 +2,8 @@
 
 #include "server/tls/tls_record.h"
 
-/* gnutls reports a timeout of the socket as GNUTLS_E_AGAIN. */
+/* Returns true if a call that returned this code must be repeated. A timeout of the socket, which
+ * gnutls reports as GNUTLS_E_AGAIN, ends the exchange. */
 static bool goes_on(ssize_t code)
 {
     return code == GNUTLS_E_INTERRUPTED ||

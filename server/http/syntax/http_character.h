@@ -28,7 +28,8 @@ static inline bool srv_is_token(char c)
     return srv_is_in((unsigned char)c, low, high);
 }
 
-/* RFC 3986: unreserved, percent, sub-delims, colon and the brackets of IPv6. */
+/* Returns true for a character of a host and port in RFC 3986: unreserved, percent, sub-delims,
+ * colon, and the brackets of IPv6. */
 static inline bool srv_is_host(char c)
 {
     static const uint64_t low = SRV_DIGITS | SRV_BIT('-') | SRV_BIT('.') | SRV_BIT('%') |
@@ -50,7 +51,8 @@ static inline bool srv_is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Is the character allowed in a header's value: visible, blank, or beyond ASCII? */
+/* Returns true if the character may occur in the value of a header: visible, blank, or beyond
+ * ASCII. */
 static inline bool srv_is_value(char c)
 {
     unsigned char u = (unsigned char)c;

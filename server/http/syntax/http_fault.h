@@ -15,13 +15,13 @@ enum {
     SRV_MAX_HEAD = 16 * 1024,
     SRV_MAX_CHUNK_DIGITS = 16,
     SRV_MAX_EXTENSION = 256,
-    /* Bytes of target and headers plus what libmicrohttpd stores with each header and parameter.
-     * Its buffer (http.c) must still have space for the head of the answer. */
+    /* The most bytes of target and headers, including what libmicrohttpd stores with each header
+     * and parameter. Its buffer must still have space for the head of the answer. */
     SRV_MAX_POOLED = 28 * 1024,
     SRV_POOLED_FIELD = 64
 };
 
-/* X(constant, api_code, message, limit to append or 0) */
+/* Each row: X(constant, api_code, message, limit to append or 0) */
 #define SRV_FAULT_MAP(X)                                                                        \
     X(TLS, BAD_FRAMING, "the bytes begin a TLS handshake, and this port speaks plain HTTP", 0)  \
     X(EMPTY_LINES, BAD_FRAMING, "too many empty lines before a request", SRV_MAX_EMPTY_LINES)   \

@@ -37,8 +37,8 @@ typedef struct srv_framing {
     uint64_t length;
 } srv_framing;
 
-/* `secure`: the request came over TLS, so https://authority/path?query is allowed, too. Returns
- * false with bad_path. */
+/* Finds path, query and body of a request. `secure` says that it came over TLS, so that
+ * https://authority/path?query is allowed, too. Returns false with bad_path. */
 bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem);
 /* Finds a header, ignoring case; returns NULL when absent. */
 const srv_field *srv_head_find(const srv_head *head, const char *name);

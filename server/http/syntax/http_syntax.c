@@ -26,7 +26,7 @@ typedef enum state {
     CHUNK_END_LF
 } state;
 
-/* The headers that are checked. */
+/* The headers whose values are checked. */
 typedef enum field { OTHER, HOST, ORIGIN, AUTHORIZATION, LENGTH, CODING } field;
 
 typedef enum phase { BEFORE, WITHIN, AFTER } phase;
@@ -44,7 +44,8 @@ static char *fail(srv_syntax *s, char *at, srv_fault fault)
     return at;
 }
 
-/* A line feed in the wrong place is a fault of its own. */
+/* Returns the fault for a character where a line should go on: a line feed in the wrong place is a
+ * fault of its own. */
 static srv_fault line_fault(char c, srv_fault otherwise)
 {
     return c == '\n' ? SRV_FAULT_BARE_LF : otherwise;
@@ -59,7 +60,7 @@ static char *read_lf(srv_syntax *s, char *at, state next)
     return at + 1;
 }
 
-/* START --> METHOD or START_LF */
+/* Begins a request. State START --> METHOD or START_LF. */
 static char *begin(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -125,7 +126,7 @@ static char *read_target(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* VERSION --> LINE_LF. `digits` counts the characters of "HTTP/1.1". */
+/* Reads the version. State VERSION --> LINE_LF. `digits` counts the characters of "HTTP/1.1". */
 static char *read_version(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && s->digits < VERSION_END; at++) {
@@ -202,7 +203,7 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
-/* Returns how far headers may be read: to the end of the bytes or to their limit. */
+/* Returns how far headers may be read: to the end of these bytes, or to the limit for headers. */
 static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
 {
     size_t room = s->limit > s->head ? s->limit - s->head : 0;
@@ -261,8 +262,8 @@ static srv_fault add_host(const srv_syntax *s, char c)
     return srv_is_host(c) && s->phase != AFTER ? SRV_FAULT_NONE : SRV_FAULT_HOST;
 }
 
-/* Collects the names of codings, with one blank for several. A text that does not fit is not
- * "chunked". */
+/* Collects the names of transfer codings, with one blank in place of several. A text that does not
+ * fit into the buffer is certainly not "chunked". */
 static srv_fault add_coding(srv_syntax *s, char c)
 {
     if (s->phase == AFTER && s->text_length < SRV_SYNTAX_TEXT) {
@@ -291,8 +292,8 @@ static srv_fault add_character(srv_syntax *s, char c)
     return SRV_FAULT_NONE;
 }
 
-/* RFC 9112, 6.1 and 6.3: a coding before chunked is not supported. If chunked is not last, or is
- * given twice, the end of the body is unknown. */
+/* Returns the fault of a list of transfer codings (RFC 9112, 6.1 and 6.3). A coding before chunked
+ * is not supported. If chunked is not last, or is given twice, the end of the body is unknown. */
 static srv_fault coding_fault(const srv_syntax *s)
 {
     static const char chunked[] = "chunked";
@@ -388,7 +389,7 @@ static srv_fault head_fault(const srv_syntax *s)
     return !has(s, HOST) && !s->old ? SRV_FAULT_NO_HOST : SRV_FAULT_NONE;
 }
 
-/* HEAD_LF --> BODY, CHUNK_SIZE, or START of the next request */
+/* Ends the headers. State HEAD_LF --> BODY, CHUNK_SIZE, or START of the next request. */
 static char *end_head(srv_syntax *s, char *at)
 {
     srv_fault fault = s->trailers ? SRV_FAULT_NONE : head_fault(s);
@@ -409,7 +410,7 @@ static char *end_head(srv_syntax *s, char *at)
     return at + 1;
 }
 
-/* BODY, CHUNK_DATA --> `next` */
+/* Passes data of a body on. State BODY or CHUNK_DATA --> `next`. */
 static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
 {
     uint64_t here = (uint64_t)(end - at);
@@ -423,7 +424,7 @@ static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
     return at;
 }
 
-/* CHUNK_SIZE --> CHUNK_EXTENSION or CHUNK_LF */
+/* Reads the size of a chunk. State CHUNK_SIZE --> CHUNK_EXTENSION or CHUNK_LF. */
 static char *read_size(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_hexadecimal(*at) >= 0; at++) {
@@ -452,7 +453,8 @@ static char *read_size(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* CHUNK_EXTENSION --> CHUNK_LF. The phase is BEFORE up to the first semicolon. */
+/* Reads the extensions of a chunk. State CHUNK_EXTENSION --> CHUNK_LF. The phase is BEFORE up to
+ * the first semicolon. */
 static char *read_extension(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -482,7 +484,7 @@ static char *read_extension(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* CHUNK_LF --> CHUNK_DATA, or FIELD of the trailers */
+/* Ends the line with a chunk's size. State CHUNK_LF --> CHUNK_DATA, or FIELD of the trailers. */
 static char *end_size(srv_syntax *s, char *at)
 {
     s->trailers = s->left == 0;
@@ -490,7 +492,7 @@ static char *end_size(srv_syntax *s, char *at)
     return read_lf(s, at, s->trailers ? FIELD : CHUNK_DATA);
 }
 
-/* CHUNK_END --> CHUNK_END_LF */
+/* Ends the data of a chunk. State CHUNK_END --> CHUNK_END_LF. */
 static char *end_chunk(srv_syntax *s, char *at)
 {
     if (*at != '\r') {
@@ -544,8 +546,9 @@ static char *move(srv_syntax *s, char *at, const char *end)
 
 /* --- faults --- */
 
-/* S3. If a chunk was announced, one byte of data follows: more would make libmicrohttpd wait, and
- * with the first byte it calls the handler. */
+/* Returns the bytes that end a faulty request for libmicrohttpd (rule S3). If a chunk was
+ * announced, one byte of data follows: more would make libmicrohttpd wait, and with the first byte
+ * it calls the handler. */
 static const char *ending_of(const srv_syntax *s)
 {
     switch ((state)s->state) {

@@ -100,13 +100,13 @@ static inline bool srv_syntax_is_faulty(const srv_syntax *s)
 {
     return s->fault != SRV_FAULT_NONE;
 }
-/* Did the first bytes of request number `request` (from 1) pass? */
+/* Returns true if the first bytes of request number `request` (from 1) have passed the check. */
 static inline bool srv_syntax_has_begun(const srv_syntax *s, uint64_t request)
 {
     return request <= s->requests;
 }
-/* Is request number `request` (from 1) the faulty one? If so, fills `problem`, unless it is
- * NULL. */
+/* Returns true if request number `request` (from 1) is the faulty one. If so, fills `problem`,
+ * unless that is NULL. */
 bool srv_syntax_fault(const srv_syntax *s, uint64_t request, api_problem *problem);
 
 #endif
