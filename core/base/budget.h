@@ -20,7 +20,8 @@ typedef struct he_budget {
 
 enum { HE_BUDGET_STRIDE = 1 << 15 };
 
-/* The slow part of he_budget_take, which alone calls it: refuses the work, or steps the watch. */
+/* The slow parts of he_budget_take, which alone calls them: one refuses the work, the other asks
+ * the watch whether to go on. */
 HE_NODISCARD he_status he_budget_exhausted(he_budget *budget, he_error *err);
 HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 

@@ -5,8 +5,8 @@ static const he_exec *host_of(const he_watch *watch)
     return watch != NULL && watch->exec != NULL && watch->exec->threads > 1 ? watch->exec : NULL;
 }
 
-/* Runs the parts on the host's threads, or here without a host; then `watch`, if not NULL, is
- * stepped between parts. */
+/* Runs the parts on the host's threads; without a host it runs them on this thread. `watch`, if not
+ * NULL, is stepped between parts. */
 static he_status run(const he_exec *host, he_watch *watch, uint32_t parts, he_part part,
                      void *context, he_error *err)
 {

@@ -39,7 +39,8 @@ enum {
     HE_MOST_LANES = 8
 };
 
-/* Works on the rows `from` to `to` of the job; `which` is the number of the range or lane. */
+/* The work of one range or lane: the rows `from` to `to` of the job; `which` is the number of the
+ * range or lane. */
 typedef he_status (*he_range)(void *context, uint32_t which, size_t from, size_t to, he_error *err);
 
 /* Returns into how many ranges he_run_ranges cuts `count` rows. */

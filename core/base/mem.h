@@ -12,13 +12,15 @@
 
 #include <stddef.h>
 
-/* `resize` is realloc with one meaning everywhere: size 0 frees the block and returns NULL. */
+/* The functions of an allocator. `resize` is realloc with one meaning everywhere: size 0 frees the
+ * block and returns NULL. */
 typedef struct he_mem_hook {
     void *(*resize)(void *context, void *memory, size_t size);
     void *context;
 } he_mem_hook;
 
-/* NULL restores the C library's allocator. Not thread-safe: call before threads start. */
+/* Installs an allocator; NULL restores that of the C library. It is not thread-safe: it must be
+ * called before threads start. */
 void he_mem_set_hook(const he_mem_hook *hook);
 
 void *he_mem_alloc(size_t size);

@@ -4,10 +4,14 @@
  * doubled output of its authors. Without the key an attacker can neither foresee the slot of a name
  * in a hash table nor construct two bodies with equal hashes.
  *
+ * Use:
+ *
  *     he_siphash h;
  *     he_siphash_begin(&h, key);
- *     he_siphash_add(&h, bytes, length);  any number of times; how the bytes are cut does not
- * matter he_siphash_end(&h, out); */
+ *     he_siphash_add(&h, bytes, length);     any number of times
+ *     he_siphash_end(&h, out);
+ *
+ * How the bytes are cut into pieces does not change the hash. */
 #ifndef HE_BASE_SIPHASH_H
 #define HE_BASE_SIPHASH_H
 

@@ -109,22 +109,23 @@ typedef struct he_error {
     char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, without the place */
 } he_error;
 
-/* Returns the slug of a status, such as "boundary_edge"; never NULL. */
+/* Returns the slug of a status, such as "boundary_edge", which clients see as `code`; never
+ * NULL. */
 const char *he_status_slug(he_status status);
 const char *he_status_title(he_status status);
-/* Returns "vertex", "halfedge", "edge", "face" or "mesh". */
+/* Returns the name of a kind of element: "vertex", "halfedge", "edge", "face" or "mesh". */
 const char *he_kind_name(he_kind kind);
-/* Returns "vertices", "halfedges", "edges", "faces" or "mesh". */
+/* Returns the plural of a kind of element: "vertices", "halfedges", "edges", "faces" or "mesh". */
 const char *he_kind_plural(he_kind kind);
 
 /* Fills `err` (which may be NULL) and returns `status`, so that a refusal is one statement:
  *     return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has one face", e.i); */
 he_status he_fail(he_error *err, he_status status, he_kind kind, uint32_t id, const char *format,
                   ...) __attribute__((format(printf, 5, 6)));
-/* he_fail for an error that names no element. */
+/* Fails like he_fail, with an error that names no element. */
 he_status he_fail_plain(he_error *err, he_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* he_fail for an error at a line or byte of an input. */
+/* Fails like he_fail, with an error that names a line or byte of an input. */
 he_status he_fail_at(he_error *err, he_status status, he_place place, uint64_t at,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 

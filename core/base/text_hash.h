@@ -6,9 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* FNV-1a with a final mixing step. Strings come from files, so an attacker may choose them; without
- * the seed he cannot choose many strings whose hashes collide and make a search long. The address
- * of the table is a sufficient seed. */
+/* Hashes a string by FNV-1a with a final mixing step. Strings come from files, so an attacker may
+ * choose them; without the seed he cannot choose many strings whose hashes collide and make a
+ * search long. The address of the table is a sufficient seed. */
 static inline uint64_t he_text_hash(uint64_t seed, const char *text, size_t length)
 {
     uint64_t h = seed * 0x9E3779B97F4A7C15;

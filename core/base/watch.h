@@ -50,14 +50,15 @@ HE_NODISCARD he_status he_watch_phase(he_watch *watch, const char *name, double 
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_watch_step(he_watch *watch, uint64_t i, uint64_t count, he_error *err);
 
-/* he_watch_step that reports only every HE_WATCH_STRIDE steps, for cheap steps in a loop. */
+/* Reports like he_watch_step, but only every HE_WATCH_STRIDE steps, for cheap steps in a loop. */
 enum { HE_WATCH_STRIDE = 4096 };
 HE_NODISCARD static inline he_status he_watch_at(he_watch *watch, uint64_t i, uint64_t count,
                                                  he_error *err)
 {
     return watch == NULL || i % HE_WATCH_STRIDE != 0 ? HE_OK : he_watch_step(watch, i, count, err);
 }
-/* he_watch_step for work that cannot stop here, such as a commit: an answer of false is ignored. */
+/* Reports like he_watch_step, for work that cannot stop here, such as a commit: if the watch asks
+ * to stop, that is ignored. */
 void he_watch_tell(he_watch *watch, uint64_t i, uint64_t count);
 static inline void he_watch_note(he_watch *watch, uint64_t i, uint64_t count)
 {

@@ -5,10 +5,10 @@
 
 #include <stdint.h>
 
-/* Knuth's multiplicative hashing, TAOCP 6.4: products with 2^64 / phi, with the seed added in
- * between. A client who chooses the words does not know the seed, so it cannot choose words that
- * all fall into the same slots. The address of the table is a sufficient seed. Callers take the
- * high bits, which are mixed best. */
+/* Hashes a word by Knuth's multiplicative method (TAOCP 6.4): products with 2^64 / phi, with the
+ * seed added in between. A client who chooses the words does not know the seed, so it cannot choose
+ * words that all fall into the same slots. The address of the table is a sufficient seed. Callers
+ * take the high bits, which are mixed best. */
 static inline uint64_t he_word_hash(uint64_t seed, uint64_t word)
 {
     const uint64_t phi = UINT64_C(0x9E3779B97F4A7C15);

@@ -53,8 +53,8 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
     return HE_OK;
 }
 
-/* Columns whose rows keep their numbers are moved if that is allowed. Moving cannot fail, so it
- * comes last. */
+/* Makes the attributes of the mesh. Columns whose rows keep their numbers are moved if the soup may
+ * be emptied (`take`). Moving cannot fail, so it comes last. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
 {
@@ -92,7 +92,8 @@ static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedg
     return HE_OK;
 }
 
-/* Moves the positions if the soup may be emptied: they are the largest part of it. */
+/* Makes the vertices. If the soup may be emptied (`take`), the positions are moved, because they
+ * are the largest part of it. */
 static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_error *err)
 {
     size_t count = soup->vertex_count;
@@ -125,7 +126,7 @@ static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_erro
     return HE_OK;
 }
 
-/* Gives back the positions that build_vertices took. */
+/* Gives the positions that build_vertices took back to the soup. */
 static void return_positions(he_soup *soup, he_content *k)
 {
     if (soup->positions == NULL && k->position != NULL) {
@@ -138,7 +139,8 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
                              he_content *k, he_error *err)
 {
-    /* Memory that has been written to is reused: the system clears each fresh page on first use. */
+    /* Memory that has been written to is reused, because the system clears each fresh page on first
+     * use. */
     k->next = turns->spare;
     turns->spare = NULL;
     he_status status = he_content_reserve_edges(k, turns->edges, err);

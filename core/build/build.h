@@ -1,4 +1,4 @@
-/* build.h - from a polygon soup to a mesh.
+/* build.h - makes a mesh from a polygon soup, which is a list of vertices and of faces over them.
  *
  * Readers of files and documents fill a soup piece by piece; he_build makes the mesh, in time
  * linear in the corners whatever their order and the valences, or reports everything a half-edge
@@ -27,9 +27,9 @@ typedef struct he_soup {
     size_t corner_count, corner_capacity;
     uint32_t *starts; /* first corner of each face; the open face, if any, is the last */
     size_t face_count, face_capacity;
-    /* Attributes. HE_VERTEX columns have a row for each vertex, HE_FACE columns for each face,
-     * HE_HALFEDGE columns for each corner, HE_MESH_KIND columns have one row. Shorter columns are
-     * filled up with their default. */
+    /* The attributes of the soup. HE_VERTEX columns have a row for each vertex, HE_FACE columns for
+     * each face, HE_HALFEDGE columns for each corner, HE_MESH_KIND columns have one row. Shorter
+     * columns are filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
     he_materials materials; /* become the mesh's, even if no face uses them */
@@ -42,8 +42,8 @@ void he_soup_clear(he_soup *soup);
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_NOT_FINITE if a coordinate is not finite. */
 HE_NODISCARD he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err);
-/* Begin a face, then add its corners one by one. Corner values are not checked here: a corner may
- * name a vertex that is added later. */
+/* These two functions begin a face and add its corners one by one. The values of corners are not
+ * checked here, because a corner may name a vertex that is added later. */
 HE_NODISCARD he_status he_soup_begin_face(he_soup *soup, he_error *err);
 HE_NODISCARD he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err);
 HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count,
@@ -51,16 +51,16 @@ HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices,
 /* Finds the face of a corner, by bisection. */
 uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
 /* Finds the column of this domain and name, or makes it.
- * Returns HE_BAD_VALUE if one of another type exists. */
+ * Returns HE_BAD_VALUE if a column of another type exists. */
 HE_NODISCARD he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
                                       uint32_t components, he_rule rule, he_column **out,
                                       he_error *err);
 /* Adds a column; the soup must have none of its domain and name. On success the soup owns it. */
 HE_NODISCARD he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err);
 
-/* One thing a half-edge mesh cannot represent. `reason` is HE_TOO_FEW_CORNERS, HE_BAD_INDEX,
- * HE_REPEATED_CORNER (face, vertex), HE_NONMANIFOLD_EDGE, HE_ORIENTATION (face, and the edge as
- * vertex and other) or HE_CLOSED_FAN (vertex). */
+/* One thing in a soup that a half-edge mesh cannot represent. `reason` is HE_TOO_FEW_CORNERS,
+ * HE_BAD_INDEX, HE_REPEATED_CORNER (face, vertex), HE_NONMANIFOLD_EDGE, HE_ORIENTATION (face, and
+ * the edge as vertex and other) or HE_CLOSED_FAN (vertex). */
 typedef struct he_defect {
     he_status reason;
     he_kind kind; /* kind of the element at fault: HE_FACE or HE_VERTEX */

@@ -1,4 +1,5 @@
-/* corner.h - finds the face and the neighbours of a corner by its number. For core/build only. */
+/* corner.h - finds the face and the neighbours of a corner of a soup by the corner's number. Only
+ * core/build uses it. */
 #ifndef HE_BUILD_CORNER_H
 #define HE_BUILD_CORNER_H
 
@@ -18,8 +19,8 @@ typedef struct he_corner {
 HE_NODISCARD he_status he_corners_init(const he_soup *soup, he_corners *out, he_error *err);
 void he_corners_clear(he_corners *corners);
 
-/* `degree` must equal all->degree. Callers that have a loop for each degree pass a constant, so
- * that the division is by a constant. */
+/* Finds a corner. `degree` must equal all->degree. Callers that have a loop for each degree pass a
+ * constant, so that the division is by a constant. */
 static inline he_corner he_corner_find(const he_corners *all, uint32_t c, uint32_t degree)
 {
     uint32_t face = degree != 0 ? c / degree : all->face_of[c];

@@ -21,8 +21,8 @@ typedef struct joining {
     bool *has_corners; /* for each vertex: does a corner use it? */
 } joining;
 
-/* Does vertex v, which has corners, have another value than the vertex it is joined to? If the rule
- * is that new elements get the default, a default counts as no value. */
+/* Returns true if vertex v, which has corners, has another value than the vertex it is joined to.
+ * If the rule is that new elements get the default, a default counts as no value. */
 static bool differs(const joining *j, const he_column *column, uint32_t v)
 {
     const unsigned char *value = he_column_value(column, v);
@@ -50,7 +50,8 @@ static he_column *find_column(const he_soup *soup, he_kind domain, const char *n
     return NULL;
 }
 
-/* Do the corners of vertices that are joined have the values of those vertices already? */
+/* Returns true if the corners of all vertices that are joined have the values of those vertices
+ * already. */
 static bool is_kept(const joining *j, const he_column *corners, const he_column *column)
 {
     const he_soup *soup = j->soup;
@@ -63,7 +64,7 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* The column replaces the vertex attribute, or is added if that one stays. */
+/* Adds a column of corners, in place of the vertex attribute unless that one stays, too. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {
@@ -104,7 +105,7 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     return status;
 }
 
-/* Does a vertex without corners have a value? Then the vertex attribute stays too. */
+/* Returns true if a vertex without corners has a value. Then the vertex attribute stays, too. */
 static bool is_needed(const joining *j, const he_column *column)
 {
     size_t v = 0;

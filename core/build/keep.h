@@ -8,16 +8,16 @@
 
 #include "build/build.h"
 
-/* Moves values to corners before each vertex v is joined to vertex from[into[v]]; a v that is that
- * vertex stays. The caller must do this before it changes the corners. `moved` counts the values
- * that differ.
+/* Moves values of vertices to corners before vertices are joined: each vertex v will be joined to
+ * vertex from[into[v]]; a v that equals this vertex stays. The caller must do this before it
+ * changes the corners. `moved` counts the values that differ.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_soup_keep_values(he_soup *soup, const uint32_t *into,
                                            const uint32_t *from, uint64_t *moved, he_error *err);
-/* Turns the vertex attribute of this name, if there is one, into one of corners: each corner gets
- * the value of its vertex. Fails as he_soup_keep_values does. */
+/* Turns the vertex attribute of this name, if there is one, into an attribute of corners: each
+ * corner gets the value of its vertex. Returns the errors of he_soup_keep_values. */
 HE_NODISCARD he_status he_soup_to_corners(he_soup *soup, const char *name, he_error *err);
 
 #endif

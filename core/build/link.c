@@ -3,9 +3,9 @@
 #include "base/exec.h"
 #include "build/pair.h"
 
-/* Passes over corners, edges and vertices. Each writes rows in order and reads at random: where ids
- * are in no spatial order, a random read costs a third of a random write. Until it gets its links,
- * next[h] is the corner that half-edge h leaves. */
+/* The state of the passes over corners, edges and vertices. Each pass writes rows in order and
+ * reads at random: where ids are in no spatial order, a random read costs a third of a random
+ * write. Until half-edge h gets its links, next[h] is the corner that h leaves. */
 typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
@@ -18,7 +18,7 @@ typedef struct linking {
 
 /* --- numbers of edges ------------------------------------------------------------------------- */
 
-/* Is it the first corner of its edge, by which the edge is numbered? */
+/* Returns true if a corner is the first corner of its edge, by which the edge is numbered. */
 static inline bool is_first(uint32_t corner, uint32_t mate)
 {
     return mate == HE_NONE || mate > corner;
@@ -60,7 +60,7 @@ static he_status number_edges(void *context, uint32_t lane, size_t from, size_t 
     return HE_OK;
 }
 
-/* Turns the counts of the lanes into the numbers at which they begin. */
+/* Turns each lane's count of edges into the number at which its edges begin. */
 static void place_edges(linking *l)
 {
     uint32_t at = 0;
@@ -160,7 +160,7 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
-/* Lists the `count` boundary half-edges. */
+/* Lists the boundary half-edges, which are `count`. */
 static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
 {
     for (uint32_t h = 1; count > 0; h += 2) {

@@ -1,5 +1,5 @@
-/* link.h - from the turns of a soup's corners to the links of a mesh: the second half of
- * he_build. */
+/* link.h - makes the links of a mesh from the turns of a soup's corners (turn.h): the second half
+ * of he_build. */
 #ifndef HE_BUILD_LINK_H
 #define HE_BUILD_LINK_H
 

@@ -12,7 +12,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to order %zu faces", soup->face_count);
 }
 
-/* Moves row i to row to[i], for all `count` rows. */
+/* Moves row i of a column to row to[i], for all rows. */
 static he_status move_rows(he_column *column, const uint32_t *to, size_t rows, he_error *err)
 {
     he_column *moved = NULL;

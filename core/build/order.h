@@ -4,8 +4,8 @@
 
 #include "build/build.h"
 
-/* Face i becomes face number[i], with its corners and attributes; `number` is a permutation. No
- * face may be open.
+/* Permutes the faces of a soup: face i becomes face number[i], with its corners and attributes;
+ * `number` must be a permutation. No face may be open.
  * Returns HE_NO_MEMORY if memory is out; the caller can then only clear the soup. */
 HE_NODISCARD he_status he_soup_order_faces(he_soup *soup, const uint32_t *number, he_error *err);
 

@@ -80,16 +80,16 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner, sorted under the smaller vertex of its edge. The top bit of `far` says that it runs
- * from the larger vertex to the smaller. */
+/* A corner, sorted under the smaller vertex of its edge. The top bit of `far`, which is the larger
+ * vertex, says that the corner's half-edge runs from the larger vertex to the smaller. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;
 
 #define DOWNWARD 0x80000000u
 
-/* Bucket sort of all corners by the smaller end of their edge: starts[v]..starts[v + 1] are the
- * entries of vertex v. */
+/* Sorts all corners by the smaller end of their edge (bucket sort): starts[v] to starts[v + 1] are
+ * the entries of vertex v. */
 static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
     const size_t faces = soup->face_count;
@@ -131,7 +131,7 @@ typedef struct pairing {
     uint64_t *total;
 } pairing;
 
-/* Entry `a` is the first along its edge. */
+/* Begins a new edge with entry `a`, which is the first corner along it. */
 static void begin_edge(pairing *p, const filed *a)
 {
     if (p->mate == NULL) {
@@ -140,7 +140,7 @@ static void begin_edge(pairing *p, const filed *a)
     p->edges++;
 }
 
-/* Entry `b` runs along one edge with the earlier entry `a`, which is the first of that edge. */
+/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
@@ -180,8 +180,8 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
-/* Pairs the entries of a vertex of high degree: `first` remembers for every far vertex the entry
- * that named it first. Values left by other vertices do not point to entries of this one, so the
+/* Pairs the entries of a vertex of high degree. For every far vertex, `first` remembers the first
+ * entry that named it. Values left by other vertices do not point to entries of this one, so the
  * array needs no clearing. */
 static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t begin, uint32_t end,
                        uint32_t *first)
@@ -227,7 +227,8 @@ static he_status visit_edges(pairing *p, he_error *err)
         if (status != HE_OK) {
             goto out;
         }
-        /* Prefetch: where ids are in no spatial order, the words to be written lie far apart. */
+        /* The words to be written are prefetched, because they lie far apart where ids are in no
+         * spatial order. */
         for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
             __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }

@@ -5,7 +5,7 @@
 
 #include "build/build.h"
 
-/* Appends to a report and counts; `report` may be NULL. */
+/* Appends a defect to a report, which may be NULL, and counts it in `*total`. */
 void he_report_add(he_report *report, uint64_t *total, he_defect defect);
 
 /* Finds the faces that no mesh can represent: too few corners, bad indices, repeated corners.
@@ -32,7 +32,7 @@ HE_NODISCARD he_status he_soup_check_edges(const he_soup *soup, he_report *repor
 HE_NODISCARD he_status he_soup_number_edges(const he_soup *soup, uint32_t *edge, size_t *edges,
                                             he_error *err);
 
-/* Returns the number after the last corner of face f. */
+/* Returns the number of the corner after the last corner of face f. */
 static inline uint32_t he_soup_end(const he_soup *soup, size_t f)
 {
     return f + 1 < soup->face_count ? soup->starts[f + 1] : (uint32_t)soup->corner_count;

@@ -18,7 +18,7 @@ static bool is_proper(const he_soup *soup, size_t f, uint32_t *stamp)
            he_soup_find_repeat(soup->corners + begin, count, stamp, (uint32_t)f + 1) == count;
 }
 
-/* Copies the valid faces, and lists which ones they are. The positions are borrowed. */
+/* Copies the valid faces of a soup, and lists which ones they are. The positions are borrowed. */
 static he_status copy_proper(const he_soup *soup, he_soup *out, he_ids *from, he_error *err)
 {
     uint32_t *stamp = he_mem_zero(soup->vertex_count + 1, sizeof *stamp);

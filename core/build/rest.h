@@ -1,4 +1,4 @@
-/* rest.h - checks the edges and fans of a soup that has faces no mesh can represent. */
+/* rest.h - checks the edges and fans of a soup that also has faces no mesh can represent. */
 #ifndef HE_BUILD_REST_H
 #define HE_BUILD_REST_H
 

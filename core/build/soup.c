@@ -1,4 +1,4 @@
-/* Fills a polygon soup within its limits: he_soup of build.h. */
+/* soup.c - fills a polygon soup within its limits: he_soup of build.h. */
 #include "build/build.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* What a part has found, as flags. */
+/* Flags for what a part of the parallel work has found. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
 enum { SMALL_VERTEX = 24 };
@@ -15,8 +15,8 @@ typedef struct turning {
     const he_soup *soup;
     const he_corners *corners;
     uint32_t lanes;
-    /* One row for each lane, with one word for each vertex: first how many corners it has there,
-     * then where the next one goes. */
+    /* One row for each lane (a part of the parallel work), with one word for each vertex: first how
+     * many corners the lane has there, then where its next one goes. */
     uint32_t *places;
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *turn, *first;
@@ -27,7 +27,8 @@ typedef struct turning {
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* `count` is a constant where this is inlined for triangles and quads. */
+/* Checks a face of few corners. Where this is inlined for triangles and quads, `count` is a
+ * constant. */
 static inline unsigned check_small(const uint32_t *corners, uint32_t count, size_t vertices)
 {
     unsigned bad = 0;
@@ -82,8 +83,8 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     return HE_OK;
 }
 
-/* Turns counts into places: vertex by vertex, and at one vertex lane by lane, which is the order of
- * the soup. */
+/* Turns the counts of corners into places: vertex by vertex, and at one vertex lane by lane, which
+ * is the order of the soup. */
 static void place_corners(turning *t)
 {
     const size_t vertices = t->soup->vertex_count;
@@ -111,7 +112,8 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* Sorting has moved each place on to where the next lane, or the next vertex, begins. */
+/* Returns where the corners of vertex v begin. Sorting has moved each place on to where the next
+ * lane, or the next vertex, begins. */
 static uint32_t begin_of(const turning *t, size_t v)
 {
     return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
@@ -122,8 +124,8 @@ static uint32_t end_of(const turning *t, size_t v)
     return t->places[(t->lanes - 1) * t->soup->vertex_count + v];
 }
 
-/* `follow` leads from each corner of a vertex to its turn, or is `count` if it has none. Do the
- * open fans contain all corners? */
+/* Returns true if the open fans of a vertex contain all its corners. `follow` leads from each
+ * corner to its turn (the next corner counter-clockwise), or is `count` if it has none. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
     uint32_t entered = 0, met = 0; /* a bit for each corner; a number of corners */
@@ -149,7 +151,8 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
     return twice != 0;
 }
 
-/* Four words in a vector register, an extension of GCC and Clang for every machine. */
+/* A vector of four words, in a register of the processor. It is an extension of GCC and Clang for
+ * every machine. */
 typedef uint32_t four __attribute__((vector_size(16)));
 
 /* Sets follow[i] to the last k for which to[k] equals from[i], or to `count`. All are arrays of
@@ -169,7 +172,7 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
-/* Finds the turns around a vertex of few corners. If they form one ring, all is well; only
+/* Finds the turns around a vertex of few corners. If they form one ring, nothing is wrong; only
  * otherwise is the reason searched. No branch depends on the ids, which may have no pattern. Two
  * faces that run along an edge in one direction show as two corners that leave one vertex for one
  * other. */
@@ -282,7 +285,8 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
     uint32_t begin = begin_of(t, from), end;
     for (size_t v = from; v < to; v++, begin = end) {
         end = end_of(t, v);
-        /* Prefetch: where ids are in no spatial order, the words read and written lie far apart. */
+        /* The words that are read and written are prefetched, because they lie far apart where ids
+         * are in no spatial order. */
         for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
             __builtin_prefetch(&corners[filed[i + AHEAD]]);
             __builtin_prefetch(&t->turn[filed[i + AHEAD]], 1);
@@ -324,9 +328,9 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Visits the vertices again: those of many corners, which share two arrays, and with `report` all
- * of them, to report which have a closed fan beside another. Vertices at the ends of invalid edges
- * are skipped, because their fans are not defined. */
+/* Visits the vertices again. Those of many corners are visited now, because they share two arrays.
+ * With `report` all are visited, to report which have a closed fan beside another. Vertices at the
+ * ends of invalid edges are skipped, because their fans are not defined. */
 static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *total, he_error *err)
 {
     const he_soup *soup = t->soup;
@@ -364,7 +368,7 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
     return status;
 }
 
-/* Collects what the parts have found. */
+/* Collects the flags that the parts have found. */
 static void gather(turning *t, size_t parts)
 {
     for (size_t i = 0; i < parts; i++) {
@@ -455,7 +459,8 @@ he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *repo
         for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
             matched += t.matched[i];
         }
-        /* An edge with two faces was counted at both its ends. */
+        /* An edge with two faces was counted at both its ends, so half of the count is
+         * subtracted. */
         *out = (he_turns){t.turn, t.first, t.filed, soup->corner_count - matched / 2};
         t.turn = t.first = t.filed = NULL;
     }

@@ -9,7 +9,7 @@
 
 /* --- the frame --- */
 
-/* Returns an exponent for which half of the longest side of the box is at most 2^exponent. */
+/* Returns an exponent with which half of the longest side of the box is at most 2^exponent. */
 static int exponent_of(double half)
 {
     int exponent = 0;
@@ -17,8 +17,8 @@ static int exponent_of(double half)
     return part == 0.5 ? exponent - 1 : exponent; /* a power of two is its own bound */
 }
 
-/* Rounds to the nearest multiple of 2^exponent. A number so large that it is one already is not
- * scaled, because that could overflow. */
+/* Rounds a number to the nearest multiple of 2^exponent. A number so large that it is such a
+ * multiple already is not scaled, because that could overflow. */
 static double snapped(double x, int exponent)
 {
     int own = 0;
@@ -26,8 +26,8 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
-/* Isolated vertices count for the frame up to this many times as far from its middle as the
- * surface. */
+/* The frame contains isolated vertices whose distance from its middle is up to this many times that
+ * of the surface. */
 static const double FAR = 4096;
 
 static void include(he_box *box, he_vec3 p)
@@ -36,7 +36,8 @@ static void include(he_box *box, he_vec3 p)
     box->max = (he_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
 }
 
-/* Halves are taken first, since the sum or difference of two large doubles may be infinite. */
+/* Returns the point half-way between two points. Halves are taken first, since the sum or
+ * difference of two large doubles may be infinite. */
 static he_vec3 half_way(he_vec3 from, he_vec3 to)
 {
     return he_vec3_sub(he_vec3_scale(to, 0.5), he_vec3_scale(from, 0.5));
@@ -62,8 +63,9 @@ static bool find_box(const he_mesh *m, he_box *out)
     return true;
 }
 
-/* With half the box at most 2^e and the origin at most 2^(e - 3) from its centre on each axis,
- * positions scaled by 2^-(e + 1) are within 9/16 on each axis and so within the unit ball. */
+/* Returns the frame of a mesh. With half the box at most 2^e and the origin at most 2^(e - 3) from
+ * its centre on each axis, positions scaled by 2^-(e + 1) are within 9/16 on each axis and so
+ * within the unit ball. */
 he_frame he_frame_of(const he_mesh *m)
 {
     he_box box;
@@ -77,14 +79,15 @@ he_frame he_frame_of(const he_mesh *m)
     }
     int e = exponent_of(half), most = 0;
     (void)frexp(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)), &most);
-    /* A box may be flat in the axis of its largest coordinate, which must be scaled too. */
+    /* A box may be flat along the axis of its largest coordinate, which must be scaled, too. */
     e = e < most - 900 ? most - 900 : e;
     e = e < -1022 ? -1022 : e;
     he_vec3 origin = {snapped(center.x, e - 2), snapped(center.y, e - 2), snapped(center.z, e - 2)};
     return (he_frame){origin, ldexp(1, -(e + 1))};
 }
 
-/* Both are scaled before the subtraction, which might overflow. */
+/* Returns the position of a corner, in coordinates of the frame. Position and origin are scaled
+ * before the subtraction, which might overflow otherwise. */
 static he_vec3 place(const he_drawing *d, uint32_t halfedge)
 {
     he_vec3 p = he_position(d->mesh, he_origin(d->mesh, (he_halfedge){halfedge}));
@@ -94,12 +97,12 @@ static he_vec3 place(const he_drawing *d, uint32_t halfedge)
 
 /* --- faces that are fans --- */
 
-/* A triangle in the plane whose doubled area, relative to its squared sides, is below this has no
- * area; as in flat.c, so that both agree on which are degenerate. */
+/* A triangle in a plane has no area if its doubled area, relative to its squared sides, is below
+ * this. flat.c has an equal limit, so that both agree on which triangles are degenerate. */
 static const double THIN = 1e-12;
 
-/* Does the triangle of the origin, u and v turn counter-clockwise as seen from `normal`, whose
- * length is given? */
+/* Returns true if the triangle of the origin, u and v turns counter-clockwise as seen from
+ * `normal`, whose length is given. */
 static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
 {
     he_vec3 w = he_vec3_sub(v, u);
@@ -153,7 +156,7 @@ static uint32_t apex_of_quad(const he_drawing *d, uint32_t first)
     int bad[2] = {0, 0};
     for (int i = 0; i < 4; i++) {
         int k = (i + 1) % 4, l = (i + 2) % 4;
-        /* The triangles of corners 1 and 3 belong to the diagonal of corner 0. */
+        /* The triangles of corners 1 and 3 are those that the diagonal from corner 0 makes. */
         bad[k % 2 == 0] += !turns(he_vec3_sub(p[k], p[i]), he_vec3_sub(p[l], p[i]), normal, length);
     }
     if (bad[0] != bad[1]) {

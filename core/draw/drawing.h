@@ -25,14 +25,14 @@
 
 #include "mesh/mesh.h"
 
-/* The transformation of positions before they become floats: (p - origin) * scale is within the
- * unit ball for every vertex that has edges, and for isolated ones whose distance from the middle
- * of the box around those is at most 4,096 times half of its longest side. Isolated vertices
- * farther away would leave the floats no digits for the rest: their rows have the point where the
- * line to them leaves the ball. If no vertex has edges the ball contains all. The scale is a power
- * of two and the origin a multiple of an eighth of its inverse: an edit that hardly changes the box
- * leaves the frame alone, and with it the rows of vertices that did not move. A box below 2^-1021,
- * or 2^-900 of its largest coordinate, is drawn smaller than the ball. */
+/* A frame is the transformation of positions before they become floats: (p - origin) * scale is
+ * within the unit ball for every vertex that has edges, and for isolated ones whose distance from
+ * the middle of the box around those is at most 4,096 times half of its longest side. Isolated
+ * vertices farther away would leave the floats no digits for the rest: their rows have the point
+ * where the line to them leaves the ball. If no vertex has edges the ball contains all. The scale
+ * is a power of two and the origin a multiple of an eighth of its inverse: an edit that hardly
+ * changes the box leaves the frame alone, and with it the rows of vertices that did not move. A box
+ * below 2^-1021, or 2^-900 of its largest coordinate, is drawn smaller than the ball. */
 typedef struct he_frame {
     he_vec3 origin;
     double scale;
@@ -57,10 +57,10 @@ typedef struct he_drawing {
 /* Prepares to draw all faces. Borrows the mesh, which must not change while it is drawn; `frame`
  * must keep its vertices with edges in the ball. he_drawing_clear frees.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if a face's id does not fit its bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
 HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
                                        he_error *err);
-/* he_drawing_init for some live faces only, which are in rising order.
+/* Prepares like he_drawing_init, but to draw only some live faces, which must be in rising order.
  * Returns HE_LIMIT if those that are no fan would take more than `most` steps: for each of their
  * corners one for each corner of the face, HE_EXACT_CORNERS at most. */
 HE_NODISCARD he_status he_drawing_init_faces(he_drawing *drawing, const he_mesh *m,

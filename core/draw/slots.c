@@ -6,10 +6,10 @@
 #include <assert.h>
 #include <string.h>
 
-/* --- freed runs ---
+/* --- freed runs of slots ---
  *
  * The word of a freed run's first slot leads to the next run of its chain; a run in the chain of
- * long runs has its length in the second word. All have the bit HE_SLOT_DEAD. */
+ * long runs has its length in the second word. All these words have the bit HE_SLOT_DEAD. */
 
 enum { LONG_RUN = HE_SLOT_BINS, TRIES = 8 };
 static const uint32_t LAST = HE_SLOT_DEAD - 1; /* ends a chain */
@@ -44,7 +44,7 @@ static uint32_t unlink_run(he_slots *s, uint32_t bin, uint32_t *link)
     return slot;
 }
 
-/* Finds a freed run of at least this length; LAST if there is none. */
+/* Finds a freed run with at least `length` slots; LAST if there is none. */
 static uint32_t find_run(he_slots *s, uint32_t length, uint32_t *found)
 {
     uint64_t bins = length < LONG_RUN ? s->filled >> length << length : 0;
@@ -208,7 +208,7 @@ static void forget_front(he_ids *list, size_t count)
     }
 }
 
-/* Drops the oldest steps, and more than needed, so that it is not done each time. */
+/* Drops the oldest remembered steps, and more than needed, so that this is not done each time. */
 static void forget_steps(he_slots *s, size_t more)
 {
     size_t most = rows_of(s) / 2 + HE_SLOT_CHANGES, gone = 0;
@@ -364,7 +364,7 @@ void he_touched_clear(he_touched *touched)
     he_ids_clear(&touched->moved);
 }
 
-/* Steps taken, and the most allowed. */
+/* The steps of work that were taken, and the most allowed. */
 typedef struct budget {
     uint64_t left;
 } budget;
@@ -391,7 +391,8 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* Adds the faces of moved vertices, except triangles, because they may be cut differently. */
+/* Adds the faces around moved vertices to those touched, except triangles, because other faces may
+ * be cut differently now. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -415,7 +416,7 @@ static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *er
     return status;
 }
 
-/* Does the frame still contain every vertex that is new or moved, and fit well? */
+/* Checks that the frame still contains every vertex that is new or moved, and that it fits well. */
 static he_status check_frame(const he_slots *s, const he_mesh *m, const he_touched *t,
                              he_error *err)
 {
@@ -464,7 +465,7 @@ static void commit(he_slots *s, const he_mesh *m, const he_touched *t, const run
 {
     issue_faces(s, m->c.faces.issued);
     s->vertices = m->c.vertices.issued;
-    /* Every run is freed before any is taken. */
+    /* Every run is freed before any is taken, so that freed runs can be used again at once. */
     for (size_t i = 0; i < t->faces.count; i++) {
         uint32_t face = t->faces.ids[i], before = r->length[2 * i];
         if (before > 0) {

@@ -28,16 +28,17 @@ enum {
     HE_SLOT_CHANGES = 4096 /* ids remembered for even the smallest mesh */
 };
 
-/* A flag in the words of `owner`. */
+/* A flag in the words of `owner`: the slot has no face. */
 #define HE_SLOT_DEAD ((uint32_t)1 << 31)
 
-/* The changes of one step: ids up to these ends in `changed_vertices` and `changed_slots`. */
+/* The changes of one step from revision to revision: the entries before these ends in
+ * `changed_vertices` and `changed_slots`. */
 typedef struct he_slot_step {
     uint64_t revision; /* revision after the step */
     size_t vertices, slots;
 } he_slot_step;
 
-/* Anyone may read the fields; only slots.c writes them. */
+/* The slots of a mesh. All code may read the fields; only slots.c writes them. */
 typedef struct he_slots {
     uint64_t layout, revision;
     he_frame frame;
@@ -58,7 +59,7 @@ typedef struct he_slots {
 
 /* Makes the first layout of a mesh: runs in the order of faces.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if a face's id does not fit its bits. */
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
 HE_NODISCARD he_status he_slots_new(const he_mesh *m, uint64_t layout, uint64_t revision,
                                     he_slots **out, he_error *err);
 void he_slots_free(he_slots *slots);
@@ -77,12 +78,12 @@ HE_NODISCARD he_status he_touched_add(he_touched *touched, const he_mesh *m, con
                                       he_error *err);
 void he_touched_clear(he_touched *touched);
 
-/* Brings the slots forward to `m`, which is at `revision` and differs by what was touched (whose
- * lists are sorted). On HE_LIMIT, HE_NO_MEMORY and HE_IDS_EXHAUSTED they are as they were, but may
- * remember fewer changes.
- * Returns HE_LIMIT if that takes more than `most` steps.
+/* Brings the slots forward to `m`, which is at `revision` and differs from the present state by
+ * what was touched (whose lists are sorted). On HE_LIMIT, HE_NO_MEMORY and HE_IDS_EXHAUSTED the
+ * slots are as they were, but may remember fewer changes.
+ * Returns HE_LIMIT if bringing them forward takes more than `most` steps.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_IDS_EXHAUSTED if a face's id does not fit its bits.
+ * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits.
  * Returns HE_UNSUPPORTED if the layout has ended. */
 HE_NODISCARD he_status he_slots_advance(he_slots *slots, const he_mesh *m, he_touched *touched,
                                         uint64_t revision, uint64_t most, he_error *err);

@@ -288,7 +288,7 @@ static void put(uint32_t i)
 typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
 typedef int (*unmap_function)(void *, size_t);
 
-/* For functions that may be called before the program has begun, when a sanitizer is not
+/* Marks functions that may be called before the program has begun, when a sanitizer is not
  * initialised yet: they must not be instrumented, and make the system call directly. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
