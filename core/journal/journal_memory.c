@@ -4,8 +4,7 @@
 
 #include <stdatomic.h>
 
-/* The newest position. It is shared by all memory journals of the process, because different
- * journals need no order. */
+/* Positions are shared by all memory journals of the process; different journals need no order. */
 static _Atomic uint64_t newest;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)

@@ -14,8 +14,8 @@ static _Atomic uint64_t budget_bytes;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
-/* Counts `size` bytes more, unless that exceeds the budget. The bytes are added first and
- * subtracted on failure, which keeps two threads from passing the limit together. */
+/* Counts `size` more, unless that exceeds the budget. Counting first and subtracting on failure
+ * keeps two threads from passing the limit together. */
 static bool try_take(size_t size)
 {
     uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
@@ -31,8 +31,7 @@ static bool try_take(size_t size)
     return false;
 }
 
-/* Takes `size` bytes from the budget, if necessary after asking the thread's giver to free memory.
- * The giver is not called for allocations that it makes itself. */
+/* The giver is not called for allocations that it makes itself. */
 static bool take(size_t size)
 {
     const st_memory_giver *giver = asked;
@@ -55,7 +54,7 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
-/* Returns the bytes of a block, including the word that the C library has before it. */
+/* Includes the word that the C library has before each block. */
 static size_t block_bytes(void *memory)
 {
     return malloc_usable_size(memory) + sizeof(size_t);
@@ -90,7 +89,7 @@ static void *resize(void *context, void *memory, size_t size)
 
 /* A block of this size or more is a mapping of its own: growing it moves page tables and not bytes,
  * so the first edit of a large mesh does not copy it, and freeing it returns it to the system. By
- * default glibc would raise this threshold to 32 MB as blocks are freed. */
+ * default glibc would raise the threshold to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
 void st_memory_install(uint64_t budget)
@@ -147,10 +146,8 @@ bool st_memory_is_full(void)
     return budget != 0 && st_memory_used() >= budget - budget / RESERVE_SHARE;
 }
 
-/* The process counts as idle if it worked at least WORKED_MICROS since memory was last returned,
- * and less than RESTING_MICROS since the last call. Every thread has a heap of its own, and glibc
- * returns only what is free at the end of one. Pages in between stay: after minutes of mixed
- * requests they are more than all memory in use. */
+/* Every thread has a heap of its own, and glibc returns only what is free at the end of one. Pages
+ * in between stay: after minutes of mixed requests they are more than all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

@@ -7,8 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The room for a line of /proc/self/mountinfo. Only an overlay with many layers has a longer
- * line. */
+/* Only an overlay with many layers has a longer line in /proc/self/mountinfo. */
 enum { LINE = 8192, DIGITS = 19 };
 
 /* The two versions of control groups, and the files that limit memory in each. Above memory.high
@@ -30,7 +29,7 @@ typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
 
-/* Reads a limit from a file. "max" and any other text that is no number mean no limit. */
+/* "max" and any other text that is no number mean no limit. */
 static uint64_t read_limit(const char *path)
 {
     char text[32];
@@ -76,7 +75,7 @@ static bool next_line(FILE *file, char line[LINE])
     return true;
 }
 
-/* Returns true if `word` is in a list separated by commas. */
+/* Is `word` in a list with commas? */
 static bool has_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -96,8 +95,7 @@ static FILE *open_beneath(const char *root, const char *name)
     return length < 0 || (size_t)length >= sizeof path ? NULL : fopen(path, "re");
 }
 
-/* Reads the path of the process's group in each hierarchy. Lines are NUMBER:CONTROLLERS:PATH; that
- * of version 2 names no controllers. */
+/* Lines are NUMBER:CONTROLLERS:PATH; that of version 2 names no controllers. */
 static void read_membership(const char *root, membership *m)
 {
     char line[LINE];
@@ -121,7 +119,7 @@ static void read_membership(const char *root, membership *m)
     }
 }
 
-/* Replaces the escapes of blanks and similar characters, which are written as \040. */
+/* Blanks and similar characters are written as \040. */
 static void unescape(char *text)
 {
     char *to = text;
@@ -142,8 +140,7 @@ typedef struct mount {
     char *options; /* options of the file system: in version 1 they include its controllers */
 } mount;
 
-/* Parses a line of mountinfo: NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM
- * SOURCE OPTIONS */
+/* NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM SOURCE OPTIONS */
 static bool parse_mount(char *line, mount *m)
 {
     char *tail = strstr(line, " - "), *rest = NULL;

@@ -4,8 +4,7 @@
 #include <stdlib.h>
 #include <sys/random.h>
 
-/* Fills bytes with random numbers. getrandom fails only when interrupted by a signal; a kernel
- * without it cannot run the daemon. */
+/* getrandom fails only when interrupted by a signal; a kernel without it cannot run the daemon. */
 static void fill(void *bytes, size_t size)
 {
     unsigned char *at = bytes;

@@ -82,7 +82,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     }
 }
 
-/* Makes and records one random change. */
+/* Makes one random change of the mesh; the mesh is recording, so the change goes into a delta. */
 static void change(he_mesh *m, md_random *random, unsigned serial)
 {
     char text[96];
@@ -122,7 +122,8 @@ static void change(he_mesh *m, md_random *random, unsigned serial)
                  md_below(random, he_mesh_issued(m, HE_EDGE)));
         break;
     }
-    /* An operation on a deleted element is refused and changes nothing. */
+    /* The arguments are random, so the operation may name a deleted element; then it is refused and
+     * changes nothing. */
     (void)script_run(m, text, NULL, NULL);
 }
 

@@ -190,7 +190,7 @@ static size_t parse_numbers(const char *text, double *numbers)
     return count;
 }
 
-/* Another mesh, made without the code under test. */
+/* Makes the mesh of an argument like "mesh=012,023", directly, without the code under test. */
 static he_mesh *other_mesh(const char *text)
 {
     char faces[MAX_TEXT];
@@ -307,7 +307,8 @@ he_status script_run(he_mesh *m, const char *operation, he_results *results, he_
     return status;
 }
 
-/* Reads "locked vertices=1,2": the name, then the kind or its plural with elements. */
+/* Sets a mark: reads "locked vertices=1,2", the name of the mark, then the kind of elements or its
+ * plural with ids. */
 static void mark(he_mesh *m, const char *text)
 {
     char name[HE_COLUMN_NAME];
@@ -336,7 +337,7 @@ static void mark(he_mesh *m, const char *text)
     }
 }
 
-/* Fills the table up to that many materials, called m0, m1 and so on. */
+/* Adds materials to the table, called m0, m1 and so on, until it has `count`. */
 static void fill_materials(he_mesh *m, size_t count)
 {
     for (size_t i = he_mesh_materials(m)->count; i < count; i++) {
@@ -417,7 +418,7 @@ void assert_loops(const he_mesh *m, const char *lengths)
         if (!he_mesh_is_live(m, HE_HALFEDGE, i) || !he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* Each loop is counted at its lowest half-edge. */
+        /* Each boundary loop is counted once, at its lowest half-edge. */
         he_halfedge k = he_next(m, h);
         while (k.i > i) {
             k = he_next(m, k);

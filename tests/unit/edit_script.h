@@ -20,33 +20,35 @@
 /* Makes a mesh with vertices in general position, or at `positions` if that is not NULL. */
 he_mesh *script_mesh(const char *faces, const he_vec3 *positions);
 
-/* Adds columns of every rule in every domain, so that edits have values to move. */
+/* Adds columns with every rule for every kind of element, so that edits have values to move. */
 void script_add_columns(he_mesh *m);
 
 /* Runs one operation. `results` may be NULL. */
 he_status script_run(he_mesh *m, const char *operation, he_results *results, he_error *err);
-/* Runs all operations of a script; each must succeed. NULL does nothing. "mark locked face=0" is no
- * operation: it sets that mark on elements, and adds its column if there is none. */
+/* Runs all operations of a script; each must succeed. `script` NULL: none. "mark locked face=0" is
+ * no operation: it sets the mark `locked` of these elements, and adds the column of this mark if
+ * there is none. */
 void script_prepare(he_mesh *m, const char *script);
-/* Returns the row that an operation names. */
+/* Returns the row of the table of operations for the name at the beginning of `operation`. */
 const he_op *script_op(const char *operation);
 
-/* Fails the test with a sentence if an invariant is broken. */
+/* assert_valid fails the test, with a sentence, if an invariant of the mesh is broken. */
 void assert_valid(const he_mesh *m);
 void assert_counts(const he_mesh *m, uint32_t vertices, uint32_t edges, uint32_t faces);
-/* Requires that face f has these vertices, starting at any of them. */
+/* Requires that face f has these vertices in this order, whichever of them is first. */
 void assert_face(const he_mesh *m, uint32_t f, const char *vertices);
 void assert_equal(const he_mesh *m, const he_mesh *other);
-/* Requires these lengths of the boundary loops, as digits in ascending order: "345". */
+/* Requires that the boundary loops have these lengths, given as digits in ascending order, as in
+ * "345". */
 void assert_loops(const he_mesh *m, const char *lengths);
 he_mesh *copy_of(const he_mesh *m);
 
 he_halfedge halfedge_between(const he_mesh *m, uint32_t a, uint32_t b);
 he_edge edge_between(const he_mesh *m, uint32_t a, uint32_t b);
 
-/* Makes only the n-th allocation from now on fail; 0: none fails. */
+/* Makes the n-th allocation from now on fail, and only this one; 0: none fails. */
 void fail_allocation(unsigned n);
-/* Has one failed since? */
+/* Returns whether an allocation failed since fail_allocation() was called. */
 bool allocation_failed(void);
 
 #endif

@@ -1,4 +1,5 @@
-/* fixture.h - small meshes and failing allocators for unit tests. Include it once per program. */
+/* fixture.h - small meshes and failing allocators for unit tests. Include this header once per
+ * program: its functions are static. */
 #ifndef TESTS_UNIT_FIXTURE_H
 #define TESTS_UNIT_FIXTURE_H
 
@@ -16,8 +17,8 @@
 
 #include <cmocka.h>
 
-/* Makes a soup of faces as strings of one-character vertex numbers, separated by blanks or commas:
- * "012,023". */
+/* Makes a soup of faces, which are strings of one-character vertex numbers, separated by blanks or
+ * commas, as in "012,023". */
 static inline void fixture_soup(he_soup *soup, const char *faces)
 {
     he_soup_init(soup, NULL);
@@ -72,7 +73,7 @@ static inline void fixture_counts(const he_mesh *mesh, unsigned v, unsigned e, u
     assert_int_equal(he_mesh_faces(mesh), f);
 }
 
-/* An allocator that fails the N-th request after fixture_fail_at, and counts requests. */
+/* An allocator that counts requests, and refuses the N-th one after fixture_fail_at(N). */
 typedef struct fixture_allocator {
     long calls, fail_at;
 } fixture_allocator;
@@ -89,7 +90,7 @@ static inline void *fixture_resize(void *context, void *memory, size_t size)
     return ++a->calls == a->fail_at ? NULL : realloc(memory, size);
 }
 
-/* With n = 0 none fails. */
+/* Makes the n-th request from now on fail; with n = 0 none fails. */
 static inline void fixture_fail_at(long n)
 {
     static const he_mem_hook hook = {fixture_resize, &fixture_memory};

@@ -1,5 +1,5 @@
-/* format_fixture.h - files as literals, read in pieces of all sizes. Include it once per
- * program. */
+/* format_fixture.h - reads files given as literals in pieces of all sizes, and checks the results.
+ * Include this header once per program: its functions are static. */
 #ifndef TESTS_UNIT_FORMAT_FIXTURE_H
 #define TESTS_UNIT_FORMAT_FIXTURE_H
 
@@ -7,7 +7,7 @@
 
 #include "format/io/format.h"
 
-/* Reads the whole text in pieces of `piece` bytes; 0: in one piece. */
+/* Reads a file in pieces of `piece` bytes; 0: in one piece. */
 static inline he_status read_pieces(const char *format, const void *text, size_t length,
                                     size_t piece, const he_limits *limits, he_import *out,
                                     he_error *err)
@@ -20,7 +20,8 @@ static inline he_status read_pieces(const char *format, const void *text, size_t
     piece = piece == 0 ? length : piece;
     for (size_t at = 0; at < length && status == HE_OK; at += piece) {
         size_t n = length - at < piece ? length - at : piece;
-        /* copies exactly these bytes, so that the sanitizer detects reads beyond them */
+        /* the piece is copied to a block of exactly its size, so that the sanitizer detects reads
+         * beyond it */
         char *bytes = malloc(n);
         assert_non_null(bytes);
         memcpy(bytes, (const char *)text + at, n);
@@ -90,7 +91,8 @@ static inline void expect_same_imports(const he_import *a, const he_import *b)
     }
 }
 
-/* Reads whole, byte by byte and in small pieces: status, error and import must be equal. */
+/* Reads a file whole, byte by byte and in small pieces: status, error and import must be equal each
+ * time. */
 static inline he_status read_bytes(const char *format, const void *text, size_t length,
                                    he_import *out, he_error *err)
 {
@@ -124,14 +126,14 @@ static inline he_import read_text(const char *format, const char *text)
     return import;
 }
 
-/* Requires a refusal at this line with these words in its sentence. */
+/* Requires that the file is refused at this line, and that the message has these words. */
 static inline void expect_bytes_refused(const char *format, const void *text, size_t length,
                                         he_status wanted, uint64_t line, const char *words)
 {
     he_import import = {0};
     he_error err = {0};
     he_status status = read_bytes(format, text, length, &import, &err);
-    /* See status.h: the text does not include the place. */
+    /* The text of the message must not repeat its place in the file (core/base/status.h). */
     if (status != wanted || err.place != HE_PLACE_LINE || err.at != line ||
         strstr(err.text, words) == NULL || strncmp(err.text, "line ", 5) == 0) {
         fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s", (const char *)text,
@@ -146,7 +148,7 @@ static inline void expect_refused(const char *format, const char *text, he_statu
     expect_bytes_refused(format, text, strlen(text), wanted, line, words);
 }
 
-/* Requires a refusal at this byte with these words in its sentence. */
+/* Requires that the file is refused at this byte, and that the message has these words. */
 static inline void expect_refused_at_byte(const char *format, const void *bytes, size_t length,
                                           he_status wanted, uint64_t at, const char *words)
 {
@@ -198,7 +200,7 @@ static inline void expect_doubles(const he_import *import, he_kind domain, const
     assert_memory_equal(column->data, values, rows * components * sizeof *values);
 }
 
-/* Requires colours equal to these bytes, in the precision of their type. */
+/* Requires colours that are equal to these bytes, in the precision of the attribute's type. */
 static inline void expect_bytes(const he_import *import, he_kind domain, uint32_t components,
                                 const unsigned char *values, size_t rows)
 {
@@ -284,7 +286,8 @@ static inline he_mesh *mesh_of_text(const char *format, const char *text)
     return mesh;
 }
 
-/* Writes the document through a buffer of `size` bytes, terminated by NUL; freed with free. */
+/* Writes a mesh file through a buffer of `size` bytes; returns its text, ended by NUL, which the
+ * caller must free. */
 static inline char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh,
                                   size_t size, he_notes *notes, size_t *out_length)
 {
@@ -328,7 +331,8 @@ static inline char *write_pieces(const char *format, const he_mesh *mesh, size_t
     return write_encoded(format, "ascii", mesh, size, notes, &length);
 }
 
-/* Writes a document of any bytes, which must be equal through buffers of several sizes. */
+/* Writes a mesh file, which may contain any bytes, through buffers of several sizes: the results
+ * must be equal. */
 static inline char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
                                 he_notes *notes, size_t *length)
 {
@@ -344,7 +348,7 @@ static inline char *write_bytes(const char *format, const char *encoding, const 
     return bytes;
 }
 
-/* Writes text through buffers of several sizes. */
+/* Writes a mesh file of text through buffers of several sizes. */
 static inline char *write_text(const char *format, const he_mesh *mesh, he_notes *notes)
 {
     static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};

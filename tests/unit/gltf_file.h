@@ -1,4 +1,4 @@
-/* gltf_file.h - GLB files put together from JSON, written with ' for ", and the bytes of a square:
+/* gltf_file.h - GLB files built from JSON, written with ' for ", and from the bytes of a square:
  *
  *     3---2      byte 0: the corners as floats, 48: triangles 0 1 2, 0 2 3 of 16 bits,
  *     | / |      60: the strip 0 1 3 2 of 8 bits, 64: the fan 0 1 2 3 of 32 bits,
@@ -11,7 +11,7 @@
 typedef struct glb_file {
     unsigned char bytes[16384];
     size_t length;
-    size_t json; /* where the chunk's bytes begin */
+    size_t json; /* offset of the JSON text in the file */
     size_t bin;
 } glb_file;
 
@@ -23,7 +23,7 @@ static inline void glb_word(glb_file *f, uint32_t word)
     }
 }
 
-/* With `bin` NULL the file has no such chunk. */
+/* Makes a file of a JSON chunk and a binary chunk; with `bin` NULL there is no binary chunk. */
 static inline void glb_make(glb_file *f, const char *json, const void *bin, size_t size)
 {
     size_t length = strlen(json), padded = (length + 3) / 4 * 4;
@@ -74,7 +74,7 @@ static inline void square_bin(unsigned char bin[SQUARE_BYTES])
     "'bufferViews':[{'buffer':0,'byteLength':48},{'buffer':0,'byteOffset':48,'byteLength':12}," \
     "{'buffer':0,'byteOffset':60,'byteLength':4},{'buffer':0,'byteOffset':64,'byteLength':16}," \
     "{'buffer':0,'byteOffset':80,'byteLength':16,'byteStride':4}]"
-/* 0 positions, 1 triangles, 2 strip, 3 fan, 4 colours */
+/* the accessors of the square: 0 positions, 1 triangles, 2 strip, 3 fan, 4 colours */
 #define ACCESSOR_LIST                                                  \
     "{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3'},"   \
     "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}," \
@@ -105,7 +105,8 @@ static inline he_import square_import(const char *json)
     return import;
 }
 
-/* Requires a refusal with a byte offset and these words, which include the path. */
+/* Requires that the file is refused with a byte offset, and that the message has these words, which
+ * include the path in the JSON. */
 static inline void expect_json_refused(const char *json, he_status wanted, const char *words)
 {
     he_import import = {0};

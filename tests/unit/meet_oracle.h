@@ -1,6 +1,6 @@
-/* meet_oracle.h - whether two triangles intersect, without any optimization: each predicate is
- * evaluated where it is needed, and special cases are distinguished only where they must be.
- * Include it once per program. */
+/* meet_oracle.h - decides whether two triangles intersect, without any optimization, as a second
+ * opinion: each predicate is evaluated where it is needed, and special cases are distinguished only
+ * where they must be. Include this header once per program: its functions are static. */
 #ifndef TESTS_UNIT_MEET_ORACLE_H
 #define TESTS_UNIT_MEET_ORACLE_H
 
@@ -13,7 +13,8 @@ static he_vec2 oracle_seen(he_vec3 p, int axis)
     return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
 }
 
-/* Returns the first axis along which the triangle has area, 3 if there is none. */
+/* Returns the first axis along which the projection of the triangle has area, 3 if there is
+ * none. */
 static int oracle_axis(const he_vec3 t[3])
 {
     int axis = 0;
@@ -49,7 +50,7 @@ static bool oracle_cross(he_vec2 a, he_vec2 b, he_vec2 c, he_vec2 d)
            oracle_is_on(c, d, b);
 }
 
-/* Does a segment meet a triangle with area? */
+/* Returns whether a segment meets a triangle that has area. */
 static bool oracle_segment(he_vec3 p, he_vec3 q, const he_vec3 t[3])
 {
     int at_p = he_orient3(t[0], t[1], t[2], p), at_q = he_orient3(t[0], t[1], t[2], q);

@@ -1,5 +1,5 @@
-/* ply_file.h - builds a PLY file value by value, in any encoding. Include it once per program.
- */
+/* ply_file.h - builds a PLY file value by value, in any encoding. Include this header once per
+ * program: its functions are static. */
 #ifndef TESTS_UNIT_PLY_FILE_H
 #define TESTS_UNIT_PLY_FILE_H
 

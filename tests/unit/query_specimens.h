@@ -1,4 +1,5 @@
-/* query_specimens.h - the meshes on which every query is tested. Include it once per program. */
+/* query_specimens.h - the meshes on which every query is tested. Include this header once per
+ * program: its functions are static. */
 #ifndef TESTS_UNIT_QUERY_SPECIMENS_H
 #define TESTS_UNIT_QUERY_SPECIMENS_H
 
@@ -7,8 +8,9 @@
 #include "algo/shape.h"
 #include "mesh/write.h"
 
-/* Closed, open, bow-tie, isolated vertices, polygons, faces that share two edges, two components,
- * two components that touch at a vertex, genus 1, and a strip through all corners of a cube. */
+/* In this order: an empty mesh, closed and open meshes, a bow-tie, isolated vertices, polygons,
+ * faces that share two edges, two components, two components that touch at a vertex, a mesh of
+ * genus 1, and a strip through all corners of a cube. */
 static const char *const query_specimens[] = {
     "",
     "012",
@@ -29,7 +31,8 @@ static const char *const query_specimens[] = {
 };
 enum { QUERY_SPECIMENS = sizeof query_specimens / sizeof *query_specimens };
 
-/* Deletes a component made of the rows from these on: what a deletion leaves behind. */
+/* Deletes the component that consists of all elements from these ids on, so that the mesh has rows
+ * of deleted elements. */
 static inline void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face)
 {
     he_need need = {.deleted_vertices = m->c.vertices.issued - vertex,
@@ -47,7 +50,7 @@ static inline void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32
     }
 }
 
-/* Two triangles and an isolated vertex; the second triangle was deleted. */
+/* Makes a mesh of two triangles and an isolated vertex, and deletes the second triangle. */
 static inline he_mesh *query_with_dead_rows(void)
 {
     he_mesh *m = fixture_mesh("012,456");
@@ -70,7 +73,7 @@ static inline he_mesh *query_shape(const char *name, double a, double b, double 
     return mesh;
 }
 
-/* SplitMix64: the same sequence on every machine. */
+/* Returns a pseudo-random number (SplitMix64): the same sequence on every machine. */
 static inline uint64_t query_random(uint64_t *seed)
 {
     uint64_t z = *seed += 0x9E3779B97F4A7C15u;
@@ -79,8 +82,8 @@ static inline uint64_t query_random(uint64_t *seed)
     return z ^ z >> 31;
 }
 
-/* Corrupts one link of a mesh: with a valid id of the wrong element, none, a dead one, or one out
- * of range. */
+/* Corrupts one link of a mesh: it becomes the id of a wrong element or of a deleted one, null, or
+ * out of range. */
 static inline void query_spoil(he_mesh *m, uint64_t *seed)
 {
     uint32_t *columns[] = {

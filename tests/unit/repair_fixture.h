@@ -1,5 +1,5 @@
-/* repair_fixture.h - repairs soups, and checks what must hold for every repaired soup. Include it
- * once per program. */
+/* repair_fixture.h - repairs soups, and checks what must hold for every repaired soup. Include this
+ * header once per program: its functions are static. */
 #ifndef TESTS_UNIT_REPAIR_FIXTURE_H
 #define TESTS_UNIT_REPAIR_FIXTURE_H
 
@@ -22,7 +22,8 @@ static inline he_repair_plan plan_of(unsigned which)
     return (he_repair_plan){.which = which, .hole_edges = 8};
 }
 
-/* Makes a soup with another one's faces, whose attributes contain their own row. */
+/* Makes a soup with the faces of another one; the value of each attribute is the number of its row,
+ * so that moved values can be recognized. */
 static inline void copy_soup(const he_soup *from, he_soup *to)
 {
     static const he_kind domains[] = {HE_VERTEX, HE_FACE, HE_HALFEDGE};
@@ -60,7 +61,7 @@ static inline const he_repair_account *account(const he_repaired *done, he_repai
 }
 
 /* Requires that attributes stayed with their elements, and that every corner is at its old vertex,
- * or at the vertex that this was welded to. */
+ * or at the vertex into which that was welded. */
 static inline void expect_carried(const he_soup *before, const he_soup *after,
                                   const he_repaired *done, bool welded)
 {
@@ -80,7 +81,7 @@ static inline void expect_carried(const he_soup *before, const he_soup *after,
         uint32_t read = he_soup_end(before, from) - before->starts[from];
         if (degree == read) {
             assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
-        } else { /* it was degenerate */
+        } else { /* the face was degenerate and has been dropped */
             assert_true(degree < read && account(done, HE_REPAIR_DROP_DEGENERATE)->parts > 0);
         }
         for (uint32_t c = after->starts[f]; c < he_soup_end(after, f); c++) {
@@ -97,8 +98,8 @@ static inline void expect_carried(const he_soup *before, const he_soup *after,
     }
 }
 
-/* Repairs while the N-th allocation fails, for every N until none fails; there must be more than
- * `least`. */
+/* Repairs while the N-th allocation fails, for every N until none fails; a repair must make more
+ * than `least` allocations. */
 static inline void expect_failures_survived(const he_soup *soup, unsigned which, long least)
 {
     he_status status = HE_NO_MEMORY;
@@ -120,7 +121,7 @@ static inline void expect_failures_survived(const he_soup *soup, unsigned which,
     assert_true(n > least);
 }
 
-/* Repairs, builds and checks; the caller frees. */
+/* Repairs a soup, builds a mesh of it and checks the mesh, which the caller must free. */
 static inline he_mesh *mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done)
 {
     he_soup copy;

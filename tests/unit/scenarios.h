@@ -1,4 +1,5 @@
-/* scenarios.h - operations on meshes with their expected outcomes, for test_op_table.c. */
+/* scenarios.h - operations on small meshes and their expected outcomes, which test_op_table.c
+ * runs. */
 #ifndef TESTS_UNIT_SCENARIOS_H
 #define TESTS_UNIT_SCENARIOS_H
 
@@ -7,12 +8,12 @@
 typedef struct scenario {
     const char *operation;
     const char *mesh;
-    const char *prepare; /* a script that runs first, or NULL */
+    const char *prepare; /* a script that runs before the operation, or NULL */
     he_status expected;
     int change[3]; /* change of V, E, F on success */
 } scenario;
 
-/* Scenarios in addition to those of test_op_table.c; each list ends in one without an operation. */
+/* The scenarios that are not in test_op_table.c; each list ends in one without an operation. */
 extern const scenario border_scenarios[];
 extern const scenario weld_scenarios[];
 extern const scenario corner_scenarios[];

@@ -5,9 +5,10 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* Two quads. */
+/* Two quadrilaterals with a common edge. */
 #define CF3 "0123,3245"
-/* A corner of degree 2 beside the vertex: the two faces at it share another vertex. */
+/* Two quadrilaterals back to back: at the corners of degree 2, the two faces also share another
+ * vertex. */
 #define TENT "0123,0321"
 
 const scenario corner_scenarios[] = {

@@ -6,7 +6,7 @@
 #define STRANGE    "012,034,056"
 #define HEXAGON    "012,023,034,045,056,061"
 #define OCTAHEDRON "012,023,034,041,521,532,543,514"
-/* Two faces that share two edges, all vertices of degree 3. */
+/* A closed mesh with two faces that share two edges; all vertices have degree 3. */
 #define LADDER "023,132,476,567,120465,031574"
 
 #define HUGE_TRIANGLE "vertex_move vertices=0,1,2 to=-1.7e308,0,0,1.7e308,0,0,1.7e308,1.7e308,0"

@@ -5,10 +5,10 @@
 #define PILLOW  "012,021"
 #define STRANGE "012,034,056"
 #define HEXAGON "012,023,034,045,056,061"
-/* A strip of two quads and another one beside it. */
+/* Two strips, one of two quads and one of one quad, that do not touch. */
 #define APART "0154,1265,378b"
 
-/* Puts vertex 3 of APART at vertex 2, and 11 at 6. */
+/* Moves vertex 3 of APART to the position of vertex 2, and vertex 11 to that of vertex 6. */
 static const char TOGETHER[] = "vertex_move vertices=3,11,2,6 to=0,0,1,0,1,1,0,0,1,0,1,1";
 
 const scenario weld_scenarios[] = {
@@ -17,11 +17,13 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=", "012,345", NULL, HE_OK, {0, 0, 0}},
     {"vertex_weld vertices=0,3", "012+", NULL, HE_OK, {-1, 0, 0}},
     {"vertex_weld vertices=0,8 position=lowest", QCUBE "+", NULL, HE_OK, {-1, 0, 0}},
-    /* Two sides become one. */
+    /* A weld can make one edge of two sides: it is refused if the faces use that edge in the same
+     * direction, or if more than two use it. */
     {"vertex_weld vertices=1,3", "012,034", NULL, HE_ORIENTATION, {0}},
     {"vertex_weld vertices=1,4", "012,103,045", NULL, HE_NONMANIFOLD_EDGE, {0}},
     {"vertex_weld vertices=3,4", "012,023,041", NULL, HE_OK, {-1, -1, 0}},
-    /* Faces are deleted, with elements that no other face uses. */
+    /* Welding corners of a face deletes the face, with the vertices and edges that no other face
+     * uses. */
     {"vertex_weld vertices=0,1", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1,2", "012", NULL, HE_OK, {-2, -3, -1}},
     {"vertex_weld vertices=0,1", "0123", NULL, HE_OK, {-1, -1, 0}},
@@ -30,7 +32,7 @@ const scenario weld_scenarios[] = {
     {"vertex_weld vertices=0,1,2,3", QCUBE, NULL, HE_OK, {-3, -4, -1}},
     {"vertex_weld vertices=0,1", TETRA, NULL, HE_OK, {-1, -3, -2}},
     {"vertex_weld vertices=0,1", PILLOW, NULL, HE_OK, {-2, -3, -2}},
-    /* If faces become equal, one of them stays. */
+    /* If the weld makes faces equal, one of them stays. */
     {"weld tolerance=0",
      "012,345",
      "vertex_move vertices=0,3 to=0,0,0;vertex_move vertices=1,4 to=1,0,0;"
@@ -90,7 +92,7 @@ const scenario weld_scenarios[] = {
     {"vertex_separate vertex=1", STRANGE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertex=0", QCUBE, NULL, HE_OK, {0, 0, 0}},
     {"vertex_separate vertices=0,7", "012,034+++", NULL, HE_OK, {1, 0, 0}},
-    /* Two neighbouring bow-ties. */
+    /* Two neighbouring vertices are bow-ties, each with several fans of faces. */
     {"vertex_separate vertices=0,1", "012,034,156", NULL, HE_OK, {2, 0, 0}},
     {"vertex_separate vertex=7", STRANGE, NULL, HE_NO_SUCH_ELEMENT, {0}},
     {"vertex_separate vertices=0,7",

@@ -12,9 +12,8 @@
 #include "edit_script.h"
 #include "stored/stored.h"
 
-/* Checks that the bytes stay within their bound; the block has exactly that size, so that the
- * sanitizers detect writes beyond it.
- */
+/* Requires that the bytes stay within their predicted bound; returns them in a block of exactly
+ * their size, so that the sanitizers detect reads beyond it. */
 static stored_bytes cut(unsigned char *bytes, size_t size, size_t bound)
 {
     assert_true(size > 0 && size <= bound);

@@ -1,4 +1,4 @@
-/* he_build: the mesh made from a soup, and the refusal of soups that no mesh can represent. */
+/* he_build makes a mesh from a soup of faces, and refuses soups that no mesh can represent. */
 #include "fixture.h"
 
 #include <math.h>
@@ -20,7 +20,8 @@ static void expect_refusal(const char *faces, he_status reason, he_kind kind, ui
     assert_int_equal(err.status, reason);
     assert_int_equal(err.id, id);
     assert_true(strlen(err.text) > 10);
-    /* The soup is still complete: it can be repaired and built again. */
+    /* After a refusal the soup must still be complete, since a caller may repair it and build
+     * again. */
     assert_true(soup.vertex_count > 0 && soup.positions != NULL);
     he_soup_clear(&soup);
 }
@@ -58,7 +59,8 @@ static void test_build_numbers_in_order(void **state)
         assert_int_equal(he_origin(m, (he_halfedge){2 * i}).i, i);
         assert_int_equal(he_face_of(m, (he_halfedge){2 * i}).i, 0);
     }
-    /* 0-2 is known already, so the second face begins with its other half-edge. */
+    /* The first face has made the edge 0-2, so the second face begins with the other half-edge of
+     * this edge. */
     assert_int_equal(he_face_halfedge(m, (he_face){1}).i, 5);
     he_mesh_free(m);
 }
@@ -81,13 +83,14 @@ static void test_build_refusals(void **state)
     expect_refusal("012,0131", HE_REPEATED_CORNER, HE_FACE, 1, 1);
     expect_refusal("012,103,014", HE_NONMANIFOLD_EDGE, HE_FACE, 2, 1);
     expect_refusal("012,013", HE_ORIENTATION, HE_FACE, 1, 1);
-    /* Two tetrahedra that share vertex 0; and a closed fan beside an open one. */
+    /* In the first soup two tetrahedra share only vertex 0; in the second, vertex 0 has a closed
+     * fan of faces and an open one. */
     expect_refusal("021,032,013,123,054,065,046,456", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
     expect_refusal("021,032,013,123,045", HE_CLOSED_FAN, HE_VERTEX, 0, 1);
 }
 
-/* Defects of single faces come first, then those of edges, then those of fans; vertices of a faulty
- * edge are not reported again. */
+/* Defects of single faces are found first, then those of edges, then those of fans around a vertex;
+ * the vertices of a faulty edge must not be reported again as faulty fans. */
 static void a_refusal_names_the_defects_of_all_stages(void **state)
 {
     (void)state;
@@ -188,8 +191,8 @@ static void test_soup_limits(void **state)
     he_soup_clear(&soup);
 }
 
-/* A fan whose hub has the smallest id puts all edges of the hub into one bucket: if the time there
- * grew more than linearly, 400,000 triangles would take minutes. */
+/* All edges of the hub of a large fan are looked up under the hub's id: if that took more than
+ * linear time, 400,000 triangles would take minutes. */
 static void test_large_fan(void **state)
 {
     (void)state;
@@ -211,7 +214,7 @@ static void test_large_fan(void **state)
     he_mesh_free(m);
 }
 
-/* One face with very many corners, one of them repeated at the far end. */
+/* The mesh is one face with very many corners, of which one is repeated at the far end. */
 static void test_large_face(void **state)
 {
     (void)state;
@@ -245,8 +248,9 @@ static uint32_t random_below(uint64_t *seed, uint32_t n)
     return (uint32_t)((*seed >> 33) % n);
 }
 
-/* Can the structure represent these triangles? Decided by its definition alone: every directed edge
- * once, at most two faces per edge, and at each vertex one closed fan or only open ones. */
+/* Returns whether a mesh can represent these triangles, decided by the definition alone: every
+ * directed edge is used once, no edge has more than two faces, and at each vertex there is one
+ * closed fan of faces or only open ones. */
 static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
 {
     for (size_t i = 0; i < 3 * count; i++) {
@@ -258,7 +262,8 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
         }
     }
     for (uint32_t v = 0; v < vertices; v++) {
-        /* follow[a] = b: a face with corners v, a, b turns from edge va to edge vb. */
+        /* follow[a] = b: a face with the corners v, a, b leads from the edge v-a to the edge
+         * v-b. */
         uint32_t follow[16], fans = 0, closed = 0;
         bool entered[16] = {false}, seen[16] = {false};
         for (uint32_t i = 0; i < 16; i++) {
@@ -271,7 +276,7 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
                 entered[b] = true;
             }
         }
-        /* open fans start at a vertex that no face leads to */
+        /* an open fan starts at a vertex to which no face leads */
         for (uint32_t i = 0; i < vertices; i++) {
             if (follow[i] != HE_NONE && !entered[i]) {
                 fans++;
@@ -319,8 +324,8 @@ static void test_random_soups_against_definition(void **state)
                 }
             } while (faces[i][0] == faces[i][1] || faces[i][1] == faces[i][2] ||
                      faces[i][2] == faces[i][0]);
-            /* Usually continues along an edge of the face before, to get fans and not only separate
-             * faces. */
+            /* A face is usually built on an edge of the face before it, to get fans and not only
+             * separate faces. */
             if (i > 0 && random_below(&seed, 4) != 0) {
                 faces[i][0] = faces[i - 1][1];
                 faces[i][1] = faces[i - 1][0];

@@ -1,11 +1,13 @@
-/* he_check: each invariant is broken in turn, and the report must name it. */
+/* he_check, the checker of invariants: each invariant is broken in turn, and the report must name
+ * it. */
 #include "fixture.h"
 
 #include "mesh/write.h"
 
 #include <math.h>
 
-/* Breaks `rule` in a valid mesh; the checker may name other rules, too, but must name this one. */
+/* Requires that the checker names the invariant `rule`, which the caller has broken in a valid
+ * mesh; it may name others, too. */
 static void expect_rule(he_mesh *m, int rule)
 {
     he_problem problems[32];
@@ -68,7 +70,8 @@ static void test_each_rule(void **state)
     expect_rule(m, 12);
 }
 
-/* Two open fans whose boundary links form separate loops: each turns alone (I9). */
+/* A vertex has two open fans of faces whose boundary links form two loops, so that turning around
+ * the vertex visits only one of the fans (I9). */
 static void test_unchained_fans(void **state)
 {
     (void)state;
@@ -83,7 +86,8 @@ static void test_unchained_fans(void **state)
     expect_rule(m, 9);
 }
 
-/* A triangle glued to a triangle of the same corners, but by other edges: 0-1 exists twice. */
+/* Two triangles have the same corners, but their sides are linked by different edges: the edge 0-1
+ * exists twice. */
 static void test_doubled_edge(void **state)
 {
     (void)state;
@@ -101,7 +105,7 @@ static void test_doubled_edge(void **state)
     he_mesh_free(m);
 }
 
-/* A face of two corners, and one that visits a vertex twice. */
+/* One face has two corners, and another one visits a vertex twice. */
 static void test_bad_faces(void **state)
 {
     (void)state;
@@ -110,7 +114,7 @@ static void test_bad_faces(void **state)
     expect_rule(m, 7);
 }
 
-/* Whatever the links are, the checker terminates and reads nothing out of range. */
+/* Whatever the links are, the checker must terminate and read nothing out of range. */
 static void test_random_corruption(void **state)
 {
     (void)state;

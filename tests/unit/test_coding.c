@@ -1,5 +1,5 @@
-/* gzip and zstd bodies: compressed by api/header/pack.h, decompressed by api/header/unpack.h, and
- * refused. */
+/* Bodies compressed by gzip and zstd: api/header/pack.h compresses them, api/header/unpack.h
+ * decompresses or refuses them. */
 #include "tests/unit/fixture.h"
 
 #include "api/header/pack.h"
@@ -33,7 +33,7 @@ static bool take(void *context, const char *data, size_t length)
     return true;
 }
 
-/* Numbers as in a mesh file: they compress to about a third. */
+/* Returns a text of numbers as in a mesh file, which compresses to about a third. */
 static bytes text_of(size_t length)
 {
     bytes b = {0};
@@ -48,7 +48,7 @@ static bytes text_of(size_t length)
     return b;
 }
 
-/* A reader of some bytes, a few at a time. */
+/* A source for the compressor, which reads some bytes, a few at a time. */
 typedef struct source {
     const bytes *of;
     size_t at, step;
@@ -66,7 +66,7 @@ static int64_t read_source(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* Reads a pack to its end, `size` bytes at a time. */
+/* Reads all compressed bytes from `pack`, `size` bytes at a time. */
 static bytes pull(api_pack *pack, size_t size)
 {
     bytes out = {0};
@@ -100,10 +100,12 @@ static bytes pack_bytes(api_coding coding, const bytes *plain)
     return out;
 }
 
-/* What one feed may decompress beyond its turn: a block of zstd, or what zlib has buffered. */
+/* The number of bytes that one call may decompress beyond its share: a block of zstd, or what zlib
+ * has buffered. */
 enum { LEFT = 1 << 17 };
 
-/* Decompresses in pieces of `step` bytes; returns false with `problem` if it is refused. */
+/* Decompresses a body that comes in pieces of `step` bytes; returns false, with `problem`, if it is
+ * refused. */
 static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *out,
                    api_problem *problem)
 {
@@ -115,7 +117,7 @@ static bool unfold(api_coding coding, const bytes *coded, size_t step, bytes *ou
     bool good = true;
     for (size_t at = 0, used; at < coded->length && good; at += used) {
         size_t n = coded->length - at < step ? coded->length - at : step;
-        /* a block of its own, so that a sanitizer detects reads beyond it */
+        /* each piece has a block of its own, so that a sanitizer detects reads beyond it */
         char *piece = malloc(n);
         assert_non_null(piece);
         memcpy(piece, coded->data + at, n);
@@ -181,7 +183,8 @@ static void bodies_of_all_sizes_come_back(void **state)
     }
 }
 
-/* Tags are strong, so the bytes must not depend on how they are read. */
+/* Entity tags of compressed answers are strong, so the compressed bytes must not depend on how they
+ * are read. */
 static void the_same_body_packs_to_the_same_bytes(void **state)
 {
     (void)state;
@@ -230,7 +233,8 @@ static int64_t read_zeros(void *context, char *buffer, size_t size)
     return (int64_t)n;
 }
 
-/* However well a body compresses, one read handles only a part of it. */
+/* However well a body compresses, one read must handle only a limited part of it, so that other
+ * requests are not delayed. */
 static void no_read_codes_more_than_its_turn(void **state)
 {
     (void)state;
@@ -300,7 +304,7 @@ static void what_cannot_be_coded_is_passed_on(void **state)
     free(plain.data);
 }
 
-/* Skippable frames of zstd: a magic number, a length, and that many bytes. */
+/* Adds a skippable frame of zstd: a magic number, a length, and that many bytes. */
 static void add_skippable(bytes *b, uint32_t length)
 {
     const unsigned char head[8] = {
@@ -372,7 +376,8 @@ static void what_follows_the_coding_is_refused_at_its_byte(void **state)
     free(plain.data);
 }
 
-/* Some bits of a header have no meaning; a flip of any other bit is detected. */
+/* Flips each bit of a compressed body: it must be refused or, for the bits of a header that have no
+ * meaning, give the same body. */
 static void no_flipped_bit_gives_another_body(void **state)
 {
     (void)state;
@@ -405,7 +410,7 @@ static void a_checksum_that_does_not_hold_is_named(void **state)
     (void)state;
     bytes plain = text_of(3000);
     bytes gzip = pack_bytes(API_GZIP, &plain), zstd = pack_bytes(API_ZSTD, &plain);
-    gzip.data[gzip.length - 8] ^= 1; /* CRC, then length */
+    gzip.data[gzip.length - 8] ^= 1; /* the checksum, which is followed by the length */
     expect_refused(API_GZIP, &gzip, 100, API_BAD_ENCODING, "incorrect data check");
     gzip.data[gzip.length - 8] ^= 1;
     gzip.data[gzip.length - 1] ^= 1;
@@ -422,7 +427,7 @@ static void a_checksum_that_does_not_hold_is_named(void **state)
 static void other_codings_are_not_taken_for_these(void **state)
 {
     (void)state;
-    static const char zlib[] = "x\x9c\x03\x00\x00\x00\x00\x01"; /* what "deflate" means */
+    static const char zlib[] = "x\x9c\x03\x00\x00\x00\x00\x01"; /* the coding "deflate" */
     static const char old[] = "\x27\xB5\x2F\xFD\x00\x00\x00";   /* zstd 0.7 */
     static const char plain[] = "{\"shape\":\"cube\"}";
     bytes empty = {0}, gzip = pack_bytes(API_GZIP, &empty), zstd = pack_bytes(API_ZSTD, &empty);
@@ -469,7 +474,7 @@ static void a_bomb_is_refused_before_it_unfolds(void **state)
     }
 }
 
-/* Bytes that do not compress, followed by zeros. */
+/* Returns bytes that do not compress, followed by zeros. */
 static bytes noise_and_zeros(size_t noise, size_t zeros)
 {
     bytes out = {malloc(noise + zeros), noise + zeros, noise + zeros};
@@ -483,7 +488,8 @@ static bytes noise_and_zeros(size_t noise, size_t zeros)
     return out;
 }
 
-/* Skipped data, and data of another member or frame, do not raise the limit of this one. */
+/* A body may be decompressed to a multiple of its compressed size. Data that is skipped must not
+ * count for this, nor data of another gzip member or zstd frame. */
 static void only_compressed_data_lets_a_body_unfold(void **state)
 {
     (void)state;
@@ -514,7 +520,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
         free(named.data);
         free(after.data);
     }
-    /* The free allowance is not granted to each small member or frame. */
+    /* Each body may be decompressed to a first megabyte whatever its size. Many small members or
+     * frames must not get this allowance again and again. */
     for (size_t c = 0; c < 2; c++) {
         bytes part = zeros_in(both[c], 200000), coded = {0};
         for (size_t i = 0; i < 20; i++) {
@@ -526,7 +533,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
     }
 }
 
-/* However much is decompressed, no single feed does it all: see unfold. */
+/* However much a body is decompressed to, no single call may do it all; the function unfold checks
+ * this. */
 static void a_dense_body_takes_its_turns(void **state)
 {
     (void)state;
@@ -541,7 +549,8 @@ static void a_dense_body_takes_its_turns(void **state)
     free(plain.data);
 }
 
-/* libzstd alone accepts it, in pieces. */
+/* The content of the frame is shorter than its header says. libzstd alone accepts this in pieces,
+ * so the daemon has to check it. */
 static void a_frame_has_the_length_it_says(void **state)
 {
     (void)state;
@@ -565,7 +574,7 @@ static void a_frame_has_the_length_it_says(void **state)
     free(plain.data);
 }
 
-/* A frame that declares a window of this size, as a power of two. */
+/* Returns a frame that declares a window of 2^log bytes. */
 static bytes with_window(int log)
 {
     bytes plain = text_of(100000), out = {0};
@@ -692,7 +701,8 @@ static void every_allocation_may_fail(void **state)
                 api_pack_give_up(pack);
             }
             if (pack != NULL) {
-                /* All memory was allocated before. */
+                /* The packing had allocated all its memory before allocations began to fail, so it
+                 * can still be read. */
                 bytes out = pull(pack, 1000);
                 assert_int_equal(out.length, done ? coded.length : plain.length);
                 free(out.data);

@@ -1,4 +1,5 @@
-/* Decimation: what is preserved exactly, how far the surfaces differ, and where it ends. */
+/* Decimation: what it preserves exactly, how far the result is from the original surface, and when
+ * it stops. */
 #include "tests/unit/dense.h"
 
 #include "algo/decimation.h"
@@ -104,7 +105,8 @@ static void more_faces_less_error(void **state)
         dense_apart there = dense_measure(m, sphere), back = dense_measure(sphere, m);
         double farthest = fmax(there.farthest, back.farthest);
         assert_true(farthest > last && done.error > last_error);
-        /* On a smooth closed surface no point moves much farther than the worst vertex. */
+        /* On a smooth closed surface no point may be much farther from the original than the
+         * estimated error of the worst vertex. */
         assert_true(farthest < 4 * done.error);
         assert_true(there.root_mean_square < 2 * done.error);
         assert_int_equal(there.turned + back.turned, 0);
@@ -132,15 +134,15 @@ static void no_face_is_turned_over(void **state)
     }
 }
 
-/* 0 to 1. */
+/* Returns a pseudo-random number from 0 to 1. */
 static double draw(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) * 0x1p-53;
 }
 
-/* Each step turns a face only a little, but there are many steps. On a surface whose faces all look
- * up, some barely, a few look down afterwards. */
+/* Each collapse turns a face only a little, but there are many. On a surface whose faces all look
+ * up, some barely, only a few may look down afterwards. */
 static void few_faces_of_a_rough_surface_are_turned(void **state)
 {
     (void)state;
@@ -180,7 +182,8 @@ static void the_error_stays_below_its_limit(void **state)
         assert_int_equal(done.stop, HE_STOP_ERROR);
         assert_true(done.error <= most && done.error > most / 4);
         assert_true(he_mesh_faces(m) < last);
-        /* The planes at the boundary count, too, so the results differ slightly. */
+        /* The planes that keep the boundary in place influence the error, so the results differ
+         * slightly. */
         assert_true(dense_measure(m, first).root_mean_square <= 1.5 * most);
         assert_true(dense_measure(first, m).root_mean_square <= 1.5 * most);
         last = he_mesh_faces(m);
@@ -189,8 +192,9 @@ static void the_error_stays_below_its_limit(void **state)
     he_mesh_free(first);
 }
 
-/* At each remaining edge either the error is larger or the collapse is refused: errors are means,
- * and those of edges that were too expensive may have fallen since. */
+/* Each edge that is left must either have an error above the limit or be refused. Errors are means
+ * over an area, so the error of an edge that was too expensive may have fallen since; such an edge
+ * must have been tried again. */
 static void no_edge_is_left_within_the_limit(void **state)
 {
     (void)state;
@@ -223,7 +227,7 @@ static void what_cannot_be_collapsed_is_left(void **state)
     he_mesh *m = dense_torus(12);
     he_decimated done = dense_decimate(m, 0, INFINITY);
     assert_int_equal(done.stop, HE_STOP_EXHAUSTED);
-    /* A torus has at least 7 vertices; whether that is reached depends on the shape. */
+    /* A torus needs at least 7 vertices; whether the decimation reaches 7 depends on the shape. */
     assert_true(he_mesh_faces(m) >= 14 && he_mesh_faces(m) < 100);
     assert_int_equal(he_mesh_vertices(m) + he_mesh_faces(m), he_mesh_edges(m));
     he_decimated again = dense_decimate(m, 0, INFINITY);
@@ -256,7 +260,7 @@ static void options_outside_their_range_are_refused(void **state)
     he_mesh_free(m);
 }
 
-/* Scaling by a power of two gives the same result, to the last bit. */
+/* A mesh scaled by a power of two must give the same result, to the last bit. */
 static void size_and_place_do_not_matter(void **state)
 {
     (void)state;
@@ -289,7 +293,8 @@ static void points_in_one_place_are_no_harm(void **state)
     }
 }
 
-/* The edges of a vertex of very high degree must not be visited again for each of them. */
+/* After each collapse at a vertex of very high degree, not all of its edges may be visited
+ * again. */
 static void a_hub_of_many_edges_is_no_work(void **state)
 {
     (void)state;
@@ -316,7 +321,7 @@ static void a_hub_of_many_edges_is_no_work(void **state)
     }
 }
 
-/* Stars of 256 points, each with its own hub. */
+/* Makes a mesh of stars of 256 points, each with its own hub. */
 static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
 {
     enum { POINTS = 256 };
@@ -336,8 +341,8 @@ static he_mesh *stars(uint32_t count, double (*height)(double x, double y))
     return dense_built(&soup);
 }
 
-/* Each collapse at the rim of a star changes faces around its hub, whose 256 edges must not all be
- * tried again for that; but in the end they are. */
+/* Each collapse at the rim of a star changes faces around the hub. The 256 edges of the hub must
+ * not all be tried again after each collapse; but before the decimation ends, they must be. */
 static void edges_of_a_star_are_tried_again_but_not_each_time(void **state)
 {
     (void)state;

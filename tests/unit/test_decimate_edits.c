@@ -1,4 +1,4 @@
-/* Decimation as an edit: undo, recording, failing allocations, cancelling. */
+/* Decimation as an edit: undo, recording, failing allocations, and cancelling. */
 #include "tests/unit/dense.h"
 
 #include "algo/progressive.h"
@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The request would remove nearly everything, but no collapse is allowed. */
+/* The request would remove nearly everything, but no collapse is allowed, so nothing must be
+ * recorded. */
 static void nothing_is_recorded_where_no_edge_may_go(void **state)
 {
     (void)state;
@@ -26,7 +27,8 @@ static void nothing_is_recorded_where_no_edge_may_go(void **state)
     he_mesh_free(m);
 }
 
-/* Few faces and many faces are handled in two ways. */
+/* A decimation of few faces is recorded change by change, and one of many faces as a replacement of
+ * the mesh; both must be undone. */
 static const struct {
     uint32_t side, faces;
     bool replaced;
@@ -99,7 +101,8 @@ static void add_columns(he_mesh *m, unsigned count)
     }
 }
 
-/* Records reserved and records used, beyond those without columns. */
+/* Finds how many records a decimation reserves and uses for this number of columns, beyond those
+ * without columns. */
 static void record_with(unsigned columns, size_t *room, size_t *used)
 {
     he_mesh *m = dense_torus(20);

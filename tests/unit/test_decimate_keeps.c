@@ -1,4 +1,4 @@
-/* Decimation: what must stay, and which values move with vertices. */
+/* Decimation: which elements must stay, and which attribute values move together with vertices. */
 #include "tests/unit/dense.h"
 
 #include "mesh/marks.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* The outline of a grid that is bent out of its plane stays in place. */
+/* The outline of a grid that is bent out of its plane must stay in place. */
 static void boundaries_are_kept(void **state)
 {
     (void)state;
@@ -42,7 +42,8 @@ static void boundaries_are_kept(void **state)
     he_mesh_free(m);
 }
 
-/* Returns the largest distance of boundary vertices of a decimated grid from its outline. */
+/* Returns the largest distance of the boundary vertices of a decimated grid from the original
+ * outline. */
 static double outline_error(double weight)
 {
     enum { SIDE = 30 };
@@ -151,7 +152,8 @@ static void locked_elements_keep_their_attributes(void **state)
     }
 }
 
-/* A line across a flat grid would disappear; as a feature it stays, and stays straight. */
+/* A line across a flat grid costs no error and would disappear; marked as a feature it must stay,
+ * and stay straight. */
 static void feature_lines_keep_their_shape(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Decoding operations from JSON, and the names of an edit list. */
+/* Operations are decoded from JSON, and the names in a list of edits are resolved. */
 #include "api/write/decode_op.h"
 #include "api/write/names.h"
 
@@ -15,7 +15,7 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
-    /* refused by the operation, not by the decoder */
+    /* these are refused by the operation and not by the decoder */
     {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
     {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
@@ -23,7 +23,7 @@ static const struct {
     {"{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}", HE_OK, ""},
     {"{\"op\":\"face_delete\",\"face\":1,\"keep_isolated\":true}", HE_OK, ""},
     {"{\"op\":\"edge_collapse\",\"halfedge\":1,\"t\":1}", HE_OK, ""},
-    /* sets, which are looked up later */
+    /* named sets, whose elements are looked up after decoding */
     {"{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}", HE_OK, ""},
     {"{\"op\":\"delaunay\",\"edges\":{\"a b\":true}}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":{\"s\":true},\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
@@ -33,13 +33,13 @@ static const struct {
     {"{\"op\":\"face_delete\",\"faces\":{\"a\":1}}", API_WRONG_TYPE, "/faces/a"},
     {"{\"op\":\"face_delete\",\"face\":{\"a\":true}}", API_WRONG_TYPE, "/face"},
     {"{\"op\":\"face_add\",\"vertices\":{\"a\":true}}", API_WRONG_TYPE, "/vertices"},
-    /* the operation */
+    /* mistakes in the operation as a whole */
     {"[]", API_WRONG_TYPE, ""},
     {"{}", API_MISSING_MEMBER, ""},
     {"{\"op\":7}", API_WRONG_TYPE, "/op"},
     {"{\"op\":\"edge_spilt\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
     {"{\"op\":\"Edge_split\",\"edge\":5}", API_UNKNOWN_OPERATION, "/op"},
-    /* members */
+    /* mistakes in the names of members */
     {"{\"op\":\"edge_split\"}", API_MISSING_MEMBER, ""},
     {"{\"op\":\"edge_split\",\"edge\":5,\"tt\":0.5}", API_UNKNOWN_MEMBER, "/tt"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"T\":0.5}", API_UNKNOWN_MEMBER, "/T"},
@@ -50,7 +50,7 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertex\":1}", API_MISSING_MEMBER, ""},
     {"{\"op\":\"edge_collapse\",\"edge\":1,\"halfedge\":2}", API_CONFLICTING_MEMBERS, "-"},
     {"{\"op\":\"edge_collapse\"}", API_MISSING_MEMBER, ""},
-    /* ids */
+    /* mistakes in ids */
     {"{\"op\":\"edge_split\",\"edge\":-1}", HE_BAD_VALUE, "/edge"},
     {"{\"op\":\"edge_split\",\"edge\":1.5}", HE_BAD_VALUE, "/edge"},
     {"{\"op\":\"edge_split\",\"edge\":4294967294}", HE_BAD_VALUE, "/edge"},
@@ -63,7 +63,7 @@ static const struct {
     {"{\"op\":\"face_delete\",\"faces\":[1,2,-3]}", HE_BAD_VALUE, "/faces/2"},
     {"{\"op\":\"face_delete\",\"faces\":[1,null]}", API_WRONG_TYPE, "/faces/1"},
     {"{\"op\":\"face_delete\",\"face\":\"$a.face\"}", API_WRONG_TYPE, "/face"},
-    /* numbers, points, choices, flags, matrices */
+    /* mistakes in numbers, points, choices, flags and matrices */
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":0}", HE_BAD_VALUE, "/t"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":1}", HE_BAD_VALUE, "/t"},
     {"{\"op\":\"edge_split\",\"edge\":5,\"t\":\"0.5\"}", API_WRONG_TYPE, "/t"},
@@ -191,7 +191,8 @@ static void arguments_hold_what_was_given(void **state)
     clear(&p);
 }
 
-/* Decodes a list as the check does: each operation may name those before it. */
+/* Decodes a list of operations as a check before any of them runs: each operation may use the names
+ * given to results of earlier ones. */
 static bool check_list(const api_in *list, api_names *names, api_arena *arena)
 {
     api_in op;
@@ -232,7 +233,7 @@ static const struct {
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"$a.vertex.0\"}]", API_BAD_REFERENCE,
      "/1/vertex"},
     {"[" SPLIT ",{\"op\":\"vertex_delete\",\"vertex\":\"a.vertex\"}]", API_WRONG_TYPE, "/1/vertex"},
-    /* of the wrong kind, or a list instead of one id */
+    /* names of results of the wrong kind, or of a list where one id is needed */
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.vertex\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.01\"}]", API_BAD_REFERENCE, "/1/edge"},
@@ -240,7 +241,7 @@ static const struct {
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.1.2\"}]", API_BAD_REFERENCE, "/1/edge"},
     {"[" SPLIT ",{\"op\":\"edge_split\",\"edge\":\"$a.edges.99999999999999999999\"}]",
      API_BAD_REFERENCE, "/1/edge"},
-    /* names */
+    /* mistakes in the names given to results */
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"\"}]", HE_BAD_VALUE, "/0/as"},
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"1a\"}]", HE_BAD_VALUE, "/0/as"},
     {"[{\"op\":\"edge_split\",\"edge\":5,\"as\":\"a.b\"}]", HE_BAD_VALUE, "/0/as"},
@@ -283,7 +284,8 @@ static size_t result(const he_op *op, const char *name)
     return i;
 }
 
-/* The first operation of the list resulted in vertex 17, edges 30 31 32 and no faces. */
+/* In the results that the test provides, the first operation has the vertex 17, the edges 30, 31
+ * and 32, and no faces. */
 static void references_take_the_values_of_results(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* Recording, undo, redo, rollback, changes, columns and compact, with writes made directly through
- * write.h. The deltas of operations are tested with the operations. */
+/* Recording of changes, undo, redo, rollback, sets of changed elements, columns and compact, tested
+ * with writes made directly through write.h. The deltas of operations are tested with the
+ * operations. */
 #include "fixture.h"
 
 #include "mesh/compact.h"
@@ -13,7 +14,7 @@ static he_mesh *copy_of(const he_mesh *m)
     return copy;
 }
 
-/* Adds a separate triangle directly. */
+/* Adds a separate triangle by direct writes. */
 static he_status add_triangle(he_mesh *m, he_error *err)
 {
     he_status status = he_reserve(m, (he_need){.vertices = 3, .edges = 3, .faces = 1}, err);
@@ -42,7 +43,7 @@ static he_status add_triangle(he_mesh *m, he_error *err)
     return HE_OK;
 }
 
-/* Removes the separate triangle with this face. */
+/* Removes the separate triangle with this face by direct writes. */
 static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
 {
     he_need need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
@@ -93,7 +94,7 @@ static void test_undo_and_redo(void **state)
         he_delta_undo(d, m);
         fixture_check(m);
         assert_true(he_mesh_equal_live(m, start));
-        assert_false(he_mesh_equal(m, start)); /* ids stay issued */
+        assert_false(he_mesh_equal(m, start)); /* undo does not take back issued ids */
         assert_int_equal(he_mesh_issued(m, HE_FACE), 4);
         he_error err;
         assert_int_equal(he_mesh_require(m, HE_FACE, 3, &err), HE_DELETED_ELEMENT);
@@ -160,7 +161,7 @@ static void test_changes_are_net(void **state)
     he_set_attribute(m, 0, 1, &(uint32_t){7});
     assert_int_equal(add_triangle(m, NULL), HE_OK);
     he_note_parent(m, HE_FACE, 3, 0);
-    he_note_parent(m, HE_FACE, 1, 0); /* was not created: dropped */
+    he_note_parent(m, HE_FACE, 1, 0); /* face 1 was not created: dropped */
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
     expect_ids(&changes.created[HE_VERTEX], 3, (const uint32_t[]){7, 8, 9});
@@ -236,7 +237,8 @@ static void test_columns_are_recorded(void **state)
     he_mesh_free(end);
 }
 
-/* Changes that appear in the set of no element are still changes. */
+/* Values of the mesh itself, and those of half-edges along a hole, belong to no vertex, edge or
+ * face that could be reported as modified; they must still count as changes. */
 static void test_changes_of_no_element(void **state)
 {
     (void)state;
@@ -257,7 +259,7 @@ static void test_changes_of_no_element(void **state)
         he_changes_clear(&changes);
         size_t from = d->count;
         assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
-        /* Half-edge 1 runs along the hole. */
+        /* Half-edge 1 runs along the hole, so it has no corner. */
         he_set_attribute(m, 0, (uint32_t)rows == 1 ? 0 : 1, &(uint32_t){7});
         assert_int_equal(d->count, from + 1);
         assert_int_equal(he_changes_find(m, d, from, d->count, false, &changes, NULL), HE_OK);
@@ -278,7 +280,8 @@ static void put_column(he_mesh *m, const char *name, he_kind domain)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* A value written in a column that was removed is no value of the column that took its slot. */
+/* A column was removed and another one took its slot: a value written to the old column must not be
+ * reported as a value of the new one. */
 static void test_changes_when_a_slot_has_another_column(void **state)
 {
     (void)state;
@@ -319,7 +322,7 @@ static void test_changes_when_a_slot_has_another_column(void **state)
     }
 }
 
-/* he_reserve reserves space for every word of a value in any domain. */
+/* he_reserve must reserve space for every word of the widest value, for every kind of element. */
 static void test_the_widest_value_has_room(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Mesh documents: reading in pieces, writing. */
+/* Mesh documents in JSON are read in pieces, and written. */
 #include "api/document/document_in.h"
 #include "api/document/document_out.h"
 
@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-/* The outcome of a body that is fed in pieces of `step` bytes. */
+/* The result of reading a body that comes in pieces of `step` bytes. */
 typedef struct outcome {
     int code;
     char pointer[API_PROBLEM_POINTER];
@@ -24,7 +24,8 @@ static outcome feed(const char *body, size_t length, size_t step, api_document_i
     bool good = true;
     for (size_t at = 0; good && at < length; at += step) {
         size_t size = length - at < step ? length - at : step;
-        /* A copy of the exact size, so that the sanitizer detects a read beyond the piece. */
+        /* The piece is copied to a block of its exact size, so that the sanitizer detects a read
+         * beyond it. */
         char *piece = malloc(size);
         assert_non_null(piece);
         memcpy(piece, body + at, size);
@@ -225,10 +226,10 @@ static void what_is_gathered_is_bounded(void **state)
     memcpy(body, "{\"name\":\"", 9);
     memcpy(body + length - 2, "\"}", 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, HE_LIMIT);
-    /* A name without an end. */
+    /* A name that never ends must be refused without being stored. */
     memset(body + 2, 'k', length - 2);
     assert_int_equal(feed(body, length, 65536, NULL).code, API_UNKNOWN_MEMBER);
-    /* A number without an end. */
+    /* A number that never ends must be refused without being stored. */
     memset(body, '0', length);
     memcpy(body, "{\"vertices\":[[1.", 16);
     assert_int_equal(feed(body, length, 7, NULL).code, HE_BAD_VALUE);
@@ -280,8 +281,8 @@ static const char attributed[] =
     "\"bool\","
     "\"values\":[true]}],\"name\":\"n\"}";
 
-/* Reads, repairs, builds and fills; returns NULL with HE_NO_MEMORY in the problem if an allocation
- * fails. */
+/* Reads a document with attributes, repairs it and builds the mesh; returns NULL with HE_NO_MEMORY
+ * in the problem if an allocation fails. */
 static he_mesh *make_attributed(api_problem *problem)
 {
     const he_repair_plan plan = {.which = he_repair_bit(HE_REPAIR_WELD) |
@@ -316,7 +317,8 @@ static he_mesh *make_attributed(api_problem *problem)
     return mesh;
 }
 
-/* Some allocations are optional, such as shrinking a block. */
+/* Some allocations are optional, such as shrinking a block: if one of these fails, the mesh is
+ * still made. */
 static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void **state)
 {
     (void)state;
@@ -341,7 +343,7 @@ static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void 
     assert_true(refused > 30);
 }
 
-/* Writes the whole text in pieces of `step` bytes. */
+/* Writes a document in pieces of `step` bytes; returns the text. */
 static char *write_all(const he_mesh *mesh, const char *name, size_t step, size_t *length)
 {
     api_document_out *out = api_document_out_new(mesh, name);
@@ -372,7 +374,7 @@ static he_mesh *read_back(const char *text, size_t length)
     return mesh;
 }
 
-/* Writes the document in steps of several sizes; it must read back as an equal mesh. */
+/* Writes a document in pieces of several sizes; it must be read back as an equal mesh. */
 static void expect_comes_back(const he_mesh *mesh, const char *name)
 {
     size_t length;
@@ -434,7 +436,7 @@ static void text_is_one_item_a_line(void **state)
 static void a_large_document_is_cut_anywhere(void **state)
 {
     (void)state;
-    /* A strip of quads, larger than the writer's buffer. */
+    /* This strip of quads is written to a document larger than the writer's buffer. */
     enum { QUADS = 5000 };
     he_soup soup;
     he_mesh *mesh = NULL;

@@ -1,4 +1,4 @@
-/* Attribute values through edits, and refusals of the C functions that JSON never causes. */
+/* Attribute values through edits, and refusals of C functions that no JSON request can cause. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "edit/whole/transform.h"
 #include "mesh/write.h"
 
-/* Adds a column of one double named "a": row i holds 10 * i, the default is -1. */
+/* Adds a column of one double named "a": the row i holds 10 * i, and the default is -1. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -50,7 +50,7 @@ static void assert_value(const he_mesh *m, he_kind domain, uint32_t row, double 
     }
 }
 
-/* Checks the value of the corner at a vertex of a face. */
+/* Requires this value at the corner of a face at a vertex. */
 static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, double expected)
 {
     he_halfedge h = he_face_halfedge(m, (he_face){face});
@@ -60,7 +60,7 @@ static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, doub
     assert_value(m, HE_HALFEDGE, h.i, expected);
 }
 
-/* Runs a script on a mesh with one column. */
+/* Returns a mesh with one column after a script was run on it. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -144,7 +144,7 @@ static void test_edges_and_faces(void **state)
     he_mesh_free(m);
     m = after("012,023", HE_FACE, HE_INTERPOLATE, "face_join edge=0-2");
     assert_value(m, HE_FACE, 0, 5);
-    assert_value(m, HE_FACE, 1, -1); /* dead */
+    assert_value(m, HE_FACE, 1, -1); /* the face is deleted */
     he_mesh_free(m);
     m = after("012,103,214", HE_EDGE, HE_COPY, "face_delete face=2;edge_flip edge=0-1;compact");
     assert_value(m, HE_EDGE, edge_between(m, 3, 2).i, 0);
@@ -162,7 +162,8 @@ static void test_edges_and_faces(void **state)
     he_mesh_free(m);
 }
 
-/* Half-edges of 012,103: 0 runs 0-1 in face 0, 2 1-2, 4 2-0; 1 runs 1-0 in face 1, 6 0-3, 8 3-1. */
+/* The half-edges of the mesh 012,103: 0 runs from 0 to 1, 2 from 1 to 2 and 4 from 2 to 0 in face
+ * 0; 1 runs from 1 to 0, 6 from 0 to 3 and 8 from 3 to 1 in face 1. */
 static void test_corners(void **state)
 {
     (void)state;
@@ -179,7 +180,7 @@ static void test_corners(void **state)
     assert_corner(m, 1, 0, 60);
     he_mesh_free(m);
 
-    /* The old corner moves to another half-edge with its value, for every rule. */
+    /* Under every rule, the old corner moves to another half-edge together with its value. */
     m = after("012,103", HE_HALFEDGE, HE_DEFAULT, "edge_bisect edge=#0 t=0.25");
     assert_corner(m, 1, 1, 10);
     assert_corner(m, 1, 4, -1);
@@ -219,7 +220,7 @@ static void test_corners(void **state)
     assert_corner(m, 1, 2, 40);
     he_mesh_free(m);
 
-    /* The faces around the deleted vertex keep the values of their corners. */
+    /* The corner of face 1 moves from the deleted vertex 0 to vertex 1, and must keep its value. */
     m = after("012,023,034,045,056,061", HE_HALFEDGE, HE_COPY, NULL);
     double at_0 = value_at(m, HE_HALFEDGE, halfedge_between(m, 0, 2).i);
     script_prepare(m, "edge_collapse halfedge=0-1");
@@ -268,7 +269,8 @@ static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double
 static void test_normals(void **state)
 {
     (void)state;
-    /* Doubles the height: a normal of slope 3:4 becomes one of slope 3:2. */
+    /* The matrix doubles the height: the normal of a plane with slope 3:4 becomes that of slope
+     * 3:2. */
     static const char HIGHER[] = "transform matrix=1,0,0,5,0,1,0,0,0,0,2,0,0,0,0,1";
     static const char MIRROR[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1";
     static const char FLAT[] = "transform matrix=1,0,0,0,0,1,0,0,0,0,0,0,0,0,0,1";
@@ -297,7 +299,8 @@ static void test_normals(void **state)
         assert_normal(m, domain, 2, 0, 0, -1);
         he_mesh_free(m);
     }
-    /* A list of vertices: their rows, their corners, and faces that move as a whole. */
+    /* Only some vertices are transformed: the normals in their rows change, and those of corners
+     * and faces only if the whole face moves. */
     he_mesh *m = script_mesh("012,023,324", NULL);
     add_normals(m, HE_VERTEX, HE_DOUBLE);
     add_normals(m, HE_HALFEDGE, HE_FLOAT);
@@ -355,7 +358,8 @@ static void nothing_is_mixed_into_what_is_locked(void **state)
     }
 }
 
-/* Whichever end is the origin of half-edge 2e, for every rule. */
+/* The new vertex must not be locked, whichever end of the edge is the origin of half-edge 2e, and
+ * under every rule. */
 static void a_lock_does_not_spread_to_a_vertex_between(void **state)
 {
     (void)state;
@@ -388,7 +392,7 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
     }
 }
 
-/* Both parts of a divided element have the mark; new elements do not. */
+/* If an element is divided, both parts must have its mark; new elements must not. */
 static void test_marks_are_copied(void **state)
 {
     (void)state;
@@ -405,7 +409,7 @@ static void test_marks_are_copied(void **state)
     for (uint32_t f = 0; f < he_mesh_issued(m, HE_FACE); f++) {
         assert_int_equal(marked(m, HE_FACE, "locked", f), f != 1 && f != 3);
     }
-    /* A column of another type with the name of a mark is no mark. */
+    /* A column that has the name of a mark but another type is an ordinary attribute. */
     he_mesh_free(m);
     m = script_mesh("012,023", NULL);
     he_column *column = NULL;
@@ -452,7 +456,7 @@ static void test_bad_values(void **state)
     he_mesh_free(m);
 }
 
-/* Positions at the limits of doubles stay finite. */
+/* Positions near the largest double must stay finite. */
 static void test_extreme_positions(void **state)
 {
     (void)state;
@@ -481,7 +485,7 @@ static void test_loops(void **state)
     (void)state;
     static const char join[] = "loop_join a=2-0 b=4-6";
     static const char split[] = "loop_split a=0-1 b=1-2 c=2-0";
-    /* 6 is merged into 2, and the edge 4-6 into 0-2. */
+    /* Vertex 6 is merged into vertex 2, and the edge 4-6 into the edge 0-2. */
     static const he_rule rules[] = {HE_INTERPOLATE, HE_COPY, HE_DEFAULT};
     for (size_t i = 0; i < 3; i++) {
         he_mesh *m = after(CF4, HE_VERTEX, rules[i], join);
@@ -500,7 +504,8 @@ static void test_loops(void **state)
     assert_corner(m, 0, 2, 10.0 * halfedge_between(m, 2, 3).i);
     he_mesh_free(m);
 
-    /* 5, 6 and 7 come from 0, 1 and 2; edge 9 from edge 0, which runs from 0 to 1. */
+    /* The new vertices 5, 6 and 7 come from 0, 1 and 2; the new edge 9 comes from edge 0, which
+     * runs from 0 to 1. */
     m = after(BIPYRAMID, HE_VERTEX, HE_COPY, split);
     assert_value(m, HE_VERTEX, 6, 10);
     he_mesh_free(m);

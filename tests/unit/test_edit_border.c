@@ -33,7 +33,7 @@ static void assert_at(const he_mesh *m, uint32_t v, double x, double y, double z
 }
 
 /* An interior vertex may store any half-edge that leaves it, and a bow-tie any boundary half-edge:
- * takes the choices of `like`. */
+ * makes `m` store the same ones as `like`, so that both can be compared. */
 static void store_like(he_mesh *m, const he_mesh *like)
 {
     for (uint32_t v = 0; v < he_mesh_issued(like, HE_VERTEX); v++) {
@@ -102,7 +102,7 @@ static void test_a_cube_cut_along_all_edges_falls_apart(void **state)
 static void test_cut_leaves_other_fans_alone(void **state)
 {
     (void)state;
-    /* Two fans at 0, of two and three faces; the second is cut. */
+    /* Vertex 0 has two fans, of two and of three faces; the second one is cut. */
     he_mesh *m = script_mesh("012,023,045,056,067", NULL);
     uint32_t e = edge_between(m, 0, 5).i;
     script_prepare(m, "edge_cut edge=0-5");
@@ -110,7 +110,7 @@ static void test_cut_leaves_other_fans_alone(void **state)
     assert_face(m, 0, "012");
     assert_face(m, 1, "023");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
-    /* The side of half-edge 2e stays with both ends. */
+    /* The side of half-edge 2e keeps both vertices. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * e}).i + he_target(m, (he_halfedge){2 * e}).i,
                      5);
     assert_false(he_is_boundary_halfedge(m, (he_halfedge){2 * e}));
@@ -130,7 +130,8 @@ static void test_weld_places_the_ends(void **state)
                  {"edge_weld a=0-1 b=3-5 keep=a", 0, 0, 2},
                  {"edge_weld a=0-1 b=3-5 keep=b", 4, 4, 4}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        /* Each face keeps its own side: 0-1 belongs to face 102, 3-5 to 345. */
+        /* After the weld and the cut each face must have its own side again: 0-1 belongs to face
+         * 102, 3-5 to face 345. */
         he_mesh *m = script_mesh("012,345", places);
         script_prepare(m, cases[i].weld);
         assert_counts(m, 4, 5, 2);
@@ -145,7 +146,8 @@ static void test_welds_at_a_bowtie_in_every_order(void **state)
     (void)state;
     static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
                                         "edge_weld a=0-6 b=0-7", "edge_weld a=0-8 b=0-1"};
-    /* Four fans are welded in every order; the last weld closes the only remaining fan. */
+    /* Four fans around a vertex are welded in every order; the last weld closes the only fan that
+     * remains. */
     for (unsigned order = 0; order < 256; order++) {
         unsigned used = 0;
         he_mesh *m = script_mesh("012,034,056,078", NULL);
@@ -189,7 +191,7 @@ static void test_deleting_the_walls_undoes_extrude(void **state)
             assert_int_equal(script_run(m, cases[i].extrude, &results, NULL), HE_OK);
             assert_valid(m);
             assert_true(he_mesh_faces(m) > he_mesh_faces(before));
-            /* The far edges are on the boundary and have only the walls. */
+            /* The far edges of the walls are on the boundary and have only the walls as faces. */
             char text[128];
             int n =
                 snprintf(text, sizeof text, by_edge ? "edge_delete edges=" : "face_delete faces=");
@@ -202,7 +204,8 @@ static void test_deleting_the_walls_undoes_extrude(void **state)
             assert_int_equal(he_mesh_vertices(m), he_mesh_vertices(before));
             assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
             if (strcmp(cases[i].mesh, STRANGE) != 0) {
-                /* The order of the fans at a bow-tie is not restored. */
+                /* The order of the fans at a bow-tie is not restored, so it is taken from the old
+                 * mesh before comparing. */
                 store_like(m, before);
                 assert_true(he_mesh_equal_live(m, before));
             }
@@ -220,8 +223,8 @@ static void test_extrude_shares_corners(void **state)
     he_results results = {{0}, {0}, {{0}}, {0}};
     assert_int_equal(script_run(m, "edge_extrude edges=1-2,0-1 by=0,0,3", &results, NULL), HE_OK);
     assert_counts(m, 7, 9, 3);
-    /* New vertices are in the order of the vertices below them, faces and edges in the order of the
-     * given edges. */
+    /* The new vertices are numbered in the order of the vertices that they were extruded from,
+     * faces and edges in the order of the given edges. */
     for (uint32_t v = 0; v < 3; v++) {
         assert_at(m, 4 + v, cube[v].x, cube[v].y, 3);
     }
@@ -230,7 +233,7 @@ static void test_extrude_shares_corners(void **state)
     assert_int_equal(results.list[1].ids[0], edge_between(m, 5, 6).i);
     assert_int_equal(results.list[1].ids[1], edge_between(m, 4, 5).i);
     assert_false(he_is_boundary_vertex(m, (he_vertex){1}));
-    /* Continues the chain from there. */
+    /* A second extrusion continues from the far edges of the first. */
     script_prepare(m, "edge_extrude edges=4-5,5-6 by=0,0,1");
     assert_counts(m, 10, 14, 5);
     he_results_clear(&results);
@@ -269,7 +272,7 @@ static void test_bevel_is_clamped(void **state)
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
     script_prepare(m, "vertex_move vertex=4 to=0,0,-9;edge_bevel edge=0-1 width=7");
-    /* Each cut is proportional to the length of its edge. */
+    /* The distance of each cut is proportional to the length of its edge. */
     assert_at(m, 8, 0, 0.99, 0);
     assert_at(m, 9, 0, 0, -7);
     assert_int_equal(he_edge_bevel(m, edge_between(m, 6, 7), (double)NAN, NULL, NULL),
@@ -296,7 +299,8 @@ static void test_both_bevels_cut_an_edge_without_length_halfway(void **state)
         script_prepare(m, "vertex_move vertex=3 to=0,0,0");
         script_prepare(m, bevels[i]);
         assert_valid(m);
-        /* Finds the cut between 0 and 3: the only new neighbour of 3. */
+        /* Finds the vertex that cuts the edge between 0 and 3: it is the only new neighbour
+         * of 3. */
         uint32_t cut = HE_NONE;
         he_halfedge first = he_vertex_halfedge(m, (he_vertex){3}), h = first;
         do {
@@ -320,7 +324,8 @@ static void test_bevel_beside_a_hole_keeps_the_end(void **state)
     bool from_0 = he_origin(m, he_edge_halfedge(e, 0)).i == 0;
     script_prepare(m, "edge_bevel edge=0-2 width=1");
     assert_counts(m, 8, 10, 3);
-    /* In the order of the new face: two cuts with the end between them, twice. */
+    /* The corners in the order of the new face: two cuts with an end of the bevelled edge between
+     * them, twice. */
     assert_face(m, 2, from_0 ? "405627" : "425607");
     assert_at(m, 0, 0, 0, 0);
     assert_at(m, 2, 4, 4, 0);
@@ -344,7 +349,7 @@ static void test_bevel_at_the_ends_of_doubles(void **state)
             he_mesh *m = script_mesh(QCUBE, places);
             he_status status = he_edge_bevel(m, edge_between(m, 0, 1), widths[k], NULL, NULL);
             assert_int_equal(status, HE_OK);
-            assert_counts(m, 10, 15, 7); /* and every position is finite */
+            assert_counts(m, 10, 15, 7); /* this also requires finite positions */
             he_mesh_free(m);
         }
     }
@@ -354,7 +359,7 @@ static void test_bevel_at_the_ends_of_doubles(void **state)
 
 enum { FIRST_VALUE = 10 };
 
-/* Adds a column of doubles that holds 10 times the id. */
+/* Adds a column of doubles; the value of each element is 10 times its id. */
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
@@ -412,7 +417,8 @@ static void test_values_follow(void **state)
     he_mesh *m = script_mesh(QCUBE, cube);
     add_column(m, HE_VERTEX, HE_INTERPOLATE);
     add_column(m, HE_HALFEDGE, HE_INTERPOLATE);
-    /* Corners of face 0 are those of half-edges that leave 0, 1, 2, 3 in it. */
+    /* `at_0` and `at_3` are the half-edges that leave vertices 0 and 3 in face 0; they stand for
+     * its corners there. */
     uint32_t at_0 = halfedge_between(m, 0, 1).i, at_3 = halfedge_between(m, 3, 0).i;
     double expected = FIRST_VALUE * (0.75 * at_0 + 0.25 * at_3);
     script_prepare(m, "edge_bevel edge=0-1 width=0.25");
@@ -424,7 +430,7 @@ static void test_values_follow(void **state)
     he_mesh_free(m);
 }
 
-/* Checks pairs given as text: "merged into" or "child parent". */
+/* Requires these pairs, given as text: "merged into" or "child parent". */
 static void assert_pairs(const he_ids *list, const char *expected)
 {
     char text[256] = "";

@@ -1,4 +1,4 @@
-/* The cases in the design's table of operations, and edits at bow-ties. */
+/* The cases that the design lists in its table of operations, and edits at bow-ties. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -93,7 +93,8 @@ static void test_strange(void **state)
     he_mesh *before = copy_of(m);
     assert_int_equal(script_run(m, "face_add vertices=3,0,4", NULL, NULL), HE_CLOSED_FAN);
     assert_equal(m, before);
-    /* Gap by gap the fans are joined, in whatever order they are linked. */
+    /* Faces fill one gap after another between the fans at vertex 0 and join them, in whatever
+     * order the boundary links connect the fans. */
     script_prepare(m, "face_add vertices=1,0,4");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
     assert_int_equal(script_run(m, "face_add vertices=3,0,2", NULL, NULL), HE_CLOSED_FAN);
@@ -130,7 +131,8 @@ static void test_cube_holes(void **state)
 static void test_checkerboard(void **state)
 {
     (void)state;
-    /* The white squares of a three by three checkerboard: five faces that touch only at corners. */
+    /* From a grid of three by three squares the white squares of a checkerboard are deleted: five
+     * faces are left that touch only at corners. */
     he_mesh *m = script_mesh("0154,1265,2376,4598,56a9,67ba,89dc,9aed,abfe", NULL);
     script_prepare(m, "face_delete faces=1,3,5,7");
     assert_counts(m, 16, 20, 5);
@@ -176,7 +178,7 @@ static void test_cf3_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
-    /* The edge enters the corner of 3 in both faces. */
+    /* The new edge becomes a side of both faces at their corner at vertex 3. */
     script_prepare(m, "vertex_split_corners a=3-2 b=3-5");
     assert_counts(m, 7, 8, 2);
     script_prepare(m, "edge_collapse halfedge=6-3 t=1");
@@ -226,7 +228,7 @@ static void test_cube_corner(void **state)
     }
 }
 
-/* Makes a shape of the table with the given arguments. */
+/* Makes a primitive shape by its name, with these parameters. */
 static he_mesh *make(const char *name, const double *given, size_t count)
 {
     double args[HE_SHAPE_PARAMS];
@@ -318,7 +320,8 @@ static void test_solids(void **state)
     }
 }
 
-/* Every bit is compared: dead rows, issued ids and every attribute. */
+/* After a refusal every bit must be as before: rows of deleted elements, issued ids and every
+ * attribute. */
 static void test_a_refusal_leaves_everything(void **state)
 {
     (void)state;
@@ -379,12 +382,12 @@ static void test_sb(void **state)
     he_mesh_free(m);
 }
 
-/* Loop's subdivision by splits and flips: splits all edges, then flips the new edges between an old
- * and a new vertex. */
+/* Loop's subdivision made of splits and flips: all edges are split, and then each new edge between
+ * an old and a new vertex is flipped. */
 static void test_split_and_flip(void **state)
 {
     (void)state;
-    /* An octahedron. */
+    /* The mesh is an octahedron. */
     he_mesh *m = script_mesh("012,023,034,041,521,532,543,514", NULL);
     uint32_t v = he_mesh_vertices(m), e = he_mesh_edges(m), f = he_mesh_faces(m);
     for (uint32_t i = 0; i < e; i++) {
@@ -413,7 +416,7 @@ static void test_split_and_flip(void **state)
     he_mesh_free(m);
 }
 
-/* vertex_split and the collapse of its edge give back the same mesh, link by link. */
+/* vertex_split followed by the collapse of its edge must give the same mesh, link by link. */
 static void test_vertex_split_is_inverse(void **state)
 {
     (void)state;
@@ -442,7 +445,8 @@ static void test_vertex_split_is_inverse(void **state)
         snprintf(text, sizeof text, "edge_collapse halfedge=%u-%u t=1", u, cases[i].v);
         script_prepare(m, text);
         assert_valid(m);
-        /* An interior vertex may store any half-edge that leaves it. */
+        /* An interior vertex may store any half-edge that leaves it, so the choice is taken from
+         * the old mesh before comparing. */
         he_vertex v = {cases[i].v};
         if (!he_is_boundary_vertex(m, v)) {
             he_set_vertex_halfedge(m, v, he_vertex_halfedge(before, v));

@@ -1,5 +1,5 @@
-/* delaunay against the circle test of every edge. SEED=n in the environment repeats a random run,
- * ROUNDS=n makes it longer. */
+/* The edit `delaunay` is compared with the circle test of every edge. SEED=n in the environment
+ * repeats a random run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ static bool is_inner(const he_mesh *m, uint32_t e)
            he_face_degree(m, he_face_of(m, (he_halfedge){2 * e + 1})) == 3;
 }
 
-/* Law of cosines at the corner opposite to h. */
+/* Returns the angle at the corner opposite to h, by the law of cosines. */
 static double opposite(const he_mesh *m, he_halfedge h)
 {
     double a = he_edge_length(m, he_edge_of(h)), b = he_edge_length(m, he_edge_of(he_next(m, h)));
@@ -57,7 +57,8 @@ static bool is_clearly_crooked(const he_mesh *m, uint32_t e)
     return is_inner(m, e) && opposite(m, h) + opposite(m, he_twin(h)) > 3.14159265358979 + 1e-6;
 }
 
-/* In the plane z = 0: how far d is inside the circle through a, b and c, relative to its size. */
+/* Returns how far d is inside the circle through a, b and c in the plane z = 0, relative to the
+ * size of the circle. */
 static double depth_in_circle(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d)
 {
     long double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y;
@@ -108,7 +109,7 @@ static void test_kite(void **state)
     he_mesh_free(m);
 }
 
-/* With four points on a circle both diagonals are equally good. */
+/* If four points are on a circle, both diagonals are equally good, and neither may be flipped. */
 static void test_circle_is_left_alone(void **state)
 {
     (void)state;
@@ -132,11 +133,11 @@ static void test_what_is_never_flipped(void **state)
         const char *mesh;
         const he_vec3 *at;
     } cases[] = {
-        {"012", KITE},             /* a boundary */
-        {"012,1034", pentagon},    /* beside a quadrilateral */
+        {"012", KITE},             /* the edge is on the boundary */
+        {"012,1034", pentagon},    /* the edge is beside a quadrilateral */
         {"012,103,213,023", KITE}, /* flat, but the other diagonal is there */
-        {"012,103,234", KITE},     /* there in a face elsewhere */
-        {"012,021", KITE},         /* a pillow */
+        {"012,103,234", KITE},     /* the other diagonal is in a face elsewhere */
+        {"012,021", KITE},         /* two triangles back to back */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_mesh *m = script_mesh(cases[i].mesh, cases[i].at), *before = copy_of(m);
@@ -179,7 +180,7 @@ static void test_features_stay(void **state)
     }
 }
 
-/* Small and far away, huge, tiny. */
+/* The mesh is tried small and far from the origin, huge, and tiny. */
 static void test_any_scale(void **state)
 {
     (void)state;
@@ -215,7 +216,8 @@ static bool is_inside(const he_mesh *m, uint32_t f, he_vec3 p)
     return true;
 }
 
-/* A square into which points are inserted, each connected to the corners of its triangle. */
+/* Makes a square into which points are inserted; each is connected to the corners of the triangle
+ * around it. */
 static he_mesh *random_points(md_random *r, uint32_t n)
 {
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -249,7 +251,7 @@ static void test_random_points(void **state)
         assert_valid(m);
         assert_delaunay_in_plane(m);
         assert_true(fabs(total_area(m) - 1) < 1e-9);
-        /* Applying the reported flips to the old mesh gives the new one. */
+        /* Applying the reported flips to the old mesh must give the new one. */
         he_mesh *replay = copy_of(before);
         for (size_t i = 0; i < flips.count; i++) {
             assert_true(is_inner(replay, flips.ids[i]));
@@ -273,7 +275,7 @@ static void test_random_points(void **state)
     }
 }
 
-/* Kept edges are unchanged; all others are Delaunay. */
+/* Edges with a feature mark must be unchanged; all others must be Delaunay. */
 static void test_random_features(void **state)
 {
     (void)state;
@@ -305,8 +307,8 @@ static void test_random_features(void **state)
     }
 }
 
-/* After a point is inserted into a Delaunay triangulation, starting with the sides of its triangle
- * is enough (Lawson's insertion). */
+/* After a point is inserted into a Delaunay triangulation, it must suffice to name the sides of its
+ * triangle: the flips spread from there (Lawson's insertion). */
 static void test_flips_spread_from_the_list(void **state)
 {
     (void)state;
@@ -336,7 +338,7 @@ static void test_flips_spread_from_the_list(void **state)
     he_mesh_free(m);
 }
 
-/* An edge that is neither in the list nor beside a flip is not checked. */
+/* An edge that is neither in the list nor beside a flip must not be tested. */
 static void test_only_the_list(void **state)
 {
     (void)state;
@@ -389,7 +391,7 @@ static void test_triangles_in_space(void **state)
         double area = total_area(m);
         assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
         assert_valid(m);
-        /* The bound by which delaunay.h proves that it ends. */
+        /* The total area must not grow: by this bound delaunay.h proves that the flips end. */
         assert_true(total_area(m) <= area * (1 + 1e-9));
         all += flips.count;
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
@@ -411,8 +413,9 @@ static void test_triangles_in_space(void **state)
 
 /* --- work --- */
 
-/* Two rows of points; all triangles of the lower row share one point, and all of the upper row
- * another: the number of flips grows with the square. */
+/* Makes two rows of points; all triangles on the lower row share one point of the upper row,
+ * and the other way round, so that the number of flips grows with the square of the number of
+ * points. */
 static he_mesh *two_rows(uint32_t n)
 {
     he_soup soup;
@@ -453,8 +456,8 @@ static void test_work_is_limited(void **state)
     he_mesh_free(m);
 }
 
-/* However many flips there are, the delta is no longer than the number of words in the mesh, and
- * undoes and redoes. */
+/* However many flips there are, the delta must not be longer than the number of words in the mesh,
+ * and must undo and redo them. */
 static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
 {
     (void)state;
@@ -480,7 +483,7 @@ static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
     he_mesh_free(m);
 }
 
-/* Ten thousand edges at one vertex: no flip visits all of them. */
+/* A vertex has ten thousand edges: no flip may visit all of them. */
 static void test_hub(void **state)
 {
     (void)state;

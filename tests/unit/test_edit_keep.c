@@ -1,5 +1,5 @@
-/* Welds keep the values of vertices: where values differ they move to corners, and undo moves them
- * back. */
+/* Welds with `keep` preserve the values of vertices: where the values of merged vertices differ,
+ * they move to the corners of faces, and undo moves them back. */
 #include "unit/edit_script.h"
 
 #include "mesh/check.h"
@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* Vertices 1 2 and 5 4 have equal positions. */
+/* The vertices 1 and 5 have equal positions, and so have 2 and 4. */
 static const he_vec3 beside[6] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {1, 1, 0}, {1, 0, 0}};
 #define BESIDE "012,345"
 
@@ -50,7 +50,7 @@ static double first_of(const he_column *column, uint32_t row)
     return value;
 }
 
-/* Requires these values at the corners of a face, starting at any of them. */
+/* Requires these values at the corners of a face, whichever corner is the first. */
 static void expect_corners(const he_mesh *m, const char *name, uint32_t face, double a, double b,
                            double c)
 {
@@ -163,7 +163,8 @@ static void an_attribute_that_corners_have_is_not_changed(void **state)
     }
 }
 
-/* Only these vertices have such values. */
+/* A vertex without faces has no corners to which its value could move, so the attribute must stay
+ * one of vertices if such a vertex has a value other than the default. */
 static void vertices_without_corners_keep_the_attribute(void **state)
 {
     (void)state;

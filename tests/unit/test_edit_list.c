@@ -1,4 +1,4 @@
-/* Lists of ids: the first repeated one is found in short, dense and sparse lists, with memory that
+/* Lists of ids: the first repeated id is found in short, dense and sparse lists, with memory that
  * does not depend on the size of the mesh. */
 #include "fixture.h"
 
@@ -6,7 +6,7 @@
 
 enum { COUNT = 1000 };
 
-/* The largest block that was requested. */
+/* The size of the largest block that was requested. */
 static size_t largest;
 
 static void *measure(void *context, void *memory, size_t size)

@@ -1,5 +1,5 @@
-/* Joining and splitting loops, and bridges: the design's cases, surviving ids, inverses, twist.
- */
+/* Joining and splitting loops, and bridges between them: the cases of the design, surviving ids,
+ * inverse edits, and the twist of a bridge. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 
 #define CF4       "023,321,031,647,675,745"
 #define BIPYRAMID "013,123,203,104,214,024"
-/* Two open cylinders of six sides, of 0..b and of c..n. */
+/* Two open cylinders of six sides each: the vertices 0 to b and c to n. */
 #define CYLINDERS "0176,1287,2398,34a9,45ba,506b,cdji,dekj,eflk,fgml,ghnm,hcin"
 
 static int euler(const he_mesh *m)
@@ -29,7 +29,8 @@ static int euler(const he_mesh *m)
     return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
 }
 
-/* Each vertex may store any of its allowed half-edges. */
+/* Requires that the links of two meshes are equal, except that a vertex may store any of the
+ * half-edges that it is allowed to. */
 static void assert_same_links(he_mesh *m, const he_mesh *other)
 {
     for (uint32_t v = 0; v < he_mesh_issued(other, HE_VERTEX); v++) {
@@ -62,7 +63,8 @@ static void test_cylinders(void **state)
     m = script_mesh(CYLINDERS, NULL);
     assert_counts(m, 24, 36, 12);
     assert_loops(m, "6666");
-    /* Joins the top of one to the bottom of the other, then the remaining ends: a torus. */
+    /* Bridges join the top of one cylinder to the bottom of the other, and then the remaining ends,
+     * which makes a torus. */
     script_prepare(m, "loop_bridge a=6-7 b=13-12");
     assert_valid(m);
     assert_counts(m, 24, 42, 18);
@@ -88,7 +90,8 @@ static void test_who_survives(void **state)
     script_prepare(m, "loop_join a=2-0 b=4-6");
     he_mesh_record(m, NULL);
     assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-    /* The target of b is merged into the origin of a, and so on around. */
+    /* The target of half-edge b is merged into the origin of half-edge a, and so on around the
+     * loops, in pairs "merged, into". */
     static const uint32_t merged[] = {6, 2, 4, 0, 5, 1};
     assert_int_equal(changes.merged[HE_VERTEX].count, 6);
     for (unsigned i = 0; i < 6; i++) {
@@ -146,9 +149,11 @@ static void test_split_then_join(void **state)
     } cases[] = {
         {BIPYRAMID, {0, 1, 2}},
         {BIPYRAMID, {2, 1, 0}},
-        /* A triangle with a vertex in its middle, inside an octahedron. */
+        /* The cycle consists of the sides of a face of an octahedron; the face is divided by a
+         * vertex in its middle. */
         {"016,126,206,023,034,041,521,532,543,514", {0, 1, 2}},
-        /* Around the hole of a torus of three by three squares, each cut in two. */
+        /* Cycles around the hole and through the tube of a torus of three by three squares, each
+         * cut in two. */
         {"014,043,125,154,203,235,347,376,458,487,536,568,671,610,782,721,860,802", {0, 1, 2}},
         {"014,043,125,154,203,235,347,376,458,487,536,568,671,610,782,721,860,802", {0, 3, 6}},
     };
@@ -170,7 +175,8 @@ static void test_split_then_join(void **state)
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
         assert_int_equal(he_loop_join(m, there, other, NULL, NULL), HE_OK);
         assert_valid(m);
-        /* Faces may store other half-edges; corners must have equal values. */
+        /* A face may store another of its half-edges, so the choice is taken from the old mesh; the
+         * corners must have equal values. */
         for (uint32_t f = 0; f < he_mesh_issued(before, HE_FACE); f++) {
             he_set_face_halfedge(m, (he_face){f}, he_face_halfedge(before, (he_face){f}));
         }
@@ -221,8 +227,8 @@ static void test_bridge_then_delete(void **state)
 
 static const double TURN = 6.283185307179586;
 
-/* A disk of n corners below one of k, rotated by `turn`, facing each other; positions are scaled by
- * `scale`. */
+/* Makes a disk of n corners below one of k corners, which is rotated by `turn`; the two face each
+ * other, and positions are scaled by `scale`. */
 static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
 {
     he_soup soup;
@@ -246,7 +252,8 @@ static he_mesh *disks(uint32_t n, uint32_t k, double turn, double scale)
     return m;
 }
 
-/* Returns the angle between the ends of an edge, as a part of a turn. */
+/* Returns the angle by which an edge turns from its lower to its upper end, as a part of a full
+ * turn. */
 static double twist_of(const he_mesh *m, uint32_t e)
 {
     he_halfedge h = {2 * e};
@@ -272,7 +279,7 @@ static double bridge_disks(he_mesh *m, uint32_t n, uint32_t k)
         assert_true(he_origin(m, rung).i < n && he_target(m, rung).i >= n);
         assert_int_equal(he_face_of(m, he_twin(rung)).i, bridge.faces.ids[i]);
     }
-    /* The first leaves the origin of a. */
+    /* The first of the new edges leaves the origin of half-edge a. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * bridge.edges.ids[0]}).i, 1);
     he_bridge_clear(&bridge);
     return most;
@@ -307,7 +314,7 @@ static void test_unequal_loops_are_not_twisted(void **state)
     }
 }
 
-/* All corners of one loop are nearest to a single corner of the other. */
+/* All corners of one loop are nearest to one and the same corner of the other loop. */
 static void test_a_crowd_is_bridged(void **state)
 {
     (void)state;
@@ -330,7 +337,7 @@ static void test_a_crowd_is_bridged(void **state)
     }
 }
 
-/* The loop visits vertex 0 twice; both gaps are filled, so that its fans become one. */
+/* The loop visits vertex 0 twice, and both gaps there are filled, so that its fans become one. */
 static void test_bowties(void **state)
 {
     (void)state;
@@ -343,7 +350,8 @@ static void test_bowties(void **state)
     assert_false(he_is_boundary_vertex(m, (he_vertex){0}));
     he_mesh_free(m);
 
-    /* Joined to a hole at one gap of a bow-tie, the fan stays separate from the other fan. */
+    /* If a fan at a bow-tie is joined to a hole at one of its gaps, it stays separate from the
+     * other fan. */
     m = script_mesh("012,034,567", NULL);
     script_prepare(m, "loop_join a=0-1 b=6-5");
     assert_valid(m);

@@ -1,4 +1,5 @@
-/* Cutting a mesh by a plane: both parts together are the whole, and caps close them. */
+/* Cutting a mesh by a plane: both parts together must be the whole mesh, and caps must close
+ * them. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};
 
-/* A step of stairs: 2 wide, 2 high at the back, 1 in front. */
+/* Two steps of a stair: 2 wide, 2 high at the back, 1 high in front. */
 #define STAIRS "0176,1287,2398,34a9,45ba,506b,543210,6789ab"
 static const he_vec3 STAIRS_LIE[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2},
                                      {2, 0, 2}, {2, 0, 0}, {0, 1, 0}, {0, 1, 1},
@@ -46,7 +47,7 @@ static double area(const he_mesh *m)
     return measures.area;
 }
 
-/* A closed shape of triangles. */
+/* Makes a closed shape of triangles by its name. */
 static he_mesh *shape(const char *name)
 {
     he_soup soup;
@@ -79,7 +80,7 @@ static he_mesh *part_of(const he_mesh *m, he_vec3 at, he_vec3 normal, he_cut_sid
     return part;
 }
 
-/* Cuts a closed mesh in two; returns the number of caps of each part. */
+/* Cuts a closed mesh into two parts and checks them; returns the number of caps of each part. */
 static size_t check_halves(const he_mesh *m, he_vec3 at, he_vec3 normal)
 {
     double whole = volume(m), around = area(m), volumes = 0, areas = 0;
@@ -138,7 +139,7 @@ static void test_halves_make_up_the_whole(void **state)
     }
 }
 
-/* A face in the plane belongs to the part whose outside it is. */
+/* A face that lies in the plane belongs to the part of which it is an outer face. */
 static void test_faces_in_the_plane(void **state)
 {
     (void)state;
@@ -177,7 +178,7 @@ static void test_faces_in_the_plane(void **state)
 static void test_caps_of_open_meshes(void **state)
 {
     (void)state;
-    /* A hole that the plane does not meet is unchanged. */
+    /* A hole that the plane does not meet must be unchanged. */
     he_mesh *m = shape("icosphere");
     script_prepare(m, "face_delete face=0");
     he_vec3 hole = {0, 0, 0};
@@ -198,7 +199,8 @@ static void test_caps_of_open_meshes(void **state)
     assert_int_equal(euler(part), 2);
     he_mesh_free(part);
 
-    /* A cut through the hole is open: with caps the operation is refused, without caps it works. */
+    /* If the plane meets a hole, the cut is an open line: with caps the operation must be refused,
+     * without caps it must succeed. */
     he_vec3 across = he_vec3_cross(hole, UP), at = he_vec3_scale(hole, 1.0 / 3);
     he_error err = {.status = HE_OK};
     part = copy_of(m);
@@ -237,7 +239,7 @@ static void test_tolerance(void **state)
     const he_vec3 at = {0, 0, 0.05};
     he_cut_parts parts;
     he_mesh *m = script_mesh(STAIRS, STAIRS_LIE), *before = copy_of(m);
-    /* The bottom is in the plane and faces down, so the part above keeps it. */
+    /* The bottom of the stair lies in the plane and faces down, so the part above keeps it. */
     assert_int_equal(he_plane_cut(m, at, UP, &near, HE_CUT_ABOVE, true, &parts, NULL), HE_OK);
     assert_int_equal(parts.edges_split, 0);
     assert_int_equal(parts.faces_deleted, 0);

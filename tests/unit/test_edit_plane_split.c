@@ -1,5 +1,5 @@
-/* plane_split, compared with counts and measures computed in another way. SEED=n in the environment
- * repeats a random run, ROUNDS=n makes it longer. */
+/* plane_split is compared with counts and measures that are computed in another way. SEED=n in the
+ * environment repeats a random run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -51,7 +51,7 @@ static double total_area(const he_mesh *m)
     return measures.area;
 }
 
-/* Returns the side of a plane, with no tolerance except rounding. */
+/* Returns the side of the plane on which a vertex lies, with no tolerance except for rounding. */
 static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
 {
     he_vec3 p = he_position(m, v);
@@ -59,8 +59,8 @@ static int side(const he_mesh *m, he_vertex v, he_vec3 point, he_vec3 normal)
     return fabs(d) < 1e-7 ? 0 : d > 0 ? 1 : -1;
 }
 
-/* A face relative to the plane: corners on both sides, corners in the plane, sides that cross
- * it. */
+/* How a face lies relative to the plane: whether it has corners on both sides, which corners lie in
+ * the plane, and which sides cross it. */
 typedef struct look {
     bool above, below;
     uint32_t in_plane, crossings;
@@ -107,8 +107,8 @@ static void assert_same_topology(const he_mesh *m, const he_mesh *before)
     he_topology_clear(&b);
 }
 
-/* Predicts V, E and F from the old faces and edges; faces with corners in the plane must be
- * convex. */
+/* Predicts the numbers of vertices, edges and faces from the old faces and edges; faces with
+ * corners in the plane must be convex. */
 static void assert_predicted(const he_mesh *before, const he_plane_parts *parts, he_vec3 point,
                              he_vec3 normal, bool convex)
 {
@@ -136,7 +136,8 @@ static void assert_predicted(const he_mesh *before, const he_plane_parts *parts,
     assert_true(exact ? parts->faces.count == least : parts->faces.count >= least);
 }
 
-/* Splits, and checks everything that must hold for any mesh. Returns false if it was refused. */
+/* Splits the mesh, and checks everything that must hold for any mesh. Returns false if the split
+ * was refused. */
 static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool convex)
 {
     he_mesh *before = copy_of(m);
@@ -219,7 +220,8 @@ static void test_square(void **state)
     }
 }
 
-/* The part with the side that leaves the origin of the stored half-edge keeps the id. */
+/* The part with the side that begins at the origin of the face's stored half-edge must keep
+ * the id. */
 static void test_who_survives(void **state)
 {
     (void)state;
@@ -254,7 +256,7 @@ static void test_who_survives(void **state)
     he_mesh_free(m);
 }
 
-/* A neighbour of a cut face gets a corner; faces that are not listed are not cut. */
+/* Only listed faces are cut; a neighbour that is not listed gets the new vertex as a corner. */
 static void test_only_some_faces(void **state)
 {
     (void)state;
@@ -266,7 +268,7 @@ static void test_only_some_faces(void **state)
     assert_int_equal(he_face_degree(m, (he_face){0}), 4);
     assert_int_equal(he_face_degree(m, (he_face){1}), 5);
     assert_int_equal(he_face_degree(m, (he_face){2}), 4);
-    /* The new corner is used. */
+    /* A second split must use the corner that the first one gave to the neighbours. */
     script_prepare(m, "plane_split point=0,0.5,0 normal=0,1,0 faces=2,1,0,3");
     assert_counts(m, 12, 17, 6);
     he_mesh_free(m);
@@ -291,8 +293,8 @@ static void test_attributes_follow(void **state)
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }
     script_prepare(m, "plane_split point=0.25,0,0 normal=1,0,0");
-    /* Vertex 4 lies between 0 and 1, edge 4 came from 0, face 1 from 0; the corner at 4 in face 0
-     * lies between those at 0 and 1, half-edges 0 and 2. */
+    /* Vertex 4 lies between 0 and 1, edge 4 came from edge 0, and face 1 from face 0. The corner at
+     * 4 in face 0 lies between those at 0 and 1, whose half-edges are 0 and 2. */
     const struct {
         he_kind domain;
         uint32_t row;
@@ -345,7 +347,7 @@ static void test_refusals(void **state)
         assert_int_equal(parts.faces_split, 77);
         assert_equal(m, before);
     }
-    /* One of the two sheets can be cut alone. */
+    /* The mesh has two sheets, of which one can be cut alone. */
     script_prepare(m, "plane_split point=0.5,0,0 normal=1,0,0 faces=1");
     assert_counts(m, 6, 7, 3);
     he_mesh_free(before);
@@ -370,7 +372,7 @@ static double area2(const he_mesh *m, const point *at, uint32_t f)
     return sum;
 }
 
-/* Puts points into a tilted plane far away; `back` does the opposite. */
+/* Puts points into a tilted plane far from the origin; `back` does the opposite. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 10), scale * (0.8 * p.y + 3),
@@ -383,8 +385,8 @@ static point back(he_vec3 p, double scale)
     return (point){0.6 * q.x + 0.8 * q.z, q.y / 0.8};
 }
 
-/* Cuts a polygon by the line y = height: there must be `parts` parts, none turned over, and their
- * areas must add up. */
+/* Cuts a polygon by the line y = height: there must be `parts` parts, none of them turned over, and
+ * their areas must add up. */
 static void check_cut(const point *points, uint32_t n, double height, uint32_t parts, double scale)
 {
     he_soup soup;
@@ -400,7 +402,8 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    /* Perpendicular to the line within the polygon's plane: y is distance along this. */
+    /* The normal of the cutting plane lies within the polygon's plane, so that y is the distance
+     * along it. */
     he_vec3 normal = {-0.48, 0.8, 0.36};
     assert_int_equal(
         he_plane_split(m, lay((point){5, height}, scale), normal, NULL, NULL, 0, NULL, NULL),
@@ -478,8 +481,8 @@ static void test_comb(void **state)
     free(points);
 }
 
-/* Polygons with integer heights, cut at integer heights: corners and sides lie in the plane and
- * touch it from above and below, also at the ends. */
+/* The polygons have corners at integer heights and are cut at integer heights: corners and sides
+ * lie in the plane and touch it from above and below, also at the ends. */
 static void test_random_profiles(void **state)
 {
     (void)state;
@@ -499,12 +502,13 @@ static void test_random_profiles(void **state)
         for (uint32_t i = n + 1; i-- > 0;) {
             points[count++] = (point){i, h[i]};
         }
-        /* Each side that rises above the line begins a part, unless it continues the one before. */
+        /* Each side that rises above the line begins a part, unless it continues a side that is
+         * above already. */
         for (uint32_t i = 0; i < n; i++) {
             above += h[i] > cut || h[i + 1] > cut;
             above -= i > 0 && h[i] > cut;
         }
-        /* Starting at any corner. */
+        /* The polygon is also tried with each corner as the first one. */
         point turned[16];
         uint32_t start = md_below(&r, count);
         for (uint32_t i = 0; i < count; i++) {
@@ -531,14 +535,14 @@ static void test_convex_shapes(void **state)
         for (unsigned k = 0; k < 20; k++) {
             print_message("%s, plane %u\n", names[i], k);
             he_mesh *m = shape(names[i], 0, 0);
-            /* The quadrilaterals of the torus need not be planar. */
+            /* The quadrilaterals of the torus need not be planar, so its area may change. */
             bool flat = strcmp(names[i], "torus") != 0;
             double area = total_area(m);
             he_vec3 normal = k == 0 ? UP : random_vector(&r);
             he_vec3 at = k < 2 ? ORIGIN : he_vec3_scale(random_vector(&r), 0.3);
             assert_true(split_and_check(m, at, normal, true));
             assert_true(!flat || fabs(total_area(m) - area) < 1e-9 * area);
-            /* Repeatedly, as when folding a sheet. */
+            /* The mesh is cut repeatedly, as a sheet that is folded. */
             for (unsigned fold = 0; fold < 4; fold++) {
                 assert_true(split_and_check(m, at, random_vector(&r), flat));
             }
@@ -575,7 +579,7 @@ static bool triangulate(he_mesh *m)
     return done;
 }
 
-/* A plane through three vertices, or a random one. */
+/* Draws a plane through three vertices, or a random one. */
 static void random_plane(const he_mesh *m, md_random *r, he_vec3 *at, he_vec3 *normal)
 {
     uint32_t n = he_mesh_issued(m, HE_VERTEX);

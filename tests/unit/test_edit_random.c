@@ -1,6 +1,6 @@
-/* Random operations on small meshes, also with bow-ties: after each the mesh passes he_check, a
- * refusal is one that its row declares and changes nothing, and the delta undoes and redoes. SEED=n
- * in the environment repeats a run, ROUNDS=n makes it longer. */
+/* Random operations on small meshes, some with bow-ties: after each the mesh must pass he_check, a
+ * refusal must be one that the operation's row declares and must change nothing, and the delta must
+ * undo and redo. SEED=n in the environment repeats a run, ROUNDS=n makes it longer. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -18,7 +18,8 @@ enum { LONGEST = 12, MOST_VERTICES = 48 };
 
 static uint64_t random_state;
 
-/* Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014. */
+/* Returns a pseudo-random number: Steele, Lea and Flood, "Fast splittable pseudorandom number
+ * generators", 2014. */
 static uint32_t random_below(uint32_t n)
 {
     uint64_t z = random_state += 0x9E3779B97F4A7C15u;
@@ -44,7 +45,8 @@ static uint32_t random_id(const he_mesh *m, he_kind kind)
     return random_below(issued + 2);
 }
 
-/* A neighbour of a vertex or a corner of a face, so that arguments often fit together. */
+/* Returns a random neighbour of a vertex or a random corner of a face, so that arguments often fit
+ * together. */
 static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
 {
     bool face = kind == HE_FACE;
@@ -60,7 +62,7 @@ static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
     return he_target(m, h).i;
 }
 
-/* Corners for a face: often along a hole, so that it can be added. */
+/* Draws the corners of a new face, often along a hole, so that the face can be added. */
 static size_t random_cycle(const he_mesh *m, uint32_t *ids)
 {
     size_t n = 2 + random_below(4);
@@ -110,7 +112,7 @@ static void choose(const he_mesh *m, const he_op *op, size_t at, he_arg *args, s
     case HE_PARAM_NUMBER:
         arg->number = param->min + random_unit() * (param->max - param->min);
         if (param->flags &
-            HE_WHOLE) { /* more steps would make the mesh large, or leave nothing of it */
+            HE_WHOLE) { /* many steps would make the mesh large, or remove all of it */
             arg->number = param->max < 1e6 ? param->min : random_below(100);
         }
         return;
@@ -152,7 +154,8 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     for (size_t i = 0; i < he_op_params(op); i++) {
         const he_param *param = &op->params[i];
         if (param->group != 0) {
-            /* One of two alternatives, which are consecutive, is chosen at the first. */
+            /* Two alternative parameters follow each other; the choice between them was made at the
+             * first. */
             if (i > 0 && op->params[i - 1].group == param->group) {
                 continue;
             }
@@ -164,7 +167,7 @@ static void choose_all(const he_mesh *m, const he_op *op, he_arg *args, storage 
     }
 }
 
-/* The changes must be empty exactly when both meshes are equal. */
+/* Requires that the reported sets are empty exactly if both meshes are equal. */
 static void require_honest_changes(const he_mesh *before, const he_mesh *m, const he_delta *delta)
 {
     he_changes changes;
@@ -175,7 +178,7 @@ static void require_honest_changes(const he_mesh *before, const he_mesh *m, cons
     he_changes_clear(&changes);
 }
 
-/* Returns whether the operation succeeded. */
+/* Runs one random operation; returns whether it succeeded. */
 static bool step(he_mesh *m, const he_op *op)
 {
     he_arg args[HE_OP_PARAMS];
@@ -234,7 +237,7 @@ static void test_random_edits(void **state)
     script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
         random_state = seed + round;
-        /* The last line printed repeats a failure. */
+        /* The last line that is printed shows how to repeat a failure. */
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)random_state);
         he_mesh *m = script_mesh(starts[round % (sizeof starts / sizeof *starts)], NULL);
         script_add_columns(m);
@@ -253,7 +256,7 @@ static void test_random_edits(void **state)
         all += done[i];
     }
     he_mesh_free(other);
-    /* Most steps must succeed, or the arguments are chosen badly. */
+    /* Enough steps must succeed; otherwise the arguments are chosen badly. */
     assert_true(all > 10 * rounds);
 }
 

@@ -21,7 +21,7 @@
 
 #define QCUBE "0123,7654,1045,2156,3267,0374"
 
-/* A unit square in the plane z = 0, and beside it a triangle. */
+/* A unit square in the plane z = 0 and, beside it, a triangle. */
 static const he_vec3 flat[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0.5, 0}};
 
 static const he_vec3 cube[] = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0},
@@ -44,7 +44,7 @@ static void run(he_mesh *m, const char *operation)
     assert_valid(m);
 }
 
-/* a grid of columns by columns quads */
+/* makes a grid of columns by columns quads */
 static he_mesh *grid(uint32_t columns)
 {
     he_soup soup;
@@ -103,7 +103,7 @@ static void a_region_moves_as_one_with_what_is_inside(void **state)
     assert_counts(m, 25 + 8, 40 + 16, 16 + 8);
     assert_at(m, 12, 2, 2, 3);
     assert_at(m, 6, 1, 1, 0);
-    /* The inner edge moves, too: one of its ends is a new vertex. */
+    /* One end of the inner edge is a new vertex, so the edge has moved, too. */
     he_halfedge h = he_edge_halfedge(inner, 0);
     h = he_origin(m, h).i == 12 ? h : he_twin(h);
     assert_int_equal(he_origin(m, h).i, 12);
@@ -227,7 +227,8 @@ static void an_inset_ends_before_a_side_vanishes(void **state)
     he_mesh_free(m);
 }
 
-/* The reflex corner meets the side below before any side vanishes. */
+/* The reflex corner would meet the side below before any side vanishes, so the inset must end
+ * there. */
 static void an_inset_ends_before_a_reflex_corner_meets_a_side(void **state)
 {
     (void)state;
@@ -251,7 +252,7 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     assert_at(m, 25, 1.25, 1.25, 0);
     assert_counts(m, 33, 56, 24);
     he_mesh_free(m);
-    /* Moves towards the inner vertex, but never onto it. */
+    /* The rim moves towards the inner vertex, but must never reach it. */
     m = grid(4);
     run(m, "face_inset faces=5,6,9,10 distance=9 region=1");
     assert_at(m, 12, 2, 2, 0);
@@ -259,7 +260,8 @@ static void a_region_keeps_what_is_inside_in_place(void **state)
     he_mesh_free(m);
 }
 
-/* A field that is linear in the plane keeps its own value at each new vertex. */
+/* If the values at the corners are linear in the plane, each new vertex must get the value of the
+ * linear function at its position. */
 static void values_of_an_inset_are_those_at_its_place(void **state)
 {
     (void)state;
@@ -308,7 +310,7 @@ static void values_of_an_inset_are_those_at_its_place(void **state)
     }
 }
 
-/* Not linear, but always between the values of the corners. */
+/* The values are not linear; each new one must still lie between the values of the corners. */
 static void values_of_an_inset_lie_between_those_of_its_corners(void **state)
 {
     (void)state;
@@ -459,7 +461,8 @@ static void the_dual_of_a_cube_is_an_octahedron(void **state)
     he_mesh_free(m);
 }
 
-/* The rank of a vertex among the live ones, to compare the corners of each live face. */
+/* Returns the position of a vertex among the live ones, to compare the corners of faces of two
+ * meshes. */
 static uint32_t rank_of(const he_mesh *m, uint32_t v)
 {
     uint32_t rank = 0;
@@ -481,7 +484,8 @@ static void the_dual_of_the_dual_has_the_links_of_the_mesh(void **state)
         assert_int_equal(he_mesh_edges(m), he_mesh_edges(before));
         uint32_t first = he_mesh_issued(m, HE_EDGE) - he_mesh_edges(m);
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
-            /* The dual turns each edge by a quarter, so applying it twice reverses it. */
+            /* The dual turns each edge by a quarter, so applying it twice must reverse each
+             * edge. */
             he_halfedge old = {h}, new = {2 * first + (h ^ 1)};
             assert_int_equal(he_next(m, new).i, 2 * first + (he_next(before, old).i ^ 1));
             assert_int_equal(rank_of(m, he_origin(m, new).i), he_origin(before, old).i);

@@ -1,5 +1,5 @@
-/* Whether a vertex moves when rounding decides: edits use the computed position, and the oracle,
- * which computes its own, accepts both. */
+/* Rounding may decide whether an edit moves a vertex: edits use the position that they compute, and
+ * the oracle, which computes its own, must accept both outcomes. */
 #include "edit_script.h"
 #include "model/corpus.h"
 #include "model/marks.h"
@@ -15,11 +15,11 @@
 #include <cmocka.h>
 
 #define HEXAGON "012,023,034,045,056,061"
-/* Two neighbouring doubles. */
+/* Two doubles with none between them. */
 #define TARGET 0.87518049095669803
 #define ORIGIN 0.87518049095669814
 
-/* Vertex 0 is at `x`, vertex 1 at TARGET, where a mark keeps it. */
+/* Makes a mesh in which vertex 0 is at `x` and vertex 1 at TARGET, where a mark keeps vertex 1. */
 static he_mesh *kept(double x, const char *mark)
 {
     const he_vec3 positions[] = {{x, 0, 0},    {TARGET, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -76,7 +76,8 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
     he_mesh_free(m);
 }
 
-/* Also for a face, whose corners are merged in several steps. */
+/* face_collapse merges the corners of a face in several steps; if hedge refuses one, the oracle
+ * must go back to before all of them. */
 static void test_the_oracle_goes_back_before_all_steps_of_a_face(void **state)
 {
     (void)state;

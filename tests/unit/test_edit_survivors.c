@@ -1,4 +1,4 @@
-/* Which element keeps its id in an edit, and the parents and merges that are reported. */
+/* Which element keeps its id in an edit, and which parents and merges the edit reports. */
 #include "edit_script.h"
 
 #include <setjmp.h>
@@ -44,7 +44,7 @@ static void edit_end(edit *e)
     he_mesh_free(e->m);
 }
 
-/* Checks ids given as text, "3 5 7". */
+/* Requires these ids, given as text: "3 5 7". */
 static void assert_ids(const he_ids *list, const char *expected)
 {
     char text[256] = "";
@@ -59,7 +59,7 @@ static void test_edge_bisect(void **state)
 {
     (void)state;
     edit e = edit_begin("0123");
-    /* Edge 0 runs 0 to 1. */
+    /* Edge 0 runs from vertex 0 to vertex 1. */
     edit_run(&e, "edge_bisect edge=#0 t=0.25");
     assert_int_equal(he_target(e.m, (he_halfedge){0}).i, 4);
     assert_int_equal(he_origin(e.m, (he_halfedge){8}).i, 4);
@@ -92,7 +92,8 @@ static void test_edge_split(void **state)
     (void)state;
     edit e = edit_begin("012,103");
     edit_run(&e, "edge_split edge=#0");
-    /* New are vertex 4 and the edges: the part 3.., then the diagonals to 2 and to 3. */
+    /* The new vertex is 4. The new edges are the part of the split edge that ends at 3, then the
+     * diagonals to 2 and to 3. */
     assert_ids(&e.changes.created[HE_EDGE], "5 6 7");
     assert_ids(&e.changes.created[HE_FACE], "2 3");
     assert_ids(&e.changes.parents[HE_EDGE], "5 0");
@@ -131,7 +132,7 @@ static void test_edge_collapse(void **state)
     assert_ids(&e.changes.merged[HE_FACE], "");
     edit_end(&e);
 
-    /* `edge` is half-edge 2e: its origin is deleted. */
+    /* `edge` stands for half-edge 2e, so the origin of this half-edge is deleted. */
     e = edit_begin("0123");
     edit_run(&e, "edge_collapse edge=#1 t=0");
     assert_face(e.m, 0, "023");
@@ -193,7 +194,7 @@ static void test_face_split_and_join(void **state)
 
     e = edit_begin("012,023");
     edit_run(&e, "face_join edge=0-2");
-    /* Half-edge 2e of the edge 2-0 runs in face 0. */
+    /* Half-edge 2e of the edge 2-0 runs in face 0, so this face survives. */
     assert_face(e.m, 0, "0123");
     assert_ids(&e.changes.merged[HE_FACE], "1 0");
     edit_end(&e);
@@ -231,7 +232,8 @@ static void test_edge_flip(void **state)
     edit e = edit_begin("012,103");
     he_halfedge h = {0};
     edit_run(&e, "edge_flip edge=#0");
-    /* 2e ran 0 to 1 with 2 on its left: now 3 to 2 with 0 on its left. */
+    /* Half-edge 2e ran from 0 to 1 with 2 on its left; after the flip it runs from 3 to 2 with 0 on
+     * its left. */
     assert_int_equal(he_origin(e.m, h).i, 3);
     assert_int_equal(he_target(e.m, h).i, 2);
     assert_face(e.m, 0, "032");
@@ -256,7 +258,7 @@ static void test_delete_leftovers(void **state)
     assert_true(he_is_isolated(e.m, (he_vertex){0}));
     edit_end(&e);
 
-    /* Vertices that were isolated before are not deleted. */
+    /* Vertices that were isolated before the edit must not be deleted. */
     e = edit_begin("0123+");
     edit_run(&e, "vertex_delete vertex=1");
     assert_ids(&e.changes.deleted[HE_VERTEX], "0 1 2 3");

@@ -1,4 +1,4 @@
-/* Triangulation: concave, long, tilted, degenerate and enclosed loops. */
+/* Triangulation of concave, long, tilted, degenerate and enclosed loops. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ typedef struct point {
     double x, y;
 } point;
 
-/* Puts points into a tilted plane, far from the origin, at any scale. */
+/* Puts points into a tilted plane far from the origin, at any scale. */
 static he_vec3 lay(point p, double scale)
 {
     return (he_vec3){scale * (0.6 * p.x - 0.48 * p.y + 100), scale * (0.8 * p.y + 30),
@@ -48,7 +48,8 @@ static double area(point a, point b, point c)
     return ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
-/* Triangles that all turn left and whose areas add up to the polygon's area cover it once. */
+/* Requires that all triangles turn left and that their areas add up to the polygon's area: then
+ * they cover it once. */
 static void assert_covered(const he_mesh *m, const point *points, uint32_t n)
 {
     double whole = 0, sum = 0;
@@ -87,7 +88,7 @@ static void test_small(void **state)
     static const point angle[] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
     static const point spiral[] = {{0, 0}, {9, 0}, {9, 9}, {2, 9}, {2, 4}, {5, 4}, {5, 6}, {4, 6},
                                    {4, 5}, {3, 5}, {3, 8}, {8, 8}, {8, 1}, {1, 1}, {1, 9}, {0, 9}};
-    /* Corners on straight sides. */
+    /* The polygon has corners within straight sides. */
     static const point flat[] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {0, 3}, {0, 2}, {0, 1}};
     check_polygon(dart, 4, 1);
     check_polygon(turned_dart, 4, 1);
@@ -106,13 +107,13 @@ static void test_any_scale(void **state)
     }
 }
 
-/* Longer than HE_EXACT_CORNERS: cut by ears. */
+/* Polygons with more than HE_EXACT_CORNERS corners are cut by ear clipping. */
 static void test_long(void **state)
 {
     (void)state;
     enum { N = 600 };
     static point points[N];
-    /* A star; a comb; a spiral band. */
+    /* The polygons are a star, a comb and a spiral band. */
     for (uint32_t i = 0; i < N; i++) {
         double angle = 6.283185307179586 * i / N, radius = i % 2 ? 100 : 30;
         points[i] = (point){radius * cos(angle), radius * sin(angle)};
@@ -146,7 +147,7 @@ static void test_convex_is_fast(void **state)
     free(points);
 }
 
-/* Faces without area and faces that cross themselves are triangulated and reported. */
+/* Faces without area, and faces whose sides cross, must be triangulated and reported. */
 static void test_degenerate(void **state)
 {
     (void)state;
@@ -189,8 +190,8 @@ static he_mesh *flat_mesh(const char *faces, const point *points, uint32_t n)
     return script_mesh(faces, positions);
 }
 
-/* A diagonal that exists elsewhere is avoided if another one is possible, otherwise the edit is
- * refused. */
+/* A diagonal that exists as an edge elsewhere must be avoided if another one is possible; otherwise
+ * the edit must be refused. */
 static void test_existing_edges(void **state)
 {
     (void)state;
@@ -206,7 +207,7 @@ static void test_existing_edges(void **state)
     assert_true(edge_between(m, 0, 2).i < he_mesh_issued(m, HE_EDGE));
     he_mesh_free(m);
 
-    /* A dart has one inner diagonal. */
+    /* A dart, a concave quadrilateral, has only one diagonal inside. */
     static const point dart[] = {{0, 0}, {4, 4}, {0, 1}, {-4, 4}, {9, 9}};
     he_mesh *before;
     m = flat_mesh("0123,024", dart, 5);
@@ -217,8 +218,8 @@ static void test_existing_edges(void **state)
     he_mesh_free(m);
 }
 
-/* A star of 66 corners, or with `inner` 1 a convex loop; for `blocked` of its points the diagonal
- * that would cut them off exists in a triangle elsewhere. */
+/* Makes a star of 66 corners or, with `inner` 1, a convex loop. `blocked` of its points cannot be
+ * cut off, because the diagonal for it exists in a triangle elsewhere. */
 static he_mesh *blocked_star(double inner, uint32_t blocked)
 {
     enum { N = 66 };
@@ -258,8 +259,9 @@ static void test_blocked_ears(void **state)
     he_mesh_free(m);
 }
 
-/* Faces that share two corners of very high degree, between which the last face would prefer a
- * diagonal: an existing edge is found in few steps, also if it is a diagonal of the same edit. */
+/* Many faces share two corners of very high degree, and the last face would prefer a diagonal
+ * between these: that the edge exists must be found in few steps, even if it is a diagonal made by
+ * the same edit. */
 static void test_hubs(void **state)
 {
     (void)state;
@@ -341,7 +343,8 @@ static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsign
     return t;
 }
 
-/* A star and a polygon whose sides cross. */
+/* If any diagonals will do, a star is cut in few steps; a polygon whose sides cross is cut as it is
+ * when the best diagonals are wanted. */
 static void test_any_diagonals_take_few_steps(void **state)
 {
     (void)state;
@@ -373,7 +376,8 @@ static void test_any_diagonals_take_few_steps(void **state)
     he_mesh_free(m);
 }
 
-/* Every face visits the same two vertices, which each diagonal might connect already. */
+/* Every face visits the same two vertices, so each diagonal has to be looked up among many edges,
+ * and this must count toward the limit of work. */
 static void test_searching_for_edges_counts(void **state)
 {
     (void)state;

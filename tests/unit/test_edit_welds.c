@@ -1,5 +1,5 @@
-/* Welds, separating bow-ties, and splitting, dissolving and bevelling vertices: cases, inverses,
- * surviving ids, and values. */
+/* Welds, separating bow-ties, and splitting, dissolving and bevelling vertices: cases, inverse
+ * edits, surviving ids, and values. */
 #include "edit_script.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@
 
 /* --- inverses --- */
 
-/* Are two meshes equal except for the half-edge that each vertex stores? */
+/* Requires that two meshes are equal except for the half-edge that each vertex stores. */
 static void assert_same_rings(he_mesh *m, const he_mesh *before)
 {
     for (uint32_t v = 0; v < he_mesh_issued(before, HE_VERTEX); v++) {
@@ -45,8 +45,8 @@ static void test_cf3_split_corners(void **state)
     he_mesh_free(m);
 }
 
-/* A collapse undoes each split that leaves an edge it may collapse: not an interior edge between
- * two boundary vertices. */
+/* After each split of a vertex, collapsing the new edge must undo it, unless the collapse is not
+ * allowed: an interior edge between two boundary vertices. */
 static void split_and_collapse(const he_mesh *before, uint32_t a, uint32_t b)
 {
     he_mesh *m = copy_of(before);
@@ -122,7 +122,7 @@ static void test_separate_and_weld(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* Four vertices where two fans meet. */
+    /* Two fans of faces meet at each of four vertices. */
     m = script_mesh(BOARD, NULL);
     script_prepare(m, "separate_bowties");
     assert_counts(m, 20, 20, 5);
@@ -173,13 +173,13 @@ static void test_cube_bevel(void **state)
     assert_int_equal(results.id[2], 6);
     assert_int_equal(he_face_degree(m, (he_face){6}), 3);
     assert_int_equal(he_origin(m, he_face_halfedge(m, (he_face){6})).i, 0);
-    /* The edge keeps its id, and one of the three vertices lies on it. */
+    /* The remaining edge keeps its id, and one of its ends is one of the three new vertices. */
     he_halfedge h = he_edge_halfedge(kept, 0);
     he_vertex end = he_origin(m, h).i == 1 ? he_target(m, h) : he_origin(m, h);
     he_vec3 p = he_position(m, end);
     assert_true(p.x == 0.25 && p.y == 0 && p.z == 0);
     he_results_clear(&results);
-    /* Limited to the maximum. */
+    /* The width is limited to the longest that is possible. */
     script_prepare(m, "vertex_bevel vertex=6 width=1e300");
     assert_counts(m, 12, 18, 8);
     p = he_position(m, (he_vertex){6});
@@ -187,7 +187,8 @@ static void test_cube_bevel(void **state)
     he_mesh_free(m);
 }
 
-/* Each vertex is merged into the lowest remaining one within reach: no chain merges 2 into 0. */
+/* Each vertex is merged into the lowest remaining one within the tolerance. Vertex 1 is near both 0
+ * and 2; this must not merge 2 into 0. */
 static void test_weld_does_not_chain(void **state)
 {
     (void)state;
@@ -205,8 +206,8 @@ static void test_weld_does_not_chain(void **state)
     he_mesh_free(m);
 }
 
-/* Only the distance decides, wherever the cells are: at negative coordinates, at cell borders, and
- * where a cell is smaller than the step between doubles. */
+/* Only the distance may decide, whatever cells the search uses: at negative coordinates, at borders
+ * of cells, and where a cell is smaller than the step between doubles. */
 static void test_weld_at_any_scale(void **state)
 {
     (void)state;
@@ -238,7 +239,7 @@ static void test_weld_at_any_scale(void **state)
     }
 }
 
-/* The maximum number of vertices in one cell, and vertices in no common cell: neither takes
+/* All vertices are in one cell of the search, or each in a cell of its own: neither may take
  * quadratic time. */
 static void test_weld_of_many(void **state)
 {
@@ -292,7 +293,7 @@ static void test_extreme_positions(void **state)
 
 /* --- surviving ids --- */
 
-/* Checks ids given as text, "3 5 7". */
+/* Requires these ids, given as text: "3 5 7". */
 static void assert_ids(const he_ids *list, const char *expected)
 {
     char text[256] = "";
@@ -333,7 +334,8 @@ static void edit_end(edit *e)
 static void test_survivors(void **state)
 {
     (void)state;
-    /* Edges of 012: 0 0-1, 1 1-2, 2 2-0; of 345: 3 3-4, 4 4-5, 5 5-3. 4 comes to 2, 3 to 1. */
+    /* The edges of the face 012 are 0 (0-1), 1 (1-2) and 2 (2-0), those of 345 are 3 (3-4), 4 (4-5)
+     * and 5 (5-3). Vertex 4 moves to vertex 2, and 5 to 1. */
     edit e =
         edit_run("012,345", "vertex_move vertices=2,4 to=5,0,0;vertex_move vertices=1,5 to=5,1,0",
                  "weld tolerance=0");
@@ -342,12 +344,12 @@ static void test_survivors(void **state)
     assert_ids(&e.changes.deleted[HE_EDGE], "4");
     assert_face(e.m, 0, "012");
     assert_face(e.m, 1, "321");
-    /* The remaining edge keeps its direction. */
+    /* The edge that remains must keep its direction. */
     assert_int_equal(he_origin(e.m, (he_halfedge){2}).i, 1);
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);
 
-    /* Faces that become equal. */
+    /* The weld makes two faces equal. */
     e = edit_run("012,345",
                  "vertex_move vertices=0,4 to=0,0,0;vertex_move vertices=1,5 to=5,1,0;"
                  "vertex_move vertices=2,3 to=0,5,0",
@@ -384,7 +386,8 @@ static void test_survivors(void **state)
 
 /* --- values --- */
 
-/* A column of one double named "a": row i holds 10 * i, the default is -1. */
+/* Makes a mesh with a column of one double named "a", and runs a script: the row i holds 10 * i,
+ * and the default is -1. */
 static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char *script)
 {
     he_mesh *m = script_mesh(mesh, NULL);
@@ -447,7 +450,8 @@ static void test_vertex_values(void **state)
         assert_value(m, HE_VERTEX, cases[i].vertex, cases[i].value);
         he_mesh_free(m);
     }
-    /* Cut at 99 of a hundred: nearly the neighbour's. */
+    /* The edges are cut at 99 hundredths of their length, so the values are nearly those of the
+     * neighbours. */
     he_mesh *m =
         after("021,013,032,123", HE_VERTEX, HE_INTERPOLATE, "vertex_bevel vertex=3 width=1e9");
     const uint32_t made[3] = {3, 4, 5};
@@ -492,7 +496,8 @@ static void test_edge_and_face_values(void **state)
     he_mesh_free(m);
 }
 
-/* Half-edges of 012,345: 0 0-1, 2 1-2, 4 2-0; 6 3-4, 8 4-5, 10 5-3. */
+/* The half-edges in face 012: 0 (0-1), 2 (1-2), 4 (2-0); in face 345: 6 (3-4), 8 (4-5), 10
+ * (5-3). */
 static void test_corner_values(void **state)
 {
     (void)state;
@@ -505,7 +510,8 @@ static void test_corner_values(void **state)
     assert_corner(m, 1, 1, 100);
     he_mesh_free(m);
 
-    /* 0123: 0 0-1, 2 1-2, 4 2-3, 6 3-0; 3245: the edge 3-2 is 5. */
+    /* The half-edges in face 0123: 0 (0-1), 2 (1-2), 4 (2-3), 6 (3-0); in face 3245 the side 3-2 is
+     * half-edge 5. */
     m = after(CF3, HE_HALFEDGE, HE_COPY, "vertex_split_corners a=3-0 b=3-2");
     assert_corner(m, 0, 3, 60);
     assert_corner(m, 0, 6, 60);
@@ -526,7 +532,8 @@ static void test_corner_values(void **state)
     he_mesh_free(before);
     he_mesh_free(m);
 
-    /* 021 is 0 0-2, 2 2-1, 4 1-0, and vertex 0 is cut at nearly all of each edge. */
+    /* The half-edges in face 021: 0 (0-2), 2 (2-1), 4 (1-0). Vertex 0 is cut off close to the other
+     * ends of its edges. */
     m = after("021,013,032,123", HE_HALFEDGE, HE_INTERPOLATE, "vertex_bevel vertex=0 width=1e9");
     he_halfedge out = {0};
     assert_value(m, HE_HALFEDGE, out.i, 0.01 * 0 + 0.99 * 20);

@@ -19,7 +19,7 @@ typedef struct attribute {
     he_kind domain;
     he_type type;
     uint32_t components;
-    /* exclusive upper bound of whole numbers, 0 for any; fractions are k / (below - 1) */
+    /* whole numbers are below this, 0: any; fractions are k / (below - 1) */
     uint32_t below;
 } attribute;
 
@@ -78,7 +78,7 @@ static void add_attribute(he_mesh *m, md_random *random, const attribute *a)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-/* A grid with deleted faces and vertices, with attributes. */
+/* Makes a grid with attributes, of which faces and vertices were deleted. */
 static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t count)
 {
     enum { SIDE = 8 };
@@ -109,8 +109,8 @@ static he_mesh *worn_grid(md_random *random, const attribute *attributes, size_t
     return m;
 }
 
-/* Rows of corners are in the order of faces; all others in the order of ids, which have no gaps
- * here. */
+/* Requires the attribute `a` in an import. Rows of corners are in the order of faces; all other
+ * rows are in the order of ids, which have no gaps here. */
 static void expect_column(const he_mesh *m, const he_import *import, const attribute *a)
 {
     const he_column *wanted = he_mesh_find_column(m, a->domain, a->name);
@@ -145,7 +145,8 @@ static void round_trip(const char *format, const char *encoding, const attribute
         he_notes notes;
         size_t length;
         char *bytes = write_encoded(format, encoding, m, 777, &notes, &length);
-        /* floats, and attributes that other programs do not see */
+        /* a GLB stores positions as floats, and a note says which attributes other programs do not
+         * see */
         bool narrow = strcmp(format, "glb") == 0;
         assert_true(narrow || notes.count == 0);
         he_import import = {0};

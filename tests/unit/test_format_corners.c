@@ -1,11 +1,11 @@
-/* Values of corners in formats that have only vertices: other programs see split vertices, and
- * hedge reads the original mesh. */
+/* Values of corners, in formats that have only values of vertices: other programs see split
+ * vertices, and hedge reads the original mesh back. */
 #include "unit/format_fixture.h"
 
 #include "mesh/write.h"
 
-/* A quad and a triangle that share an edge in space, but not in the texture; the corners at vertex
- * 1 differ in uv and normal, those at 2 in uv, those at 3 not at all. */
+/* A quadrilateral and a triangle share an edge in space, but not in the texture: the corners at
+ * vertex 1 differ in uv and normal, those at 2 differ in uv, those at 3 do not differ. */
 static const char seam[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 9 9 9\n"
                            "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nvt 0.75 0\nvt 1 0.25\nvt 0.75 1\n"
                            "vn 0 0 1\nvn 0 1 0\n"
@@ -27,7 +27,8 @@ static void replace_all(char *bytes, size_t length, const char *word, const char
     }
 }
 
-/* Removes what only hedge reads. */
+/* Makes the data that only hedge reads unreadable, so that the file is read as other programs read
+ * it. */
 static void hide_marks(char *bytes, size_t length)
 {
     replace_all(bytes, length, "\"hedge\":{", "\"Hedge\":{");
@@ -74,7 +75,8 @@ static void the_mesh_comes_back(void **state)
     }
 }
 
-/* Reads the corners of all faces as other programs do, each with the values of its vertex. */
+/* Reads the corners of all faces as other programs do, each with the values of its vertex; they
+ * must be the values of the corners. */
 static void others_get_the_same_values_at_the_same_corners(void **state)
 {
     (void)state;
@@ -120,7 +122,7 @@ static void others_get_the_same_values_at_the_same_corners(void **state)
     }
 }
 
-/* MeshLab writes and reads lists of texture coordinates per face. */
+/* MeshLab writes and reads texture coordinates as a list for each face. */
 static void texcoord_lists_are_values_of_corners(void **state)
 {
     (void)state;
@@ -167,7 +169,8 @@ static void texcoord_lists_are_written(void **state)
     he_mesh_free(mesh);
 }
 
-/* A program that kept the marks but moved a copy. */
+/* Another program has moved one of the split vertices but kept the data that says which belong
+ * together: hedge must then not join them. */
 static void marks_that_do_not_fit_are_not_believed(void **state)
 {
     (void)state;
@@ -199,8 +202,8 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
     he_mesh_free(mesh);
 }
 
-/* Vertices and corners have attributes with one name: other programs see that of corners, and
- * extras hold both. */
+/* Vertices and corners have attributes with one name: other programs must see that of the corners,
+ * and hedge's data holds both. */
 static void corners_come_before_vertices(void **state)
 {
     (void)state;

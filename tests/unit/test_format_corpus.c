@@ -1,5 +1,5 @@
 /* The files of the shared corpus, if it lies beside the project (or where CORPUS= says): each must
- * be as its manifest says. */
+ * be read as the manifest of the corpus says. */
 #include "unit/format_fixture.h"
 
 #include "format/io/export.h"
@@ -8,7 +8,7 @@
 
 static const char *corpus;
 
-/* Copies column k of a line of a tab-separated table to `text`. */
+/* Copies column k of a line of a tab-separated table. */
 static void cell(const char *line, size_t k, char *text, size_t size)
 {
     for (; k > 0; k--) {
@@ -72,7 +72,7 @@ static void expect_cell(const char *line, size_t k, uint64_t found, const char *
     }
 }
 
-/* Compares with the counts of defects by other programs. */
+/* Compares the defects found in a file with the counts that other programs found. */
 static void check_defects(const char *line, const he_mesh *mesh)
 {
     static he_defects found;
@@ -89,7 +89,8 @@ static void check_defects(const char *line, const he_mesh *mesh)
     assert_int_equal(inside_out, found.of[HE_DEFECT_INSIDE_OUT].total > 0);
 }
 
-/* Index compression may begin a triangle with any of its corners. */
+/* Compares faces up to their first corner, because index compression may begin a triangle with any
+ * of its corners. */
 static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
 {
     assert_int_equal(found->face_count, wanted->face_count);
@@ -106,7 +107,7 @@ static void expect_turned_faces(const he_soup *found, const he_soup *wanted)
     }
 }
 
-/* A written file reads back with equal polygons, or in STL with as many triangles. */
+/* Exports the mesh and reads it back: it must have equal polygons or, in STL, as many triangles. */
 static void check_export(const he_format *format, const char *encoding, const he_mesh *mesh,
                          const he_soup *wanted)
 {

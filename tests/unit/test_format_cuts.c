@@ -1,11 +1,12 @@
-/* Triangulating polygons for formats of triangles, where very many faces share two vertices. */
+/* Polygons are triangulated for formats that have only triangles; in these meshes very many faces
+ * share two vertices. */
 #include "unit/fixture.h"
 
 #include "format/io/cuts.h"
 
-/* Quads 0 a 1 b of which both diagonals exist: 0-1 in a triangle in the middle of them, a-b in one
- * triangle each; and a vertex connected to every tenth a, so that three vertices have high
- * degree. */
+/* Makes quads 0 a 1 b of which both diagonals exist as edges: 0-1 in a triangle in the middle, a-b
+ * in one triangle each. Another vertex is connected to every tenth a, so that three vertices have a
+ * high degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;
@@ -71,7 +72,7 @@ static void all_pairs_are_joined_as_turning_finds_them(void **state)
     he_mesh_free(m);
 }
 
-/* Pairs that are noted are connected, and no others. */
+/* The table of connected vertices must contain the pairs that were noted, and no others. */
 static void what_is_noted_is_joined(void **state)
 {
     (void)state;
@@ -111,7 +112,7 @@ static void what_is_noted_is_joined(void **state)
     he_mesh_free(m);
 }
 
-/* Each face would visit all edges of both hubs, twice. */
+/* If each face visited all edges of both shared vertices, the time would be quadratic. */
 static void faces_about_two_vertices_are_cut_in_linear_time(void **state)
 {
     (void)state;

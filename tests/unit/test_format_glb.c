@@ -1,4 +1,4 @@
-/* GLB and glTF files: reading their geometry. */
+/* Reading the geometry of GLB and glTF files. */
 #include "unit/gltf_file.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static void every_mode_and_every_type_of_index(void **state)
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
-    /* without indices the first three corners form the triangle */
+    /* without indices, the first three corners form the triangle */
     he_import import = square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
@@ -87,19 +87,19 @@ static void nodes_move_what_they_place(void **state)
     (void)state;
     static const struct {
         const char *nodes;
-        double at[3]; /* position after the transform of vertex 2, which is at 1 1 0 */
+        double at[3]; /* expected position of vertex 2, which is at 1 1 0 in the mesh */
         bool mirrored;
     } rows[] = {
         {"{'mesh':0}", {1, 1, 0}, false},
         {"{'mesh':0,'translation':[10,20,30]}", {11, 21, 30}, false},
         {"{'mesh':0,'scale':[2,3,4]}", {2, 3, 0}, false},
-        /* a quarter turn about z */
+        /* the rotation is a quarter turn about z */
         {"{'mesh':0,'rotation':[0,0,0.70710678118654752,0.70710678118654752]}", {-1, 1, 0}, false},
         {"{'mesh':0,'translation':[1,0,0],'scale':[2,2,2],"
          "'rotation':[0,0,0.70710678118654752,0.70710678118654752]}",
          {-1, 2, 0},
          false},
-        /* columns */
+        /* a matrix lists its columns one after another */
         {"{'mesh':0,'matrix':[0,2,0,0, -2,0,0,0, 0,0,2,0, 1,0,0,1]}", {-1, 2, 0}, false},
         {"{'children':[1],'translation':[5,0,0]},{'mesh':0,'scale':[2,2,2]}", {7, 2, 0}, false},
         {"{'children':[1],'scale':[2,2,2]},{'mesh':0,'translation':[5,0,0]}", {12, 2, 0}, false},
@@ -123,7 +123,7 @@ static void nodes_move_what_they_place(void **state)
     }
 }
 
-/* The rotation is that of the quaternion, whatever its length. */
+/* A quaternion must mean the same rotation whatever its length. */
 static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
 {
     (void)state;
@@ -179,7 +179,7 @@ static void the_scene_that_is_named_is_read(void **state)
         {"'scene':1,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 1, 4},
         {"'scene':0,'scenes':[{'nodes':[0]},{'nodes':[1]}],", 0, 4},
         {"'scenes':[{'nodes':[1]},{'nodes':[0]}],", 1, 4},
-        {"", 0, 8}, /* the nodes that are no children */
+        {"", 0, 8}, /* without a scene: the nodes that are no children of others */
         {"'scenes':[{}],", 0, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -204,8 +204,8 @@ static void the_scene_that_is_named_is_read(void **state)
 static void sparse_accessors(void **state)
 {
     (void)state;
-    /* positions 1 and 2 of zeros, and 0 and 2 of existing ones, are replaced from the bytes of the
-     * corners */
+    /* A sparse accessor replaces some values: here positions 1 and 2 of a list of zeros, or 0 and 2
+     * of existing positions, by the bytes of the corners. */
     static const struct {
         const char *view, *indices;
         double at[4][3];
@@ -258,7 +258,7 @@ static void quantized_positions(void **state)
 static void buffers_in_uris(void **state)
 {
     (void)state;
-    /* three corners of the square, and no more bytes */
+    /* the file has three corners of the square, and no more bytes */
     static const char triangle[] =
         "{'asset':{'version':'2.0'},'buffers':[{'byteLength':36,'uri':'data:application/"
         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAA'}],"
@@ -281,7 +281,7 @@ static void buffers_in_uris(void **state)
         }
         expect_counts(&import, 3, 1, 3);
         assert_memory_equal(import.soup.positions, square, 3 * sizeof *square);
-        /* places refer to the JSON */
+        /* the places of faces are offsets in the JSON text */
         assert_int_equal(he_places_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
                              (size_t)(strstr(triangle, "{'attributes'") - triangle));
@@ -292,7 +292,7 @@ static void buffers_in_uris(void **state)
     assert_null(he_format_sniff("{\"vertices\":[]}", 15));
 }
 
-/* A character in a string may be written as an escape, of which there are two kinds. */
+/* In JSON a character of a string may be written as an escape, of which there are two kinds. */
 static void buffers_in_uris_with_escapes(void **state)
 {
     (void)state;
@@ -374,8 +374,8 @@ static void attributes_of_vertices(void **state)
 static void directions_turn_with_their_node(void **state)
 {
     (void)state;
-    /* the normal 1 1 0 at a corner: scaled by two along x it leans to y; mirrored, it still points
-     * away from the reversed triangle */
+    /* the normal 1 1 0 at a corner must lean to y when the node scales x by two; if the node
+     * mirrors, it must still point away from the reversed triangle */
     static const struct {
         const char *node;
         double x, y;
@@ -505,7 +505,8 @@ static void what_has_no_place_is_noted(void **state)
     he_import_clear(&import);
 }
 
-/* The next chunk may follow such a chunk at once, or at the next multiple of 4. */
+/* After a chunk with an unaligned length, the next chunk may follow at once, or at the next
+ * multiple of 4. */
 static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
 {
     (void)state;

@@ -1,12 +1,12 @@
-/* A GLB separates objects, groups and materials for other programs, and hedge reads the original
- * mesh: faces in their order, polygons, names, and materials. */
+/* A GLB file separates objects, groups and materials for other programs, and hedge reads the
+ * original mesh back: faces in their order, polygons, names, and materials. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
 #include "mesh/compact.h"
 #include "mesh/write.h"
 
-/* Six faces of a box and a separate triangle, not in the order of their groups. */
+/* Six faces of a box and a separate triangle; the faces are not in the order of their groups. */
 static const char box[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 5 0 0\nv 6 0 0\n"
     "v 5 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -65,14 +65,15 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
     expect_json(bytes, "{\"name\":\"unused\",");
     expect_json(bytes, "{\"name\":\"bare\",\"extras\":{\"hedge\":\"name\"}}]");
     expect_json(bytes, "\"extensionsUsed\":[\"KHR_materials_emissive_strength\"]");
-    /* bottom: red, bare; top: blue, red; other: red */
+    /* The object bottom has the materials red and none, top has blue and red, other has red. */
     expect_json(bytes, "{\"name\":\"bottom\",\"primitives\":[{");
     expect_json(bytes, "{\"name\":\"top\",\"primitives\":[{");
     free(bytes);
     he_mesh_free(mesh);
 }
 
-/* What is written reads back equal, except for deleted faces. */
+/* Writes the mesh and reads it back: the result must be equal, except that deleted faces are
+ * gone. */
 static void expect_back(he_mesh *mesh, const char *encoding)
 {
     size_t length;
@@ -111,7 +112,8 @@ static void the_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* One group of faces is one primitive, with its names and material. */
+/* If all faces have one group and one material, the file must have one primitive with these
+ * names. */
 static void one_material_is_one_primitive(void **state)
 {
     (void)state;
@@ -127,7 +129,7 @@ static void one_material_is_one_primitive(void **state)
     expect_back(mesh, "binary");
 }
 
-/* A file that another program has changed is read as other programs see it. */
+/* If another program has changed the file, it must be read as that program sees it. */
 static void a_changed_scene_is_read_as_it_stands(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Invalid GLB and glTF files: each refusal has a byte offset and the path in the JSON. */
+/* Invalid GLB and glTF files: each refusal must have a byte offset and the path in the JSON. */
 #include "unit/gltf_file.h"
 
 #include <time.h>
@@ -11,7 +11,7 @@ static void containers(void **state)
     square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
-    /* truncated at every length */
+    /* a file that is truncated at any length must be refused */
     for (size_t length = 0; length < good.length; length++) {
         he_import import = {0};
         he_error err = {0};
@@ -52,11 +52,11 @@ static void containers(void **state)
     glb_file f = good;
     glb_word(&f, 0);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
-    /* an invalid chunk header */
+    /* the header of a chunk is invalid */
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "are no chunk");
-    /* a third chunk that is BIN */
+    /* there is a third chunk, and it is of the binary kind */
     f = good;
     glb_word(&f, 0);
     glb_word(&f, 0x004E4942);
@@ -64,7 +64,7 @@ static void containers(void **state)
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length + 4,
                            "not the second one");
-    /* a missing chunk, and an empty one */
+    /* the binary chunk is missing, or empty */
     glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
     he_import import = {0};
     he_error err = {0};
@@ -139,7 +139,7 @@ static void json_to_the_letter(void **state)
     he_import_clear(&import);
 }
 
-/* Replaces the first accessor; the rest is valid. */
+/* Builds a file in which the first accessor is replaced by `a`; the rest is valid. */
 #define WITH_ACCESSOR(a)                               \
     "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" a \
     ",{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}"
@@ -153,8 +153,8 @@ static void json_to_the_letter(void **state)
 #define WITH_SPARSE(s) \
     WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','sparse':" s "}")
 
-/* The padding of base64 may only be at its end, also where the decoder pauses; with escapes or
- * without. */
+/* Padding in base64 is only allowed at the end, even where the decoder pauses, whether or not the
+ * text has escapes. */
 static void base64_that_ends_too_early(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void references_and_numbers(void **state)
         he_status status;
         const char *words;
     } rows[] = {
-        /* accessors */
+        /* mistakes in accessors */
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':0,'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0/count: 0 is not a whole number from 1"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4.5,'type':'VEC3'}"),
@@ -231,7 +231,7 @@ static void references_and_numbers(void **state)
         {WITH_ACCESSOR("{'bufferView':7,'componentType':5126,'count':4,'type':'VEC3'}"),
          HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7 of 5"},
         {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: this is not an object"},
-        /* views and buffers */
+        /* mistakes in buffer views and buffers */
         {WITH_VIEW("{'byteLength':48}"), HE_BAD_VALUE, "bufferViews/0: 'buffer' is missing"},
         {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX, "there is no buffer 1 of 1"},
         {WITH_VIEW("{'buffer':0}"), HE_BAD_VALUE, "'byteLength' is missing"},
@@ -266,7 +266,7 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
          HE_BAD_VALUE, "buffers/1: the buffer has no bytes in the file"},
-        /* directions */
+        /* mistakes in normals and other directions */
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'NORMAL':4},'indices':1}"), HE_BAD_VALUE,
          "accessors/4: NORMAL has componentType 5126, not 5121"},
         {"{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
@@ -280,7 +280,7 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE,
          "accessors/5: TANGENT has componentType 5126, or 5120 or 5122 and is normalized, not "
          "5121"},
-        /* primitives */
+        /* mistakes in primitives */
         {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':9}}"), HE_BAD_INDEX,
          "meshes/0/primitives/0/attributes/POSITION: there is no accessor 9 of 5"},
@@ -298,20 +298,21 @@ static void references_and_numbers(void **state)
          "there is no material 0 of 0"},
         {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "this is not an object"},
         {"{" DATA ",'meshes':[{}]}", HE_BAD_VALUE, "meshes/0: 'primitives' is missing"},
-        /* nodes */
+        /* mistakes in nodes */
         {WITH_NODES("{'mesh':1}"), HE_BAD_INDEX, "nodes/0/mesh: there is no mesh 1 of 1"},
         {WITH_NODES("{'children':[1]}"), HE_BAD_INDEX, "there is no node 1 of 1"},
         {WITH_NODES("{'children':[0]}"), HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
         {WITH_NODES("{'children':[1,1]},{'mesh':0}"), HE_BAD_VALUE, "node 1 is reached twice"},
-        /* without scenes, nodes that no root reaches */
+        /* without scenes, a cycle of nodes has no root from which it could be reached */
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0,'children':[0]}]}", HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is inside itself"},
         {"{" DATA "," MESHES
          ",'nodes':[{'mesh':0},{'mesh':0},{'children':[1,3]},{'children':[2]}]}",
          HE_BAD_VALUE, "nodes/2/children/1: node 3 is inside itself"},
-        /* something else in place of a list is not an empty list: the mesh would be lost */
+        /* if a list is replaced by something else, it must not count as an empty list, because the
+         * mesh would be lost */
         {WITH_NODES("{'children':1},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {WITH_NODES("{'children':{}},{'mesh':0}"), HE_BAD_VALUE, "nodes/0/children: this is not"},
         {"{" DATA "," MESHES ",'nodes':[{'mesh':0},{'children':'x'}]}", HE_BAD_VALUE,
@@ -331,7 +332,7 @@ static void references_and_numbers(void **state)
         {WITH_NODES("{'mesh':0,'scale':[1e308,1,1],'translation':[1e308,0,0]}"), HE_NOT_FINITE,
          "not finite"},
         {"{" DATA ",'scene':2,'scenes':[{}]}", HE_BAD_INDEX, "scene: there is no scene 2 of 1"},
-        /* sparse */
+        /* mistakes in sparse accessors */
         {WITH_SPARSE("{'count':2}"), HE_BAD_VALUE, "'indices' and 'values' are needed"},
         {WITH_SPARSE("{'count':5,'indices':{'bufferView':1,'componentType':5123},'values':"
                      "{'bufferView':0}}"),
@@ -350,7 +351,7 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "sparse/values: 3 elements of 12 bytes"},
         {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'componentType':5123},'values':{}}"),
          HE_BAD_VALUE, "sparse/values: 'bufferView' is missing"},
-        /* extensions */
+        /* extensions that the reader does not know */
         {"{" ASSET ",'extensionsRequired':['KHR_draco_mesh_compression']}", HE_UNSUPPORTED,
          "extensionsRequired/0: Draco compression is not read: unpack it first, as "
          "\"gltf-transform copy"},
@@ -393,7 +394,7 @@ static void numbers_in_the_buffer(void **state)
         expect_refused_at_byte("glb", f.bytes, f.length, HE_BAD_INDEX, f.bin + 56,
                                "meshes/0/primitives/0: index");
     }
-    /* NaN in a value that is no position is read as 0, with a note */
+    /* a NaN in an attribute other than the position is read as 0, with a note */
     he_import import = {0};
     he_error err = {0};
     square_bin(bin);
@@ -455,7 +456,7 @@ static void bombs(void **state)
     (void)state;
     writing w = {0};
     char part[200];
-    /* nodes that double: 2^40 instances if a node could have two parents */
+    /* nodes that refer twice to the next one: 2^40 instances if a node could have two parents */
     put(&w, "{'asset':{'version':'2.0'},'scenes':[{'nodes':[0]}],'nodes':[");
     for (int i = 0; i < 40; i++) {
         snprintf(part, sizeof part, "{'children':[%d,%d]},", i + 1, i + 1);
@@ -463,13 +464,14 @@ static void bombs(void **state)
     }
     put(&w, "{}]}");
     expect_bomb(&w, HE_BAD_VALUE, "node 40 is reached twice");
-    /* text with a depth that no real file has */
+    /* JSON nested deeper than in any real file */
     put(&w, "{'asset':{'version':'2.0'},'extras':");
     for (int i = 0; i < 90000; i++) {
         put(&w, i % 2 ? "{'a':" : "[");
     }
     expect_bomb(&w, HE_SYNTAX, "nesting is deeper than 128 levels");
-    /* zeros that take no bytes, once, and for many nodes and primitives */
+    /* an accessor of zeros, which needs no bytes in the file, used once or by many nodes and
+     * primitives */
     static const char zeros[] = "'accessors':[{'componentType':5126,'count':%d,'type':'VEC3'}]";
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 3000000);
@@ -505,7 +507,7 @@ static void bombs(void **state)
     }
     put(&w, "}}]}]}");
     expect_bomb(&w, HE_LIMIT, "");
-    /* a primitive with many members, which are searched for every node */
+    /* a primitive with many members, through which the reader must search for every node */
     put(&w, "{'asset':{'version':'2.0'},'meshes':[{'primitives':[{'attributes':{");
     for (int i = 0; i < 100000; i++) {
         snprintf(part, sizeof part, "%s'_%d':0", i > 0 ? "," : "", i);
@@ -517,7 +519,7 @@ static void bombs(void **state)
     }
     put(&w, "]}");
     expect_bomb(&w, HE_LIMIT, "the scene makes more than");
-    /* a long chain of nodes is followed without recursion, but its length is limited */
+    /* a long chain of nodes must be followed without recursion, and its length must be limited */
     for (int many = 0; many < 2; many++) {
         int depth = many ? 70000 : 60000;
         put(&w, "{'asset':{'version':'2.0'},'nodes':[");
@@ -528,7 +530,8 @@ static void bombs(void **state)
         put(&w, "{}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "deeper than 65536 levels" : "");
     }
-    /* the maximum number of values in a tree, and one object with all of them as members */
+    /* the maximum number of values in a JSON tree, and one object that has all of them as
+     * members */
     put(&w, "{'asset':{'version':'2.0'},'extras':[0");
     for (int i = 0; i < (1 << 23); i++) {
         put(&w, ",0");
@@ -550,14 +553,15 @@ static void bombs(void **state)
     expect_bomb(&w, HE_OK, "");
 }
 
-/* hedge's extras, which are read for every column and for every node. */
+/* hedge stores additional data in the `extras` of a glTF, which is read for every column and for
+ * every node. */
 static void bombs_in_extras(void **state)
 {
     (void)state;
     static const char column[] = "'rule':'copy','components':1,'accessor':1";
     writing w = {0};
     char part[300];
-    /* one list of words, of which only the last is no bool, for many columns */
+    /* one list of words, of which only the last is no bool, is used by many columns */
     for (int many = 0; many < 2; many++) {
         put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':120000,'uri':'data:;base64,");
         for (int i = 0; i < 39999; i++) {
@@ -575,7 +579,7 @@ static void bombs_in_extras(void **state)
         put(&w, "]}}}]}]}");
         expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene makes more than" : "");
     }
-    /* one long name for many nodes */
+    /* one long name is used by many nodes */
     for (int many = 0; many < 2; many++) {
         put(&w, "{'asset':{'version':'2.0'},'buffers':[{'byteLength':12,'uri':"
                 "'data:;base64,AAAAAAAAAAAAAAAA'}],'bufferViews':[{'buffer':0,'byteLength':12}],"

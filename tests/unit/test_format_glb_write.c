@@ -1,4 +1,5 @@
-/* Writing GLB: hedge reads the original mesh back, other programs read triangles. */
+/* Writing GLB files: hedge must read the original mesh back, and other programs must see
+ * triangles. */
 #include "unit/gltf_file.h"
 
 #include "mesh/write.h"
@@ -31,7 +32,8 @@ static he_import read_back(const char *bytes, size_t length)
     return import;
 }
 
-/* Renames the member that only hedge reads. */
+/* Renames the member `extras`, which only hedge reads, so that the file is read as other programs
+ * read it. */
 static void hide_extras(char *bytes, size_t length)
 {
     for (size_t i = 0; i + 7 < length; i++) {
@@ -76,7 +78,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_note(&notes, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* what other programs see */
+        /* the file as other programs see it */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);
@@ -177,8 +179,9 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh_free(mesh);
 }
 
-/* TEXCOORD_1 requires TEXCOORD_0, and JOINTS_0 requires WEIGHTS_0: an attribute without a valid
- * place gets another one, and keeps its name. */
+/* glTF requires that numbered attributes have no gaps (TEXCOORD_1 needs TEXCOORD_0, JOINTS_0 needs
+ * WEIGHTS_0): an attribute whose number is not valid must get another one, and keep its name for
+ * hedge. */
 static void numbered_attributes_have_no_gaps(void **state)
 {
     (void)state;
@@ -187,7 +190,7 @@ static void numbered_attributes_have_no_gaps(void **state)
             const char *name;
             he_type type;
             uint32_t components;
-            const char *semantic; /* NULL: in extras only */
+            const char *semantic; /* NULL: the attribute is in the extras only */
         } columns[3];
     } rows[] = {
         {{{"uv1", HE_FLOAT, 2, "_uv1"}}},
@@ -252,8 +255,8 @@ static void numbered_attributes_have_no_gaps(void **state)
     "],'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,'extras':{'hedge':" \
     "{" hedge "}}}]}],'nodes':[{'mesh':0" node "}]}"
 
-/* The degree 4 and the corners 0 1 2 3 are put in place of colours and strips; inconsistent extras
- * are ignored, and the triangles are read. */
+/* The extras are replaced by inconsistent ones: they must be ignored, and the triangles be read.
+ * The degree 4 and the corners 0 1 2 3 lie where the square has its colours and its strip. */
 static void extras_are_not_believed(void **state)
 {
     (void)state;
@@ -266,9 +269,9 @@ static void extras_are_not_believed(void **state)
         const char *hedge, *node;
         uint32_t degree;
         uint32_t second;
-        uint32_t corner; /* of the last triangle */
+        uint32_t corner; /* expected last corner of the last triangle */
         size_t faces;
-        const char *column; /* the column that results, or NULL */
+        const char *column; /* the expected column, or NULL */
         bool fits;
     } rows[] = {
         {"'polygons':{'degrees':5,'corners':6}", "", 4, 0, 3, 1, NULL, true},
@@ -358,15 +361,15 @@ static void extras_are_not_believed(void **state)
     }
 }
 
-/* Names in extras belong to the faces of their own primitive; other faces keep the names they
- * have. */
+/* Names in the extras apply to the faces of their own primitive; other faces keep the names that
+ * they have from elsewhere. */
 static void names_beside_names_in_extras(void **state)
 {
     (void)state;
     static const char extras[] = "'extras':{'hedge':{'columns':[{'domain':'face','name':'%s',"
                                  "'type':'uint32','components':1,'rule':'copy','accessor':5%s}]}}";
     static const struct {
-        const char *name, *first, *second; /* name of the column; its labels in two primitives */
+        const char *name, *first, *second; /* a column, and its labels in two primitives */
         const char *names[8];
     } rows[] = {
         {"object",
@@ -423,7 +426,8 @@ static void names_beside_names_in_extras(void **state)
     }
 }
 
-/* The triangles were changed, but not the extras. */
+/* Another program has changed the triangles and kept the extras: the polygons in these do not fit
+ * any more and must be ignored. */
 static void polygons_of_other_triangles(void **state)
 {
     (void)state;
@@ -432,7 +436,7 @@ static void polygons_of_other_triangles(void **state)
     char *bytes = write_glb(mesh, NULL, &length);
     size_t json = 0, at = 0;
     memcpy(&json, bytes + 12, 4);
-    at = 20 + json + 8 + 7 * 12; /* indices of 16 bits behind seven positions */
+    at = 20 + json + 8 + 7 * 12; /* the 16-bit indices, which follow seven positions */
     for (size_t i = 0; i < 15; i++) {
         char other[4096];
         assert_true(length < sizeof other);

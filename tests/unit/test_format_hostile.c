@@ -1,5 +1,5 @@
-/* Text readers under attack: failing allocations, mutated files, and sizes at which more than
- * linear time would show. SEED= repeats the mutations, ROUNDS= makes more. */
+/* Readers of mesh files under attack: failing allocations, mutated files, and sizes at which more
+ * than linear time would show. SEED= repeats the mutations, ROUNDS= makes more. */
 #include "unit/format_fixture.h"
 
 #include "tests/pace.h"
@@ -53,7 +53,7 @@ static const char facets[] =
     "\2\0\0\0" ZERO ZERO UNIT ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0" ZERO ZERO UNIT
     "\0\0\0\x80" ZERO ZERO UNIT UNIT ZERO ZERO UNIT UNIT "\1\0.";
 
-/* As JSON, because most mutations of a GLB only break its lengths. */
+/* The glTF is given as JSON, because most mutations of a GLB only make its lengths wrong. */
 static const char gltf[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
     "{\"name\":\"a\",\"mesh\":0,\"children\":[1]},{\"mesh\":0,\"scale\":[-1,1,1],"
@@ -78,7 +78,7 @@ static const char container[] =
     "5123,\"count\":3,\"type\":\"SCALAR\"}]}  "
     "\054\000\000\000BIN\0" ZERO ZERO ZERO UNIT ZERO ZERO UNIT UNIT ZERO "\0\0\1\0\2\0\0\0";
 
-/* Polygons, which some writers triangulate. */
+/* The mesh has polygons, because the writers of some formats must triangulate them. */
 static const char cube[] = "OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
                            "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
 
@@ -125,7 +125,7 @@ static void readers_without_memory(void **state)
     }
 }
 
-/* The text form of a format is written in the binary container. */
+/* Returns the format to write: a format that is text is written in its binary container. */
 static const char *writer_of(const char *name)
 {
     return strcmp(name, "gltf") == 0 ? "glb" : name;
@@ -184,7 +184,8 @@ static uint64_t next_random(void)
     return z ^ z >> 31;
 }
 
-/* Changes, removes, repeats or inserts; inserts bytes that are special to readers. */
+/* Changes, removes, repeats or inserts bytes; inserted bytes are those that are special to
+ * readers. */
 static size_t mutate(char *text, size_t length, size_t room)
 {
     static const char *const bits[] = {"\n",
@@ -266,8 +267,8 @@ static size_t mutate(char *text, size_t length, size_t room)
     return length;
 }
 
-/* Any bytes give an import or a refusal, which is the same when read in pieces; and an import can
- * be built or is refused, and can be written and read again. */
+/* Any bytes must give an import or a refusal, the same when they are read in pieces. An import must
+ * be built or refused; a mesh that was built must be written and read again. */
 static void mutated_files(void **state)
 {
     (void)state;
@@ -300,7 +301,7 @@ static void mutated_files(void **state)
         he_mesh *mesh = NULL;
         if (he_build(&import.soup, 0, &mesh, NULL, &err) == HE_OK) {
             fixture_check(mesh);
-            /* only text STL keeps all digits */
+            /* STL keeps all digits only as text */
             static const char *const plys[] = {"binary", "ascii", "binary_big_endian"};
             name = writer_of(name);
             const char *encoding = strcmp(name, "ply") == 0   ? plys[i % 3]
@@ -333,7 +334,7 @@ static void mutated_files(void **state)
     assert_true(refused > rounds / 10 && built > rounds / 10);
 }
 
-/* A long text made of `count` repetitions. */
+/* A description of a long file that consists of `count` repetitions of a part. */
 typedef struct flood {
     const char *what, *format, *before, *part, *after;
     size_t count;
@@ -363,7 +364,8 @@ static he_status pour(const flood *f, size_t count, he_import *import)
     return status;
 }
 
-/* The header declares 500,000 elements, but only a tenth of them follow. */
+/* Returns the time to read a file whose header declares 500,000 elements, of which only a tenth
+ * follow. */
 static double time_flood(const void *context, size_t count)
 {
     const flood *f = context;

@@ -1,4 +1,4 @@
-/* Notes of writers about what a file cannot represent, and their refusals. */
+/* Writers note what a file cannot represent, and refuse meshes that it cannot hold at all. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
@@ -6,7 +6,8 @@
 
 /* --- STL: facets by position --- */
 
-/* Reads an STL file again: it must be refused exactly if the notes say so, with as many defects. */
+/* Reads an STL file that was written: reading must be refused exactly if the notes of the writer
+ * said so, with as many defects. */
 static void expect_foretold(const char *bytes, size_t length, const he_notes *notes)
 {
     he_import import = {0};
@@ -29,17 +30,17 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     (void)state;
     static const struct {
         const char *text;
-        uint64_t binary, ascii; /* number of defects in the notes */
+        uint64_t binary, ascii; /* number of defects that the notes announce */
     } rows[] = {
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", 0, 0},
         {"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", 0, 0},
-        /* two faces with equal positions and equal orientation */
+        /* two faces have equal positions and the same orientation */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n", 3, 3},
-        /* two corners of a face that are equal as floats */
+        /* two corners of a face are equal as floats */
         {"v 1 0 0\nv 1.00000000001 0 0\nv 0 1 0\nf 1 2 3\n", 1, 0},
-        /* faces that meet at a position become a bow-tie, which a mesh can represent */
+        /* faces that meet at one position become a bow-tie, which a mesh can represent */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 4 5 6\n", 0, 0},
-        /* a fan closes around a position that another fan uses, too */
+        /* a fan of faces is closed around a position at which another fan lies, too */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nv 0 0 0\nv 1 0 5\n"
          "v 0 1 5\nf 5 6 7\n",
          1, 1},
@@ -60,8 +61,8 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
     }
 }
 
-/* Faces of three to five corners among a few vertices on a grid, as many as a mesh can
- * represent. */
+/* Makes a random soup that a mesh can represent: faces of three to five corners among a few
+ * vertices on a grid. */
 static void fill_randomly(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 4 + md_below(random, 8);

@@ -1,5 +1,6 @@
-/* Numbers mean the same in every format: v of a texture coordinate runs upward in a mesh, OBJ, PLY
- * and OFF, and down in glTF; a colour is 0 to 1 in a mesh, and a byte in files that store bytes. */
+/* Numbers must mean the same in every format: the v of a texture coordinate runs upward in a mesh,
+ * OBJ, PLY and OFF, but down in glTF; a colour is 0 to 1 in a mesh, but a byte in files that store
+ * bytes. */
 #include "unit/format_fixture.h"
 
 #include "model/random.h"
@@ -7,7 +8,7 @@
 
 #include <math.h>
 
-/* Replaces a word by another one of the same length wherever it occurs in a file. */
+/* Replaces a word by another one of equal length wherever it occurs in a file. */
 static void rename_all(char *bytes, size_t length, const char *word, const char *other)
 {
     size_t n = strlen(word);
@@ -28,8 +29,8 @@ static he_import read_whole(const char *format, const char *bytes, size_t length
     return import;
 }
 
-/* Reads a GLB as other programs see it, with texture coordinates as stored, by renaming their
- * attribute. */
+/* Writes a mesh as GLB and reads it as other programs do, with texture coordinates as they are
+ * stored: their attribute is renamed, so that hedge does not convert it. */
 static he_import read_raw(const he_mesh *mesh)
 {
     size_t length;
@@ -75,7 +76,7 @@ static void v_runs_down_in_gltf_alone(void **state)
     }
 }
 
-/* A float from a glTF file whose v is flipped and flipped back is the same float. */
+/* Reading and writing a glTF flips v twice: each float must come back with the same bits. */
 static void no_bit_of_v_is_lost_on_the_way_through(void **state)
 {
     (void)state;
@@ -103,7 +104,7 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
         assert_memory_equal(he_column_value(uv, i) + sizeof(float), &given[i], sizeof(float));
     }
     he_import_clear(&raw);
-    /* so extras need not contain it */
+    /* the writer must not need the extras to keep the exact values */
     he_notes notes;
     size_t length;
     free(write_encoded("glb", "binary", mesh, 4096, &notes, &length));
@@ -112,7 +113,7 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_soup_clear(&soup);
 }
 
-/* Each of the 256 values passes through each format. */
+/* Each of the 256 values of a byte must come back from each format. */
 static void bytes_of_colors_come_back_from_every_format(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* glTF with buffer views compressed by EXT_meshopt_compression: reads the same geometry as
- * uncompressed files, and refuses invalid ones. */
+/* glTF files with buffer views compressed by EXT_meshopt_compression: they must be read as the same
+ * geometry as uncompressed files, and invalid ones be refused. */
 #include "unit/gltf_file.h"
 
 #include "format/gltf/gltf.h"
@@ -31,7 +31,8 @@ static packed pack(const he_meshopt_stream *stream, const void *elements)
     return p;
 }
 
-/* Compressed corners at byte 0, compressed indices at `at`, in one chunk that ends at `length`. */
+/* A binary chunk: compressed corners from byte 0 on, compressed indices from `at` on; it ends at
+ * `length`. */
 typedef struct bin {
     unsigned char bytes[2048];
     size_t corners, at, indices, length;
@@ -48,8 +49,8 @@ static bin join(const packed *first, const packed *second)
     return b;
 }
 
-/* Writes the asset for such a chunk: %1$ is the extension of the corners' view, %2$ that of the
- * indices'. */
+/* Writes the JSON for such a chunk: `of_corners` is the extension in the view of the corners,
+ * `of_indices` that in the view of the indices. */
 static void describe(char *json, size_t size, const char *of_corners, const char *of_indices)
 {
     int used = snprintf(
@@ -79,7 +80,7 @@ static he_status read_packed(const bin *b, const char *of_corners, const char *o
     return read_bytes("glb", f.bytes, f.length, import, err);
 }
 
-/* Writes an extension: `length` bytes from `at` decode to `count` elements. */
+/* Writes the extension of a view: `length` bytes from `at` on decode to `count` elements. */
 static const char *extension(char *text, size_t size, size_t at, size_t length, const char *mode,
                              const char *filter, unsigned long long count, unsigned stride)
 {
@@ -132,7 +133,7 @@ static void packed_views_are_read_as_plain_ones(void **state)
     }
 }
 
-/* The value is 2^E * M: 1 is 2^-8 * 256. */
+/* With the exponential filter a value is stored as 2^E * M: 1 is 2^-8 * 256. */
 static void exponents_are_undone(void **state)
 {
     (void)state;
@@ -158,7 +159,8 @@ static void exponents_are_undone(void **state)
     he_import_clear(&import);
 }
 
-/* Directions on an octahedron, and quaternions without their largest component. */
+/* The filters store directions as points on an octahedron, and quaternions without their largest
+ * component. */
 static void directions_and_turns_are_undone(void **state)
 {
     (void)state;
@@ -185,7 +187,7 @@ static void directions_and_turns_are_undone(void **state)
 /* --- refusals --- */
 
 typedef struct row {
-    const char *corners, *indices; /* with %zu for the bytes of the stream; NULL: unchanged */
+    const char *corners, *indices; /* %zu: the bytes of the stream; NULL: unchanged */
     he_status status;
     const char *words;
 } row;
@@ -289,7 +291,7 @@ static void what_the_extension_forbids_is_refused(void **state)
     }
 }
 
-/* Truncated streams never give other geometry: streams mark their end. */
+/* A stream marks its end, so a truncated one must be refused and not give other geometry. */
 static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 {
     (void)state;
@@ -324,7 +326,7 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED, "TRIANGLES packed by version 2");
 }
 
-/* Any bytes give a mesh, perhaps another one, or a refusal. */
+/* Changed bytes must give a mesh, perhaps another one, or a refusal. */
 static void streams_of_wrong_bytes_end_well(void **state)
 {
     (void)state;
@@ -353,7 +355,8 @@ static void streams_of_wrong_bytes_end_well(void **state)
     assert_true(read > 0 && refused > 0);
 }
 
-/* Views of zeros that compress to 64 bytes each: the maximum number of them, then one more. */
+/* Views of zeros are compressed to 64 bytes each: the maximum number of them must be read, and one
+ * more refused. */
 static void what_unpacks_to_too_much_is_refused(void **state)
 {
     (void)state;
@@ -366,7 +369,7 @@ static void what_unpacks_to_too_much_is_refused(void **state)
     size_t length = he_meshopt_encode(&stream, zeros, room, most);
     free(zeros);
     size_t padded = (length + 3) / 4 * 4;
-    /* 16 MiB each: two fit into the allowance of every file plus 16 times its own bytes */
+    /* each view is 16 MiB: two fit into the allowance of every file plus 16 times its own bytes */
     for (size_t views = 1; views <= 6; views++) {
         char json[4096];
         int used = snprintf(json, sizeof json,
@@ -467,7 +470,8 @@ static void without_memory_nothing_is_read(void **state)
 
 /* --- writing --- */
 
-/* Corners that differ at a seam, polygons, groups; then triangles alone. */
+/* The first mesh has corners that differ at a seam, polygons and groups; the second one has
+ * triangles only. */
 static const char seam[] =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0.5 0.1\nv 9 9 9\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "vt 0.25 0.125\nvn 0 0 1\ng one\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nusemtl red\n"
@@ -491,7 +495,8 @@ static he_import read_glb(const he_mesh *mesh, const char *encoding, size_t piec
     return import;
 }
 
-/* Requires equal corners face by face, with `exact` also the same first corner. */
+/* Requires that two soups have equal corners face by face and, with `exact`, also equal first
+ * corners. */
 static void expect_same_faces(const he_soup *a, const he_soup *b, bool exact)
 {
     assert_int_equal(a->face_count, b->face_count);
@@ -538,7 +543,7 @@ static void a_packed_file_has_what_a_plain_one_has(void **state)
     }
 }
 
-/* An empty mesh has no parts, so there are no buffers to compress. */
+/* An empty mesh has no data, so the file must have no buffers to compress. */
 static void an_empty_mesh_is_not_packed(void **state)
 {
     (void)state;

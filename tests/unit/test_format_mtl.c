@@ -1,5 +1,5 @@
-/* Material libraries: a library becomes the table of the mesh and is written back; OBJ files keep
- * the names of their libraries. */
+/* MTL files, libraries of materials: a library becomes the table of materials of a mesh and is
+ * written back; OBJ files keep the names of their libraries. */
 #include "unit/edit_script.h"
 #include "unit/format_fixture.h"
 
@@ -141,7 +141,7 @@ static void what_is_no_library_is_refused_with_its_line(void **state)
     }
 }
 
-/* Reads an OBJ file with the files that it refers to. */
+/* Reads an OBJ file together with the files that it refers to. */
 static he_status read_obj(const char *text, he_beside *beside, he_import *out, he_error *err)
 {
     he_reader *reader;
@@ -206,7 +206,8 @@ static void a_library_that_is_wrong_is_named(void **state)
     assert_int_equal(err.at, 5);
 }
 
-/* Names that need escaping in a line, every number, and both values of two_sided. */
+/* The table has names that need escaping in a line, a value for every number, and both values of
+ * two_sided. */
 static void a_table_comes_back_from_its_library(void **state)
 {
     (void)state;
@@ -265,7 +266,7 @@ static void without_memory_nothing_is_lost_or_kept(void **state)
         }
         failed = allocation_failed();
         fail_allocation(0);
-        /* a block that cannot be shrunk stays as it is */
+        /* if shrinking a block fails, the block stays as it is, so the reading may succeed */
         assert_true(status == HE_OK || (failed && status == HE_NO_MEMORY));
         he_reader_free(reader);
         he_import_clear(&import);

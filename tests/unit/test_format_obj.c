@@ -69,7 +69,7 @@ static void lines_that_end_in_returns(void **state)
         assert_string_equal(he_format_sniff(texts[i], strlen(texts[i]))->name, "obj");
     }
     expect_refused("obj", "v 0 0 0\rv 1 0 x\r", HE_SYNTAX, 2, "'x' is not a number");
-    /* the first line decides the line ending */
+    /* the first line of the file decides what ends a line */
     expect_refused("obj", "v 0 0 0\r\r\nv 1 0 0\rv 0 1 0\r\n", HE_SYNTAX, 2, "is not a number");
 }
 
@@ -147,7 +147,8 @@ static void corner_forms(void **state)
         he_import_clear(&import);
     }
 
-    /* a third number is kept if it is used; values may follow the face that uses them */
+    /* a third texture coordinate is kept if it is used; values may follow the face that uses
+     * them */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/2 3/1\n"
                                         "vt 1 2 0\nvt 3 4 5\nvt 6\n");
     expect_doubles(&import, HE_HALFEDGE, "uv", 3, (double[]){6, 0, 0, 3, 4, 5, 1, 2, 0}, 3);
@@ -222,7 +223,7 @@ static void names_and_smoothing(void **state)
     expect_note(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
-    /* a value that no face has, or that is the default for all, makes no attribute */
+    /* a value that no face has, or that all faces have by default, makes no attribute */
     import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng\ns off\nf 1 2 3\no late\ng late\n");
     assert_int_equal(import.soup.column_count, 0);
     he_import_clear(&import);
@@ -244,9 +245,9 @@ static void names_are_utf8(void **state)
         {"K\xC3\xB6rper \xE2\x82\xAC \xF0\x9F\x98\x80",
          "K\xC3\xB6rper \xE2\x82\xAC \xF0\x9F\x98\x80", false},
         {"K\xF6rper", "K\xC3\xB6rper", true},
-        {"\xC0\x80", "\xC3\x80\xC2\x80", true},             /* overlong */
+        {"\xC0\x80", "\xC3\x80\xC2\x80", true},             /* an overlong form */
         {"\xED\xA0\x80", "\xC3\xAD\xC2\xA0\xC2\x80", true}, /* a surrogate */
-        {"\xE2\x82", "\xC3\xA2\xC2\x82", true},             /* cut short */
+        {"\xE2\x82", "\xC3\xA2\xC2\x82", true},             /* truncated */
         {"\xF5\x80\x80\x80", "\xC3\xB5\xC2\x80\xC2\x80\xC2\x80", true},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -365,7 +366,8 @@ static void wrong_values_cost_the_corner_its_value(void **state)
         assert_memory_equal(he_column_row(uv, 1), rows[i].corner, sizeof rows[i].corner);
         he_import_clear(&import);
     }
-    /* no corner has a value left */
+    /* the file has no texture coordinates to which the corners could refer, so no attribute
+     * is made */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n");
     assert_int_equal(import.soup.column_count, 0);
     assert_int_equal(find_note(&import.notes, "no_such_uv", "")->count, 3);
@@ -447,7 +449,8 @@ static void wrong_text_names_its_line(void **state)
     }
     expect_refused("obj", "", HE_SYNTAX, 1, "no vertices");
     expect_refused("obj", "hello world\nthis is not a mesh\n", HE_SYNTAX, 1, "not an OBJ file");
-    /* a file of comments is an empty mesh: it is what an empty mesh is written as */
+    /* an empty mesh is written as a file of comments, so such a file must be read as an empty
+     * mesh */
     he_import import = read_text("obj", "# 0 vertices, 0 faces\n");
     expect_counts(&import, 0, 0, 0);
     he_import_clear(&import);
@@ -472,9 +475,8 @@ static void other_encodings_are_refused(void **state)
     expect_bytes_refused("obj", empty, sizeof empty - 1, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
-/* Defects that only the structure cannot represent pass the reader; the builder's refusal gets
- * their line.
- */
+/* The reader accepts faces that no mesh can represent; he_build refuses them, and the refusal must
+ * name the line in the file. */
 static void refusals_of_the_builder_get_a_line(void **state)
 {
     (void)state;
@@ -537,7 +539,7 @@ static void limits_are_kept(void **state)
             assert_int_equal(err.at, rows[i].line);
         }
     }
-    /* a line without an end does not fill the memory */
+    /* a line that never ends must not fill the memory */
     he_limits limits = {.bytes = 1000};
     he_reader *reader;
     he_error err = {0};

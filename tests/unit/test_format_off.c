@@ -13,9 +13,9 @@ static void plain_files(void **state)
         "off\n3 1 999999999999999999999\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         "3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
         "# a\n\n  OFF # b\n 3 # d\n1 0#e\n\n0 0 0 # f\n\n1 0 0\n#\n0\t1 0\n # g\n3  0 1 2 # h\n#",
-        "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",        /* no edge count */
-        "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* on its own line */
-        "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* one a line */
+        "OFF\n3 1\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",        /* without a number of edges */
+        "OFF\n3 1\n17\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* that number in its own line */
+        "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",    /* one number in each line */
         "OFF\n3 1 3\n0 0\n0\n1\n0 0\n0 1\n0\n3\n0 1\n2\n", /* elements over several lines */
         "# a\rOFF\r3 1 3\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r",
         "\xEF\xBB\xBFOFF\n3 1 3\n0 0 0\n1e0 .0 0.\n0 +1 0\n3 0 1 2\n\n\n",
@@ -66,7 +66,7 @@ static void vertex_data_in_every_mix(void **state)
     static const struct {
         const char *header, *first, *second;
         bool normal, uv;
-        uint32_t color; /* components */
+        uint32_t color; /* number of components of a colour */
     } rows[] = {
         {"COFF", "0 0 0 0.5 0 1", "1 0 0 1 1 0.25", false, false, 3},
         {"COFF", "0 0 0 0.5 0 1 0.25", "1 0 0 1 1 0.25 1", false, false, 4},
@@ -110,7 +110,7 @@ static void vertex_data_in_every_mix(void **state)
 static void integer_colors_are_bytes(void **state)
 {
     (void)state;
-    /* texture coordinates are no colours and do not decide whether colours are bytes */
+    /* texture coordinates must not be taken for colours, nor decide whether colours are bytes */
     he_import import = read_text("off", "STCOFF\n3 0 0\n0 0 0 255 0 7 0.5 0.25\n"
                                         "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
     expect_bytes(&import, HE_VERTEX, 4,
@@ -120,7 +120,7 @@ static void integer_colors_are_bytes(void **state)
     static const struct {
         const char *vertex;
         double color[3];
-        bool bytes; /* a note says that colours are bytes */
+        bool bytes; /* a note must say that colours are bytes */
     } rows[] = {
         {"1 0 1", {1 / 255.0, 0, 1 / 255.0}, false}, {"1 0 1.0", {1, 0, 1}, false},
         {"255 0 1e1", {1, 0, 10 / 255.0}, true},     {"255 0 .5", {255, 0, .5}, false},
@@ -138,7 +138,7 @@ static void integer_colors_are_bytes(void **state)
     }
 }
 
-/* A vertex without its normal does not take numbers of the next one: its normal is 0, with a
+/* A vertex that lacks its normal must not take numbers of the next vertex: its normal is 0, with a
  * note. */
 static void vertices_without_what_is_announced(void **state)
 {
@@ -177,7 +177,8 @@ static void vertices_without_what_is_announced(void **state)
     expect_note(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
 
-    /* A missing value may look like numbers on the next line: then the refusal says what to do. */
+    /* A missing value can look like numbers on the next line: the refusal must then say what
+     * to do. */
     expect_refused("off", "NOFF\n2 0 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n", HE_SYNTAX, 5,
                    "needs it in its own line");
     expect_refused("off", "COFF\n2 1 0\n0 0 0\n7 8 9\n1 0 0\n7 8 9\n3 0 1 2\n", HE_SYNTAX, 6,
@@ -270,7 +271,8 @@ static void wrong_text_names_its_line(void **state)
         {"COFF\n1 0 0\n0 0 0 1 2 3 4 5\n", HE_SYNTAX, 3, "8 numbers do not fit"},
         {"NOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
         {"STCOFF\n1 0 0\n0 0 0 0 1\n", HE_SYNTAX, 3, "5 numbers do not fit"},
-        /* normals on lines of their own are not taken for vertices, nor the opposite */
+        /* a normal on a line of its own must not be taken for a vertex, nor a vertex for a
+         * normal */
         {"NOFF\n2 1 0\n0 0 .5\n0 0 1\n1 0 .5\n0 0 1\n3 0 1 0\n", HE_SYNTAX, 6,
          "comes after the last face"},
         {"STOFF\n3 0 0\n0 0 0\n.5 .5\n1 0 0\n.5 .5\n0 1 0\n.5 .5\n", HE_SYNTAX, 5,
@@ -279,7 +281,7 @@ static void wrong_text_names_its_line(void **state)
         {"OFF\n2 0 0\n0 0\n1 0 0\n", HE_SYNTAX, 4, "5 numbers do not fit"},
         {"OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n", HE_SYNTAX, 5, "'3' comes after the last face"},
         {"OFF\n1 0 0\n0 0 0\nx\n", HE_SYNTAX, 4, "'x' comes after the last face"},
-        /* a count that is too low must not lose faces, nor one that is too high add any */
+        /* a wrong number of vertices must neither lose faces nor add any */
         {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n", HE_SYNTAX, 7, "after the last face"},
         {"OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", HE_SYNTAX, 6, "0 of the 1 faces"},
     };
@@ -319,7 +321,7 @@ static void limits_are_kept(void **state)
     }
 }
 
-/* A declared count allocates memory only as its bytes arrive. */
+/* A large number of elements in the header must allocate memory only as the elements arrive. */
 static void a_count_allocates_nothing(void **state)
 {
     (void)state;
@@ -368,7 +370,7 @@ static void put_floats(body *b, const float *values, size_t count)
     }
 }
 
-/* A square of two faces: the first has a colour, the second an invalid number. */
+/* Makes a square of two faces: the first has a colour, the second an invalid number. */
 static body square_body(const char *header)
 {
     static const float vertices[4][12] = {
@@ -411,7 +413,7 @@ static void a_binary_body_is_read_with_a_note(void **state)
         he_error err = {0};
         body b = square_body(headers[i]);
         size_t header = strlen(headers[i]);
-        put_text(&b, "\n"); /* padding */
+        put_text(&b, "\n"); /* before the binary numbers */
         assert_int_equal(read_bytes("off", b.bytes, b.length, &import, &err), HE_OK);
         expect_counts(&import, 4, 2, 6);
         expect_corners(&import, corners, 6);
@@ -438,7 +440,7 @@ static void a_wrong_binary_body_names_its_byte(void **state)
     static const char header[] = "OFF BINARY\n";
     enum { H = sizeof header - 1, FACES = H + 12 + 48 };
     static const struct {
-        size_t where; /* offset of a word to change */
+        size_t where; /* offset of the word to be changed */
         uint32_t word;
         he_status status;
         uint64_t at;

@@ -15,7 +15,7 @@ static void expect_points(const he_import *import, const double (*points)[3], si
 
 /* --- types --- */
 
-/* A square with every type for its coordinates, counts and corners. */
+/* Reads a square whose coordinates, counts and corners have each of the types. */
 static void every_type_in_every_encoding(void **state)
 {
     (void)state;
@@ -230,14 +230,14 @@ static void groups_have_several_spellings(void **state)
     }
 }
 
-/* Full intensity is 1 in a mesh: 255 of bytes and whole numbers, 65535 of ushort, 1 of
- * fractions. */
+/* Full intensity is 1 in a mesh; in a file it is 255 for bytes and other whole numbers, 65535 for
+ * ushort, and 1 for fractions. */
 static void colors_of_every_type_are_fractions(void **state)
 {
     (void)state;
     static const struct {
         const char *type, *values;
-        double first; /* of the colour */
+        double first; /* expected first component of the colour */
     } rows[] = {{"uchar", "51 0 255", 0.2}, {"ushort", "13107 0 65535", 0.2},
                 {"int", "51 0 255", 0.2},   {"float", "0.2 0 1", 0.2},
                 {"double", "0.2 0 1", 0.2}, {"float", "1.5 0 1", 1.5}};
@@ -383,8 +383,8 @@ static void lines_that_end_in_returns(void **state)
     he_import_clear(&import);
 }
 
-/* As Rhinoceros writes it: the body begins after the carriage return, and may begin with a line
- * feed. */
+/* Rhinoceros ends the lines of a header with carriage returns: the binary body begins right after
+ * the last one, and its first byte may be a line feed. */
 static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
 {
     (void)state;
@@ -443,7 +443,7 @@ static void strips_become_triangles(void **state)
         assert_int_equal(he_places_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
         he_import_clear(&import);
     }
-    /* strips in an element of their own, and faces with an attribute */
+    /* the file has triangle strips in an element of their own, and faces with an attribute */
     static const uint32_t both[] = {0, 1, 2, 2, 1, 3, 0, 2, 1}, marks[] = {0, 0, 7};
     he_import import = read_text(
         "ply", ASCII "element vertex 4\n" XYZ
@@ -459,7 +459,7 @@ static void strips_become_triangles(void **state)
 static void line_ends_of_the_header(void **state)
 {
     (void)state;
-    /* the first coordinate's first byte is a line feed */
+    /* the first byte of the first coordinate is a line feed */
     static const char crlf[] = "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\n"
                                "property short x\r\nproperty uchar y\r\nproperty char z\r\n"
                                "end_header\r\n\n\r\xFF\r";

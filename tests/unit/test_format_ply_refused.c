@@ -1,4 +1,5 @@
-/* PLY files that are refused: the position, the words, and the cost. */
+/* PLY files that are refused: the position that the refusal names, its words, and what the refusal
+ * costs. */
 #include "unit/ply_file.h"
 
 #include <math.h>
@@ -134,7 +135,7 @@ static void wrong_bytes_name_their_place(void **state)
 {
     (void)state;
     static const struct {
-        double faces[10]; /* counts and corners; -9 ends */
+        double faces[10]; /* counts and corners; -9 ends the list */
         he_status status;
         size_t at;
         const char *words;
@@ -209,7 +210,8 @@ static void fractions_of_bytes_name_their_place(void **state)
     }
 }
 
-/* Counts without bytes are refused without allocating memory for them. */
+/* A file whose header promises elements that do not follow must be refused before memory for them
+ * is allocated. */
 typedef struct largest {
     size_t size;
 } largest;
@@ -311,7 +313,7 @@ static void limits_are_kept(void **state)
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
-    /* an attribute may take more memory than everything else */
+    /* an attribute may take more memory than the rest of the mesh */
     file f;
     begin(
         &f, LEAST_FIRST,

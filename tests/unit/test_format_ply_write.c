@@ -1,4 +1,4 @@
-/* PLY files that hedge writes: their content, and that they read back equal. */
+/* PLY files that hedge writes: their content, and that they are read back as equal meshes. */
 #include "unit/format_fixture.h"
 
 #define ASCII  "ply\nformat ascii 1.0\n"

@@ -42,7 +42,7 @@ static void put_facet(file *f, const float *corners, unsigned attribute)
     f->bytes[f->length++] = (unsigned char)(attribute >> 8);
 }
 
-/* Facets of a tetrahedron; zeros of the origin have both signs. */
+/* The facets of a tetrahedron; its zeros have both signs, and must still be one position. */
 static const float facets[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
                                    {-0.0f, 0, 0, 1, 0, 0, 0, 0, 1},
                                    {0, -0.0f, -0.0f, 0, 0, 1, -0.0f, 1, 0},
@@ -156,7 +156,7 @@ static void wrong_bytes_name_their_place(void **state)
         expect_refused_at_byte("stl", f.bytes, f.length, HE_NOT_FINITE, HEADER + FACET,
                                "not finite");
     }
-    /* the structure refuses a facet with repeated corners, not the reader */
+    /* a facet with repeated corners is refused when the mesh is built and not by the reader */
     static const float thin[9] = {0, 1, 0, -0.0f, 1, 0, 1, 0, 0};
     begin(&f, "x", 3);
     put_facet(&f, facets[0], 0);
@@ -318,7 +318,8 @@ static void limits_are_kept(void **state)
 
 /* --- many vertices --- */
 
-/* A grid in which each vertex belongs to six triangles, so that all vertices are found again. */
+/* A grid in which each vertex belongs to six triangles, so each position must be recognized six
+ * times. */
 static void large_grids_are_welded(void **state)
 {
     (void)state;
@@ -408,7 +409,7 @@ static void triangles_round_trip(void **state)
     he_import_clear(&import);
 }
 
-/* Returns twice the area of an import's triangles, seen from above. */
+/* Returns twice the area of the triangles in an import, seen from above. */
 static double area_of(const he_import *import)
 {
     double sum = 0;
@@ -426,7 +427,8 @@ static double area_of(const he_import *import)
 static void polygons_are_cut_into_triangles(void **state)
 {
     (void)state;
-    /* an L, a triangle, a dart, and a vertex of no face */
+    /* the mesh has an L-shaped face, a triangle, a dart (a concave quadrilateral), and a vertex
+     * without faces */
     he_mesh *mesh = mesh_of_text("off", "OFF 11 3 0\n0 0 0\n4 0 0\n4 2 0\n2 2 0\n2 4 0\n0 4 0\n"
                                         "6 0 0\n9 -3 0\n7 0 0\n9 3 0\n5 5 5\n"
                                         "6 0 1 2 3 4 5\n3 1 6 2\n4 6 7 8 9\n");
@@ -448,7 +450,8 @@ static void polygons_are_cut_into_triangles(void **state)
     he_mesh_free(mesh);
 }
 
-/* Both diagonals of the square exist: one of them is doubled nevertheless. */
+/* Both diagonals of the square exist as edges: the square must still be cut, although one edge is
+ * then doubled. */
 static void diagonals_that_exist(void **state)
 {
     (void)state;
@@ -465,7 +468,7 @@ static void diagonals_that_exist(void **state)
 static void what_is_lost_is_named(void **state)
 {
     (void)state;
-    /* two vertices at one place, two that are equal as floats, one without a face */
+    /* two vertices have equal positions, two are equal as floats, and one has no face */
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 1e30 1 0\nv -0 0 0\n"
                                         "v 1.00000000001 0 5\nv 1 0 5\nv 7 7 7\n"
                                         "usemtl red\nf 1 2 3\nf 3 2 4\nf 5 6 7\n");
@@ -519,7 +522,7 @@ static void no_memory_to_cut_polygons(void **state)
     he_mesh_free(mesh);
 }
 
-/* A star that winds around its centre thousands of times. */
+/* The face is a star that winds around its centre thousands of times. */
 static void faces_that_cross_themselves_are_cut_all_the_same(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* The OBJ and OFF writers: their files read back equal, whatever the buffer size. */
+/* The OBJ and OFF writers: their files are read back as equal meshes, whatever the size of the
+ * buffer. */
 #include "unit/format_fixture.h"
 
 #include "mesh/write.h"
@@ -40,7 +41,8 @@ static void text_is_as_expected(void **state)
     he_mesh_free(mesh);
 }
 
-/* column.h: rows beyond those stored hold the default. */
+/* A column may store fewer rows than there are elements (column.h): the other rows have the
+ * default, which must be written. */
 static void rows_that_are_not_stored_are_the_default(void **state)
 {
     (void)state;
@@ -165,7 +167,7 @@ static void vertex_values_go_to_obj(void **state)
 static void dead_rows_are_skipped(void **state)
 {
     (void)state;
-    /* an isolated vertex before the others is deleted: the rest are numbered without a gap */
+    /* isolated vertices are deleted, so the remaining ones must be numbered without gaps */
     he_mesh *mesh = mesh_of_text("obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\n"
                                         "g one\nf 2 3 5\n");
     he_delete_vertex(mesh, (he_vertex){0});
@@ -181,7 +183,7 @@ static void dead_rows_are_skipped(void **state)
     he_mesh_free(mesh);
 }
 
-/* Adds a face or vertex attribute with this row for element 0. */
+/* Adds an attribute of faces or vertices; element 0 gets this value. */
 static void add_column(he_mesh *mesh, const char *name, he_kind domain, he_type type,
                        uint32_t components, const void *row, const char *const *labels)
 {
@@ -255,7 +257,7 @@ static void what_is_lost_is_named(void **state)
     he_mesh_free(mesh);
 }
 
-/* Doubles of every size, polygons of many corners. */
+/* The meshes have doubles of every size, and polygons of many corners. */
 static void random_meshes_round_trip(void **state)
 {
     (void)state;
@@ -276,7 +278,7 @@ static void random_meshes_round_trip(void **state)
             assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){p[0], p[1], p[2]}, NULL), HE_OK);
         }
         uint32_t v = 0;
-        while (v < 190) { /* separate polygons */
+        while (v < 190) { /* polygons that share no vertices */
             uint32_t degree = 3 + (uint32_t)(random >> 8 & 7), corners[10];
             for (uint32_t i = 0; i < degree; i++) {
                 corners[i] = v++;

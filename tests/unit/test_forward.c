@@ -1,7 +1,6 @@
-/* A mesh from before a log of edits is brought forward by the deltas of the log, without having
- * issued any of their rows. At every entry it must equal the mesh of the log, and undo and redo
- * must continue from there.
- */
+/* A mesh from before a log of edits is brought forward by the deltas in the log, and has none of
+ * the rows that they add. At every entry it must equal the mesh in the log, and undo and redo must
+ * continue from there. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -12,7 +11,8 @@
 
 enum { ENTRIES = 60 };
 
-/* Undoes everything: each delta then holds what its edit added, as a loaded delta does. */
+/* Makes a random log and undoes all of it: each delta then holds what its edit added, like a delta
+ * that was loaded. */
 static edit_log *undone_log(md_random *random)
 {
     edit_log *log = edit_log_random(random, ENTRIES);
@@ -22,7 +22,8 @@ static edit_log *undone_log(md_random *random)
     return log;
 }
 
-/* Applies entry i to the mesh as the start of a store does: edits forward, then undo and redo. */
+/* Applies entry i of the log to the mesh as the start of a store does: an edit that was never
+ * applied forward, otherwise by undo or redo. */
 static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
 {
     const edit_log_entry *e = &log->entries[i];
@@ -87,7 +88,7 @@ static void test_without_memory_the_mesh_stays_as_it_was(void **state)
     }
 }
 
-/* Records `operation` on a copy of the mesh; the mesh is left as it is afterwards. */
+/* Records `operation` and undoes it; returns its delta. */
 static he_delta *delta_of(he_mesh *m, const char *operation)
 {
     he_delta *delta = he_delta_new();
@@ -117,7 +118,7 @@ static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     he_mesh *m = script_mesh("012,023", NULL), *other = script_mesh("012,023", NULL);
     script_add_columns(m);
     he_delta *values = delta_of(m, "edge_split edge=0-2 t=0.5");
-    size_t first = 0; /* links are equal up to the first value */
+    size_t first = 0; /* number of equal links before the first value */
     while (values->records[first].column < HE_COL_ATTRIBUTE) {
         first++;
     }
@@ -131,7 +132,7 @@ static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     uint32_t issued[HE_KIND_COUNT];
     edit_log_marks(m, issued);
     assert_int_equal(he_delta_forward(moved, other, issued, NULL, NULL), HE_OK);
-    expect_refusal(moved, other, m, 0); /* it exists already */
+    expect_refusal(moved, other, m, 0); /* vertex 1 was moved already */
     he_delta_free(moved);
     he_mesh_free(m);
     he_mesh_free(other);
@@ -147,7 +148,7 @@ static void test_an_attribute_does_not_come_twice(void **state)
     edit_log_add_column(m, &random, 1);
     he_mesh_record(m, NULL);
     he_delta_undo(delta, m);
-    edit_log_add_column(other, &same, 1); /* in the same slot */
+    edit_log_add_column(other, &same, 1); /* another column takes the slot */
     expect_refusal(delta, other, m, 0);
     md_random another = {3};
     he_mesh_free(other);

@@ -1,4 +1,4 @@
-/* Paths, media types, entity tags, cursors: the small grammars of a request. */
+/* Paths, media types, entity tags, cursors: the small grammars in the headers of a request. */
 #include "api/header/cursor.h"
 #include "api/header/etag.h"
 #include "api/header/media.h"
@@ -189,7 +189,7 @@ static void content_codings_are_chosen_by_weight(void **state)
         const char *header;
         bool any;
         api_coding best;
-        bool identity; /* is allowed */
+        bool identity; /* an uncompressed answer is allowed */
     } rows[] = {
         {NULL, true, API_IDENTITY, true},
         {"", true, API_IDENTITY, true},
@@ -213,7 +213,8 @@ static void content_codings_are_chosen_by_weight(void **state)
         {"gzip, identity;q=0", true, API_GZIP, false},
         {"identity;q=0", false, API_IDENTITY, false},
         {"identity;q=0, br", false, API_IDENTITY, false},
-        /* Some proxies that send it can read gzip at most. */
+        /* Some proxies send "*" although they can read gzip at most, so "*" must not lead to
+         * zstd. */
         {"*", true, API_GZIP, true},
         {"*;q=0.5, zstd", true, API_ZSTD, true},
         {"*, zstd;q=0.5", true, API_GZIP, true},
@@ -279,7 +280,8 @@ static void one_content_coding_is_taken(void **state)
 
 static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
-/* Is a tag listed with this coding, if the client accepts gzip? */
+/* Returns whether the header lists the entity tag with this coding, for a client that accepts
+ * gzip. */
 static bool listed(const char *header, const char *etag, api_coding coding)
 {
     const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};
@@ -299,12 +301,12 @@ static void entity_tags_name_state_and_representation(void **state)
     assert_false(listed("0000000000000abc-2-41-obj", etag, API_IDENTITY));
     assert_false(listed("", etag, API_IDENTITY));
     assert_false(listed("\"", etag, API_IDENTITY));
-    /* Also with a coding that the client accepts. */
+    /* The tag may also have the name of a coding that the client accepts. */
     assert_true(listed("\"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_true(listed("\"y\", \"0000000000000abc-2-41-obj-gzip\"", etag, API_GZIP));
     assert_false(listed("\"0000000000000abc-2-41-obj-zstd\"", etag, API_ZSTD));
     assert_false(listed("\"0000000000000abc-2-41-obj-identity\"", etag, API_IDENTITY));
-    /* In a write, any representation of the present state is valid. */
+    /* In the condition of a write, the tag of any representation of the present state is valid. */
     assert_true(api_etag_is_present("\"0000000000000abc-2-41-stl\"", &facts));
     assert_true(api_etag_is_present("\"a\",\"0000000000000abc-2-41-obj\"", &facts));
     assert_true(api_etag_is_present("*", &facts));
@@ -330,7 +332,7 @@ static void cursors_come_back_or_are_refused(void **state)
         char shorter[API_CURSOR] = "";
         memcpy(shorter, text, cut);
         problem = (api_problem){0};
-        /* "...1000" truncated to "...100" is a valid cursor, too. */
+        /* A cursor of position 1000 that is truncated to 100 is a valid cursor, too. */
         if (!api_cursor_read(shorter, "vertices", &facts, &position, &problem)) {
             assert_true(problem.code == API_BAD_CURSOR);
         }
@@ -349,7 +351,8 @@ static void cursors_come_back_or_are_refused(void **state)
         assert_false(api_cursor_read(bad[i], "vertices", &facts, &position, &problem));
         assert_int_equal(problem.code, API_BAD_CURSOR);
     }
-    /* Edits do not change its revision; it is invalid for another mesh with the id. */
+    /* A cursor keeps its revision while the mesh is edited; it is invalid for another mesh that
+     * gets the id. */
     st_mesh_info later = facts;
     uint64_t pinned = 0;
     later.revision++;

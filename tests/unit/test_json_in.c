@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/* A body, its outcome, and where the problem points ("-": not checked). */
+/* A JSON body, its outcome, and the JSON pointer in the problem ("-": not checked). */
 typedef struct body_case {
     const char *body;
     int code;
@@ -13,7 +13,7 @@ typedef struct body_case {
 } body_case;
 
 static const body_case cases[] = {
-    /* well formed */
+    /* well-formed bodies */
     {"{}", HE_OK, "-"},
     {"[]", HE_OK, "-"},
     {" \t\r\n{ } \n", HE_OK, "-"},
@@ -29,7 +29,7 @@ static const body_case cases[] = {
     {"[true,false,null]", HE_OK, "-"},
     {"{\"a\":{\"a\":{\"a\":1}}}", HE_OK, "-"},
     {"{\"a\":1,\"A\":2}", HE_OK, "-"},
-    /* nothing, or too much */
+    /* empty bodies, and text after the value */
     {"", API_MALFORMED_JSON, ""},
     {"   ", API_MALFORMED_JSON, ""},
     {"{} {}", API_MALFORMED_JSON, ""},
@@ -42,7 +42,7 @@ static const body_case cases[] = {
     {"\f{}", API_MALFORMED_JSON, ""},
     {"// x\n{}", API_MALFORMED_JSON, ""},
     {"/**/{}", API_MALFORMED_JSON, ""},
-    /* brackets and commas */
+    /* mistakes in brackets and commas */
     {"{", API_MALFORMED_JSON, "-"},
     {"[", API_MALFORMED_JSON, "-"},
     {"}", API_MALFORMED_JSON, ""},
@@ -67,7 +67,7 @@ static const body_case cases[] = {
     {"{\"a\":1 \"b\":2}", API_MALFORMED_JSON, "/a"},
     {"[[[]]", API_MALFORMED_JSON, "-"},
     {"[[]]]", API_MALFORMED_JSON, "-"},
-    /* words */
+    /* mistakes in true, false and null */
     {"nul", API_MALFORMED_JSON, ""},
     {"True", API_MALFORMED_JSON, ""},
     {"tru", API_MALFORMED_JSON, ""},
@@ -77,7 +77,7 @@ static const body_case cases[] = {
     {"Infinity", API_MALFORMED_JSON, ""},
     {"-Infinity", API_MALFORMED_JSON, ""},
     {"undefined", API_MALFORMED_JSON, ""},
-    /* numbers */
+    /* mistakes in numbers */
     {"01", API_MALFORMED_JSON, ""},
     {"-01", API_MALFORMED_JSON, ""},
     {"00", API_MALFORMED_JSON, ""},
@@ -99,7 +99,7 @@ static const body_case cases[] = {
     {"[0,-1e400]", HE_NOT_FINITE, "/1"},
     {"{\"t\":1e309}", HE_NOT_FINITE, "/t"},
     {"[0.0000000000000000000000000000000000000000000000000000000000001]", HE_BAD_VALUE, "/0"},
-    /* strings */
+    /* mistakes in strings */
     {"\"", API_MALFORMED_JSON, ""},
     {"\"a", API_MALFORMED_JSON, ""},
     {"\"\\\"", API_MALFORMED_JSON, ""},
@@ -128,7 +128,7 @@ static const body_case cases[] = {
     {"\"\xF8\x88\x80\x80\x80\"", API_MALFORMED_JSON, ""},
     {"\"\xFF\"", API_MALFORMED_JSON, ""},
     {"'a'", API_MALFORMED_JSON, ""},
-    /* members given twice, however they are spelled */
+    /* a member given twice, however its name is spelled */
     {"{\"a\":1,\"a\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"{\"a\":1,\"\\u0061\":2}", API_DUPLICATE_MEMBER, "/a"},
     {"[{},{\"x\":{\"b\":1,\"c\":2,\"b\":1}}]", API_DUPLICATE_MEMBER, "/1/x/b"},
@@ -152,7 +152,8 @@ static void hostile_bodies_are_refused_exactly(void **state)
         api_document document = {0};
         api_in root;
         api_problem problem = {0};
-        /* A copy of the exact size, so that the address sanitizer detects a read beyond the end. */
+        /* The body is copied to a block of its exact size, so that the address sanitizer detects a
+         * read beyond its end. */
         size_t length = strlen(c->body);
         char *body = malloc(length + 1);
         assert_non_null(body);
@@ -191,7 +192,7 @@ static void depth_and_number_of_values_are_bounded(void **state)
     api_document_clear(&document);
     assert_false(parse("[1,2,3]", 7, 3, &document, &root, &problem));
     assert_int_equal(api_problem_http(&problem), 413);
-    /* Deep nesting without an end uses no stack. */
+    /* Brackets that are opened and never closed must not use the stack. */
     static char deep[100000];
     memset(deep, '[', sizeof deep);
     problem = (api_problem){0};
@@ -218,11 +219,11 @@ static void objects_have_a_bounded_number_of_members(void **state)
     }
 }
 
-/* The outcome of reading "v" of a document as some type. */
+/* How the member "v" of a document is read: as which type, and with which limits. */
 typedef enum reader {
     READ_BOOL,
     READ_NUMBER,
-    READ_OPEN_RANGE, /* strictly between 0 and 1 */
+    READ_OPEN_RANGE, /* a number between 0 and 1, without these */
     READ_U64,        /* 1..10 */
     READ_ID,
     READ_IDS,

@@ -1,5 +1,5 @@
-/* The lexer of JSON: which tokens a text has, where it is wrong, and that neither depends on where
- * the pieces of a text are cut. */
+/* The JSON lexer: which tokens a text has, where it is wrong, and that neither depends on where the
+ * pieces of a text are cut. */
 #include "format/text/json_lexer.h"
 
 #include "fixture.h"
@@ -188,7 +188,7 @@ static void a_long_string_is_interrupted(void **state)
 
 typedef struct row_case {
     const char *text;
-    size_t numbers, indices; /* how many are taken at once */
+    size_t numbers, indices; /* how many are read in one call */
 } row_case;
 
 static const row_case rows[] = {
@@ -291,7 +291,7 @@ static void put_value(writer *w, int depth)
     ONE_OF(blanks);
 }
 
-/* A byte changed, taken out or put in; mostly one that means something. */
+/* Changes, removes or inserts a byte, in most cases one that has a meaning in JSON. */
 static void damage(writer *w)
 {
     static const char bytes[] = "{}[]:,\"\\0-+.eEtfnu \n\x01\xC3\xFF";
@@ -335,7 +335,7 @@ static void random_texts_are_the_same_wherever_they_are_cut(void **state)
         for (uint32_t i = any(3); i > 0 && w.length > 1; i--) {
             damage(&w);
         }
-        /* A number ends where something else follows. */
+        /* The line feed ends a number at the end of the text. */
         w.length -= w.length == TEXT;
         w.text[w.length++] = '\n';
         json_tokens_of_text(&whole, w.text, w.length);

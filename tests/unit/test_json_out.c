@@ -121,7 +121,8 @@ static void many_ids_grow_the_text(void **state)
     api_out out;
     api_out_init(&out, &text);
     api_out_ids(&out, ids, COUNT);
-    /* 10 of one digit, 90 of two, 900 of three, 9000 of four; commas and brackets. */
+    /* The list has 10 numbers of one digit, 90 of two, 900 of three and 9000 of four, and commas
+     * and brackets. */
     assert_int_equal(text.length, 10 + 180 + 2700 + 36000 + COUNT - 1 + 2);
     assert_memory_equal(text.bytes + text.length - 11, ",9998,9999]", 11);
     api_text_clear(&text);
@@ -192,7 +193,7 @@ static void problems_are_what_rfc_9457_says(void **state)
                        "\"detail\":\"edge 5 is narrow\",\"code\":\"link_condition\","
                        "\"pointer\":\"/ops/3\",\"element\":{\"kind\":\"edge\",\"id\":5},"
                        "\"request_id\":\"r1\"}");
-    /* The first problem is kept. */
+    /* If a problem is set twice, the first one is kept. */
     api_problem_set(&problem, API_INTERNAL, "late");
     assert_int_equal(problem.code, HE_LINK_CONDITION);
 }

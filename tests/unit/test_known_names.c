@@ -1,4 +1,4 @@
-/* A refusal of a name says which names exist, or which one was likely meant. */
+/* A refusal of an unknown name says which names exist, or which one was probably meant. */
 #include "api/json/known_names.h"
 
 #include "fixture.h"

@@ -1,5 +1,5 @@
-/* Materials of a mesh: the table follows every edit that makes a new mesh, faces keep their
- * materials, and two meshes with different tables can be joined. */
+/* Materials of a mesh: the table of materials follows every edit that makes a new mesh, faces keep
+ * their materials, and two meshes with different tables can be joined. */
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -80,13 +80,13 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     assert_string_equal(name_of(m, 0), "");
     assert_string_equal(name_of(m, 2), "b");
     assert_string_equal(name_of(m, 3), "c");
-    assert_int_equal(label_count(m), 3); /* with "" */
+    assert_int_equal(label_count(m), 3); /* including the empty name */
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 2);
     script_prepare(m, "material_delete name=c to=b");
     assert_string_equal(name_of(m, 3), "b");
     assert_int_equal(label_count(m), 2);
-    /* a material that no face has takes the place, and new faces have the material of their
-     * parent */
+    /* a deleted material is replaced by another one, which no face had before, and new faces get
+     * the material of the face that they came from */
     script_prepare(m, "material_set name=d;material_delete name=b to=d;face_poke face=3");
     assert_string_equal(name_of(m, 1), "d");
     assert_string_equal(name_of(m, he_mesh_issued(m, HE_FACE) - 1), "d");
@@ -98,7 +98,8 @@ static void what_had_a_deleted_material_has_none_or_another(void **state)
     he_mesh_free(m);
 }
 
-/* The default of the attribute may be any label; it is replaced when that is deleted. */
+/* The default of the attribute may be any material; if that material is deleted, the empty name
+ * becomes the default. */
 static void a_default_material_is_deleted_like_any(void **state)
 {
     (void)state;
@@ -116,7 +117,7 @@ static void a_default_material_is_deleted_like_any(void **state)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_string_equal(name_of(m, 5), "elm");
     script_prepare(m, "material_delete name=elm");
-    assert_string_equal(name_of(m, 5), ""); /* in place of elm: there was no "" */
+    assert_string_equal(name_of(m, 5), ""); /* added in place of "elm" */
     script_prepare(m, "material_delete name=oak;vertex_add position=9,9,9");
     assert_int_equal(label_count(m), 1);
     assert_string_equal(name_of(m, 5), "");
@@ -142,7 +143,8 @@ static void expect_faces(const he_mesh *m, const he_delta *delta, size_t from, b
     he_changes_clear(&changes);
 }
 
-/* Whether or not the name is new to the attribute, and the attribute to the mesh. */
+/* The edits name materials that are new and that are known, first in a mesh without the attribute:
+ * in each case exactly the faces whose material changes must be reported as modified. */
 static void faces_whose_material_changes_are_modified(void **state)
 {
     (void)state;
@@ -174,7 +176,8 @@ static void faces_whose_material_changes_are_modified(void **state)
     he_mesh_free(m);
 }
 
-/* Its records refer to slots that the replacing content does not have. */
+/* The records of material_set refer to slots of columns that the compacted content does not have,
+ * so the whole edit must be reported as a replacement. */
 static void a_material_set_before_a_compact_is_a_replacement(void **state)
 {
     (void)state;
@@ -200,7 +203,8 @@ static void a_material_set_before_a_compact_is_a_replacement(void **state)
     he_mesh_free(m);
 }
 
-/* An edit that changes nothing makes no revision. */
+/* A material_set that sets the values that are there already must record nothing, so that it makes
+ * no revision. */
 static void what_changes_nothing_is_no_edit(void **state)
 {
     (void)state;
@@ -250,7 +254,7 @@ static void edits_of_the_whole_keep_the_table_and_faces_theirs(void **state)
     }
 }
 
-/* Free slots are closed. */
+/* `compact` must close the gaps that deleted materials leave in the table. */
 static void compact_closes_gaps(void **state)
 {
     (void)state;
@@ -285,12 +289,12 @@ static void append_merges_equal_rows_and_numbers_others(void **state)
     assert_true(look_of(m, "red_2")->base_color[2] == 1);
     assert_true(look_of(m, "red")->base_color[1] == 0);
     he_appended_clear(&appended);
-    /* again: existing numbered names are found */
+    /* a second append finds the numbered names that the first one made */
     assert_int_equal(he_append(m, other, NULL, NULL), HE_OK);
     assert_int_equal(he_materials_count(he_mesh_materials(m)), 4);
     assert_valid(m);
     he_mesh_free(m);
-    /* if no face has a material yet, labels get their new names at once */
+    /* if no face of the mesh has a material yet, the appended labels are renamed at once */
     m = script_mesh("012", NULL);
     script_prepare(m, "material_set name=red roughness=0.5");
     assert_int_equal(he_append(m, other, &appended, NULL), HE_OK);
@@ -320,7 +324,8 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
     he_mesh_free(m);
 }
 
-/* Rows are shared: a copy costs only its slots, but both are counted in full. */
+/* Rows of the table are shared between copies: a copy takes memory only for its slots, but the
+ * memory of both is counted in full. */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;
@@ -333,7 +338,7 @@ static void memory_of_rows_is_counted(void **state)
     before = he_delta_bytes(delta);
     script_prepare(m, "material_set name=m1 metallic=1");
     assert_true(he_delta_bytes(delta) >= before + sizeof(he_record) + sizeof(he_material));
-    /* the delta owns labels that an edit removes */
+    /* labels that an edit removes belong to its delta and are counted there */
     char name[HE_MATERIAL_NAME + 30];
     snprintf(name, sizeof name, "material_set name=%0200d face=0", 1);
     script_prepare(m, name);

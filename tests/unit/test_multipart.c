@@ -1,4 +1,5 @@
-/* Bodies of several files: their parts, however they are split, and refusals. */
+/* Bodies of several files (multipart/form-data): their parts, however the body is split, and
+ * refusals. */
 #include "api/header/multipart.h"
 
 #include "unit/fixture.h"
@@ -13,7 +14,7 @@
 
 enum { MOST = 8192 };
 
-/* The parts as text: "[name|type]bytes;" for each. */
+/* The parts that were read, as text: "[name|type]bytes;" for each. */
 typedef struct told {
     char text[MOST];
     size_t length;
@@ -32,7 +33,8 @@ static void add_text(told *t, const char *text)
     add(t, text, strlen(text));
 }
 
-/* Reads in pieces of `piece` bytes, each in a block of its own; returns the code of a refusal. */
+/* Reads a body in pieces of `piece` bytes, each in a block of its own; returns the code of a
+ * refusal, or HE_OK. */
 static int read_in(const char *type, const char *body, size_t length, size_t piece, told *out,
                    api_problem *problem)
 {
@@ -81,7 +83,8 @@ static int read_in(const char *type, const char *body, size_t length, size_t pie
     return problem->code;
 }
 
-/* Whole, byte by byte and in all sizes between, the result must be the same. */
+/* Requires the same result whether the body is read whole, byte by byte or in pieces of any size
+ * between. */
 static void expect_of(const char *type, const char *body, size_t length, const char *wanted)
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
@@ -125,15 +128,15 @@ static void parts_come_with_their_names_types_and_bytes(void **state)
     expect("--AbC" LINE "Content-Disposition: form-data; name=\"f\"; filename=\"x.bin\"" LINE
            "Content-Type: application/octet-stream" LINE LINE "123" LAST,
            "[x.bin|application/octet-stream]123;");
-    /* without quotes, in other letter case, with blanks, and with unknown headers */
+    /* headers without quotes, in other letter case, with blanks, and unknown ones */
     expect("--AbC" LINE "x-other: 1" LINE "CONTENT-TYPE:text/plain ; charset=utf-8  " LINE
            "content-disposition:Form-Data;NAME=f ;\tFileName=x.bin;" LINE LINE "1" LAST,
            "[x.bin|text/plain ; charset=utf-8]1;");
-    /* text before and after, blanks after a delimiter */
+    /* text before the first part and after the last one, and blanks after a delimiter */
     expect("a preamble" LINE "--Ab" LINE "--AbC \t" LINE HEAD("a") LINE "1" LAST "epilogue" LINE
                                                                         "--AbC" LINE,
            "[a]1;");
-    /* no parts at all */
+    /* a body without parts */
     expect("--AbC--", "");
     expect(LINE "--AbC--" LINE, "");
 }
@@ -142,7 +145,7 @@ static void empty_parts_are_parts(void **state)
 {
     (void)state;
     expect(PART("a") LAST, "[a];");
-    /* the line break of the empty line belongs to the delimiter */
+    /* the line break before a delimiter belongs to the delimiter, even if the part is empty */
     expect(PART("a") "--AbC--", "[a];");
     expect(PART("a") LINE PART("b") LINE PART("c") "x" LAST, "[a];[b];[c]x;");
     expect(PART("a") LINE LINE "--AbC--", "[a]\r\n;");
@@ -184,7 +187,7 @@ static void names_are_taken_as_they_are_given(void **state)
            "[\xC3\xBC\xE2\x82\xAC\xF0\x9F\x98\x80.gltf];");
     expect(NAMED("name=f; filename=\"../../etc/passwd\""), "[../../etc/passwd];");
     expect(NAMED("filename=\"x\"; name=f"), "[x];");
-    expect(NAMED("name=f; filename=\"\""), "[f];"); /* a form without a chosen file */
+    expect(NAMED("name=f; filename=\"\""), "[f];"); /* a form in which no file was chosen */
     expect(NAMED("filename=\"\"; name=f"), "[f];");
     expect(NAMED("name=f; other=\"filename=x\""), "[f];");
 }
@@ -246,7 +249,7 @@ static void a_body_that_ends_too_early_is_refused(void **state)
     expect_refused(PART("a") "x" LINE "--AbC\r\r", "a delimiter goes on");
 }
 
-/* Returns `count` times `text` between others, in one block. */
+/* Returns a block with `text` repeated `count` times between `before` and `behind`. */
 static char *repeat(const char *before, const char *text, size_t count, const char *behind)
 {
     size_t first = strlen(before), each = strlen(text), last = strlen(behind) + 1;
@@ -271,7 +274,7 @@ static void there_are_maxima(void **state)
     body = repeat("", PART("a") LINE, API_MAX_PARTS + 1, "--AbC--");
     expect_refused(body, "more than 64 parts");
     free(body);
-    /* all bytes count: the name of the header, its line and the empty line */
+    /* the limit counts all bytes of the headers of a part, including the empty line after them */
     size_t room = API_MAX_PART_HEADERS - strlen(HEAD("a") "x: " LINE LINE);
     for (size_t more = 0; more < 2; more++) {
         body = repeat("--AbC" LINE HEAD("a") "x: ", "x", room + more, LINE LINE "1" LAST);
@@ -324,7 +327,7 @@ static void the_boundary_is_a_parameter_of_the_type(void **state)
         assert_null(api_multipart_new(bad[i], &problem));
         assert_int_equal(problem.code, API_BAD_HEADER);
     }
-    /* the longest boundary, with all allowed characters */
+    /* the longest possible boundary, with all allowed characters */
     static const char odd[] =
         "multipart/form-data; boundary=\""
         "0123456789'()+_,-./:=? abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTU\"";

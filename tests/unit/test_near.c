@@ -1,6 +1,5 @@
-/* Points in cells: the lowest within reach is found wherever they lie, compared with checking all
- * points.
- */
+/* The search for near points in a grid of cells: the lowest point within the tolerance must be
+ * found wherever the points lie; the results are compared with checking all points. */
 #include "unit/fixture.h"
 
 #include "geometry/near.h"
@@ -22,7 +21,8 @@ static double distance(he_vec3 a, he_vec3 b)
     return hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
 }
 
-/* Compares around `origin`, in a box of some tolerances. */
+/* Compares the search with checking all points, for random points around `origin` in a box of a few
+ * tolerances. */
 static void compare(double origin, double tolerance)
 {
     static he_vec3 points[POINTS];
@@ -39,7 +39,7 @@ static void compare(double origin, double tolerance)
     assert_int_equal(he_near_make(&near, points, POINTS, tolerance, 1, NULL, NULL), HE_OK);
     for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t home, wanted = HE_NONE;
-        bool sure = true; /* nothing lies exactly on the limit */
+        bool sure = true; /* no distance is exactly at the limit */
         for (uint32_t k = i; k-- > 0;) {
             double d = distance(points[i], points[k]);
             sure &= !kept[k] || d == 0 || fabs(d / tolerance - 1) > 1e-9;
@@ -70,7 +70,7 @@ static void the_lowest_within_reach_is_found(void **state)
     }
 }
 
-/* -0 equals 0. */
+/* With a tolerance of 0, points are near only if they are equal; -0 equals 0. */
 static void without_a_tolerance_only_equal_points_are_near(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Numbers as text, compared with the C library (which is exact in the "C" locale) and with big
- * integers. SEED= repeats a run, ROUNDS= makes it longer. */
+/* Numbers as text: reading and writing are compared with the C library (which is exact in the "C"
+ * locale) and with big integers. SEED= repeats a run, ROUNDS= makes it longer. */
 #include "format/text/number.h"
 
 #include "format/text/exact.h"
@@ -43,7 +43,7 @@ static bool is_finite_bits(uint64_t bits)
     return (bits >> 52 & 0x7FF) != 0x7FF;
 }
 
-/* A mixture of random bits and of numbers as in files. */
+/* Returns a random double: random bits, or a number as it occurs in files. */
 static double random_double(void)
 {
     for (;;) {
@@ -56,7 +56,7 @@ static double random_double(void)
         case 1:
             value = (double)(bits >> 11) * 0x1p-53;
             break;
-        case 2: /* near the middle of the range */
+        case 2: /* exponents near the middle of the range */
             value =
                 from_bits((bits & 0x800FFFFFFFFFFFFF) | (1023 - 60 + next_random() % 120) << 52);
             break;
@@ -89,7 +89,7 @@ static void expect_bits(const char *text, double wanted)
     }
 }
 
-/* Big integers for the table of powers: base 2^32, least significant first. */
+/* A big integer, for checking the table of powers: base 2^32, least significant word first. */
 typedef struct whole {
     uint32_t words[100];
 } whole;
@@ -143,7 +143,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
         assert_int_equal(got.high, wanted.high);
         assert_int_equal(got.low, wanted.low);
     }
-    /* floor(2^3199 / 5^-k): floors of floors are floors, and enough bits are left */
+    /* for negative k the table must have floor(2^3199 / 5^-k): a floor of a floor is the floor, and
+     * enough bits are left */
     memset(&n, 0, sizeof n);
     n.words[99] = 0x80000000;
     for (int k = 0; k >= HE_POWER_MIN; k--, divide_by_five(&n)) {
@@ -153,8 +154,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     }
 }
 
-/* The text of a double reads back with the C library and with our reader, and no shorter text
- * does. */
+/* Requires that the text of a double is read back as this double by the C library and by our
+ * reader, and that no shorter text is. */
 static void check_print(double value, bool try_all)
 {
     char text[HE_NUMBER_TEXT + 1], other[64];
@@ -189,7 +190,7 @@ static void check_print(double value, bool try_all)
             if ((size_t)precision < digits) {
                 fail_msg("%s is longer than %s", text, other);
             }
-            /* .*e gives the closest text of its length */
+            /* printf with %.*e gives the closest text of this length */
             if ((size_t)precision == digits) {
                 char ours[64];
                 snprintf(ours, sizeof ours, "%.*e", precision - 1, strtod(text, NULL));
@@ -269,8 +270,8 @@ static void random_text_parses_like_the_c_library(void **state)
     }
 }
 
-/* The exact middle between two doubles, with all its digits, and the numbers one digit to either
- * side. */
+/* Reads the exact middle between two doubles, with all its digits, and the numbers one less and one
+ * more in the last digit: only the middle itself must be rounded to even. */
 static void middles_go_to_even(void **state)
 {
     (void)state;
@@ -278,7 +279,7 @@ static void middles_go_to_even(void **state)
     for (uint64_t i = 0; i < rounds / 100; i++) {
         uint64_t bits = next_random() & 0x7FFFFFFFFFFFFFFF;
         if (i % 4 == 0) {
-            bits &= 0x000FFFFFFFFFFFFF; /* subnormal */
+            bits &= 0x000FFFFFFFFFFFFF; /* makes the number subnormal */
         }
         if (i % 4 == 1) {
             bits = (bits & 0x000FFFFFFFFFFFFF) | (uint64_t)(1023 + i % 80) << 52;
@@ -286,7 +287,7 @@ static void middles_go_to_even(void **state)
         if (bits >> 52 >= 0x7FE) {
             continue;
         }
-        /* printf is exact: the middle as a long double has one more bit */
+        /* the middle fits into a long double, which has more bits, and printf is exact */
         long double middle = ((long double)from_bits(bits) + (long double)from_bits(bits + 1)) / 2;
         int length = snprintf(text, sizeof text - 2, "%.1100Lf", middle);
         assert_true(length > 0 && length < (int)sizeof text - 2);
@@ -295,7 +296,7 @@ static void middles_go_to_even(void **state)
         text[length + 1] = '\0';
         expect_bits(text, from_bits(bits + 1));
         text[length] = '\0';
-        for (int k = length - 1; k >= 0; k--) { /* one less in the last place */
+        for (int k = length - 1; k >= 0; k--) { /* subtracts one from the last digit */
             if (text[k] != '.') {
                 if (text[k] != '0') {
                     text[k]--;
@@ -308,7 +309,8 @@ static void middles_go_to_even(void **state)
     }
 }
 
-/* he_double_parse rarely needs it, so it is also called directly, with bad guesses. */
+/* he_double_parse rarely needs the exact rounding, so this test calls it directly, with bad
+ * guesses. */
 static void exact_rounding_from_any_near_guess(void **state)
 {
     (void)state;
@@ -459,7 +461,7 @@ static void parse_edges(void **state)
                                         "+-1", ",", " 1", "--1", "na", "in", "0x", "+e1"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         he_status status = parse(wrong[i], HE_FILE_NUMBER, &value, &used);
-        if (strcmp(wrong[i], "0x") == 0) { /* a zero; the caller sees the x */
+        if (strcmp(wrong[i], "0x") == 0) { /* read as 0; the caller sees the x */
             assert_int_equal(status, HE_OK);
             assert_int_equal(used, 1);
             value = 7;
@@ -478,7 +480,7 @@ static void parse_edges(void **state)
     assert_int_equal(parse("-12.5e1]", HE_JSON_NUMBER, &value, &used), HE_OK);
     assert_int_equal(used, 7);
     assert_true(value == -125);
-    /* bytes at and after `end` are not read */
+    /* the reader must not read bytes at `end` and beyond */
     assert_int_equal(
         he_double_parse("123456789", &"123456789"[0] + 0, HE_FILE_NUMBER, &value, &used),
         HE_SYNTAX);
@@ -505,7 +507,8 @@ static void long_digit_strings(void **state)
     text[800] = '\0';
     text[1] = '.';
     expect_bits(text, strtod(text, NULL));
-    /* the deciding digit is the 799th, the 800th, ... the last of a million */
+    /* the digit that decides the rounding is the 700th, 799th, 800th, ... or the last of a
+     * million */
     static const size_t places[] = {700, 799, 800, 801, 802, 900, LENGTH - 1};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         memset(text, '0', places[i]);

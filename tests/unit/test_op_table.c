@@ -1,6 +1,6 @@
-/* The promises of the operation table, row by row: every row succeeds, every declared refusal
- * occurs and no other, V, E and F change as declared, the checker passes, a refusal or a failed
- * allocation leaves the mesh identical in every bit, and the delta undoes and redoes. */
+/* The promises of the table of operations, row by row: every operation succeeds, every declared
+ * refusal occurs and no other, V, E and F change as declared, the checker passes, a refusal or a
+ * failed allocation leaves the mesh identical in every bit, and the delta undoes and redoes. */
 #include "edit_script.h"
 #include "giants.h"
 #include "scenarios.h"
@@ -20,10 +20,10 @@
 #define STRANGE "012,034,056"
 #define RING6   "301,320,431,523,653,634"
 #define HEXAGON "012,023,034,045,056,061"
-/* The torus in which all seven vertices are neighbours. */
+/* The Csaszar torus, in which all seven vertices are neighbours of each other. */
 #define CSASZAR "013,032,124,143,235,254,346,365,450,406,561,510,602,621"
 
-/* More vertices than a list may have for pairwise comparison. */
+/* A list of more vertices than are compared pair by pair. */
 #define MANY \
     "0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33"
 #define MANY_MORE "+++++++++++++++++++++++++++++++++"
@@ -375,7 +375,7 @@ static const scenario *const groups[] = {scenarios,        border_scenarios,  we
 
 enum { MAX_OPS = 128 };
 
-/* The outcomes of the scenarios of this run, by row. */
+/* Which outcomes the scenarios have produced in this run, for each operation. */
 static bool produced[MAX_OPS][HE_STATUS_COUNT];
 
 static void mark(const he_op *op, he_status status)
@@ -410,7 +410,8 @@ static void check_change(const scenario *s, const he_mesh *before, const he_mesh
     }
 }
 
-/* With recording: a success undoes and redoes, a refusal records nothing. */
+/* Runs a scenario while changes are recorded: a success must undo and redo, a refusal must record
+ * nothing. */
 static void run_recorded(const scenario *s, bool columns)
 {
     he_mesh *m = start_of(s, columns), *before = copy_of(m);
@@ -451,7 +452,7 @@ static void run_recorded(const scenario *s, bool columns)
     he_mesh_free(m);
 }
 
-/* Without recording, and with the n-th allocation failing for every n. */
+/* Runs a scenario with the n-th allocation failing for every n, with or without recording. */
 static void run_short_of_memory(const scenario *s, bool columns, bool record)
 {
     for (unsigned n = 1;; n++) {
@@ -513,7 +514,8 @@ static void test_limit(void **state)
     }
 }
 
-/* Runs last: the rows must declare exactly the refusals that the scenarios produced. */
+/* This test must be the last one: each operation must declare exactly the refusals that the
+ * scenarios have produced. */
 static void test_every_refusal_was_produced(void **state)
 {
     (void)state;
@@ -579,7 +581,7 @@ static void test_results(void **state)
     assert_int_equal(results.list[1].ids[0], 5);
     assert_int_equal(results.list[2].count, 2);
     assert_int_equal(results.list[2].ids[1], 3);
-    /* A refusal leaves no results. */
+    /* A refusal must leave the results empty. */
     assert_int_equal(script_run(m, "edge_split edge=#99", &results, NULL), HE_NO_SUCH_ELEMENT);
     assert_false(results.present[0]);
     assert_int_equal(results.list[1].count, 0);

@@ -1,5 +1,5 @@
-/* Values that a client chooses so that they would collide in a table with a known hash: the work is
- * still linear in their number, because the hashes are seeded. */
+/* A client chooses values that would all collide in a hash table with a known hash function: the
+ * work must still be linear in their number, because the hashes have a random seed. */
 #include "unit/fixture.h"
 
 #include "build/build.h"
@@ -15,7 +15,8 @@ enum { PICKED = 50000 };
 
 /* --- names of labels --- */
 
-/* Names that would collide in every table of up to a million slots if the hash were FNV-1a. */
+/* Returns whether the name would collide with the others in every table of up to a million slots,
+ * if the hash were FNV-1a. */
 static bool lies_low(const char *name)
 {
     uint64_t h = 14695981039346656037u;
@@ -61,7 +62,8 @@ static void names_cannot_be_picked_to_collide(void **state)
 
 /* --- values of corners, numbered for an export --- */
 
-/* Does the number collide if the hash begins with the number of bytes? */
+/* Returns whether the number would collide with the others, if the hash began with the number of
+ * bytes. */
 static bool number_lies_low(uint64_t word)
 {
     uint64_t h = (sizeof word ^ word) * 0x9E3779B97F4A7C15;
@@ -112,7 +114,7 @@ static void values_of_corners_cannot_be_picked_to_collide(void **state)
     (void)state;
     double *values = malloc(PICKED * sizeof *values);
     assert_non_null(values);
-    uint64_t word = UINT64_C(0x3FF0000000000000); /* 1, and numbers above it */
+    uint64_t word = UINT64_C(0x3FF0000000000000); /* the double 1; larger ones follow */
     for (size_t count = 0; count < PICKED; word++) {
         if (number_lies_low(word)) {
             memcpy(&values[count++], &word, sizeof word);
@@ -160,7 +162,8 @@ static void rows_of_records_cannot_be_picked_to_collide(void **state)
 
 enum { PAIRS = PICKED / 4 };
 
-/* Two triangles for each of `lows`, which then share the edge from it to the next vertex. */
+/* Makes two triangles for each vertex in `lows`, which a weld then joins along the edge from this
+ * vertex to the next one; returns the time of the weld. */
 static double weld_pairs(const void *context, size_t count)
 {
     const uint32_t *lows = context;

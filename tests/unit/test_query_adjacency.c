@@ -1,4 +1,5 @@
-/* Relations, compared with a search through all half-edges. */
+/* Relations between elements (neighbours): the answers are compared with a search through all
+ * half-edges. */
 #include "query_specimens.h"
 
 #include "query/adjacency.h"
@@ -32,8 +33,8 @@ static size_t times_in(const he_ids *ids, uint32_t id)
     return n;
 }
 
-/* Does the relation of `id` contain `related`? Decided for every pair, by definition and without
- * walking. */
+/* Returns whether the relation of `id` contains `related`, decided for every pair by definition and
+ * without following links from element to element. */
 static bool belongs(const he_mesh *m, he_kind of, const char *name, uint32_t id, uint32_t related)
 {
     const uint32_t *origin = m->c.origin, *face = m->c.face;
@@ -111,7 +112,8 @@ static void try_all(const he_mesh *m)
     }
 }
 
-/* Checks the order by the definitions of a turn and of a loop. */
+/* Requires that the answers are in the order that the definitions of a turn around a vertex and of
+ * a loop give. */
 static void try_order(const he_mesh *m)
 {
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
@@ -156,7 +158,8 @@ static void try_order(const he_mesh *m)
     }
 }
 
-/* The dense form must equal the single answers, one after another. */
+/* Requires that the answer about all elements equals the answers about single elements, one after
+ * another. */
 static void try_dense(const he_mesh *m)
 {
     for (size_t i = 0; i < he_relation_count(); i++) {
@@ -175,7 +178,7 @@ static void try_dense(const he_mesh *m)
                 if (one.count > 0) {
                     assert_memory_equal(all.ids.ids + from, one.ids, 4 * one.count);
                 }
-                /* A list may repeat an element. */
+                /* A list of elements may have an element twice. */
                 uint32_t twice[] = {id, id};
                 he_dense two = {0};
                 assert_int_equal(he_relation_dense(m, r, twice, 2, flags, 0, &two, NULL), HE_OK);
@@ -249,7 +252,8 @@ static void test_relations_by_hand(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056");
-    /* Three fans at 0: the boundary half-edge first, then each fan counter-clockwise. */
+    /* Vertex 0 has three fans of faces: the boundary half-edge comes first, then each fan
+     * counter-clockwise. */
     he_ids faces = ids_of(m, HE_VERTEX, "faces", 0, 0);
     assert_int_equal(faces.count, 3);
     he_ids_clear(&faces);
@@ -260,7 +264,7 @@ static void test_relations_by_hand(void **state)
     assert_ids(ids_of(m, HE_EDGE, "halfedges", 4, 0), "8 9");
     assert_ids(ids_of(m, HE_EDGE, "faces", 4, 0), "1");
     he_mesh_free(m);
-    /* Two faces that share two edges are listed once. */
+    /* A face that shares two edges with another one must be listed once. */
     m = fixture_mesh("0123,2104");
     assert_ids(ids_of(m, HE_FACE, "faces", 0, 0), "1");
     assert_ids(ids_of(m, HE_FACE, "faces", 1, 0), "0");
@@ -272,7 +276,8 @@ static void test_relations_by_hand(void **state)
     he_mesh_free(m);
 }
 
-/* More neighbours than are compared one by one, each of them twice. */
+/* The face has more neighbours than are compared one by one, and shares two edges with each of
+ * them. */
 static void test_faces_of_a_large_face_appear_once(void **state)
 {
     (void)state;
@@ -328,7 +333,7 @@ static void test_relations_refuse(void **state)
         assert_int_equal(he_relation_dense(m, r, list, 1, 0, 1, &dense, &err), HE_LIMIT);
         assert_null(dense.ids.ids);
         assert_null(dense.offsets.ids);
-        /* An empty list gives an empty answer. */
+        /* An empty list of elements must give an empty answer. */
         assert_int_equal(he_relation_dense(m, r, list, 0, 0, 0, &dense, &err), HE_OK);
         assert_int_equal(dense.offsets.count, 1);
         assert_int_equal(dense.ids.count, 0);
@@ -345,13 +350,14 @@ static void test_relations_refuse(void **state)
     he_mesh_free(m);
 }
 
-/* A ring that never closes, and links that lead out of the mesh. */
+/* The links of the mesh are broken: a turn around a vertex never closes, and links lead out of the
+ * mesh. The queries must still end. */
 static void test_relations_end_on_broken_links(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     uint32_t h = m->c.vertex_halfedge[0], turned = m->c.prev[h] ^ 1u;
-    m->c.prev[turned] = turned ^ 1u; /* its turn leads to itself */
+    m->c.prev[turned] = turned ^ 1u; /* the turn stays at this half-edge for ever */
     he_ids ids = {0};
     he_error err = {0};
     assert_int_equal(he_relation_append(m, relation_named(HE_VERTEX, "vertices"), 0, 0, &ids, &err),

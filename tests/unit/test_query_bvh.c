@@ -1,6 +1,5 @@
-/* Rays, nearest points and self-intersections with a tree of boxes, compared with testing all
- * triangles.
- */
+/* Rays, nearest points and self-intersections, which are found with a tree of bounding boxes, are
+ * compared with testing all triangles. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -48,7 +47,8 @@ static he_vec3 random_point(uint64_t *seed, double reach)
                      uniform(seed, -reach, reach)};
 }
 
-/* Vertices anywhere: faces intersect, and polygons are not planar. */
+/* Makes a mesh with vertices at random positions, so that faces intersect and polygons are not
+ * planar. */
 static he_mesh *tangle(uint64_t *seed)
 {
     static const char *const shapes[] = {"icosphere", "cube", "dodecahedron", "grid"};
@@ -62,7 +62,7 @@ static he_mesh *tangle(uint64_t *seed)
     return m;
 }
 
-/* Checks that the members of a hit are consistent. */
+/* Requires that the members of a hit are consistent with each other. */
 static void check_hit(const he_mesh *m, const he_hit *hit)
 {
     he_vec3 sum = {0, 0, 0};
@@ -85,7 +85,8 @@ static void check_hit(const he_mesh *m, const he_hit *hit)
 
 /* --- rays --- */
 
-/* Moeller and Trumbore 1997: another method than the tree's, less careful at edges. */
+/* Returns the distance of a ray's hit by the method of Moeller and Trumbore (1997), which is
+ * another one than the tree's and less careful at edges. */
 static double ray_triangle(he_vec3 o, he_vec3 d, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     he_vec3 u = he_vec3_sub(b, a), v = he_vec3_sub(c, a), p = he_vec3_cross(d, v);
@@ -158,7 +159,7 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
     he_mesh *m = query_shape("cube", 2, 0, 0, 0);
     he_bvh *tree = tree_of(m);
     for (int sign = -1; sign <= 1; sign += 2) {
-        /* Through the middle of an edge, then through a corner. */
+        /* The rays go through the middle of an edge, then through a corner. */
         he_vec3 to[2] = {{sign, 1, 0}, {sign, 1, 1}};
         for (int i = 0; i < 2; i++) {
             he_vec3 from = he_vec3_scale(to[i], 3), back = he_vec3_scale(to[i], -1);
@@ -175,10 +176,11 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
             assert_int_equal(hit.face, least);
         }
     }
-    /* From the surface itself. */
+    /* The ray begins on the surface itself. */
     he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 0);
-    /* Exactly in the plane of a face, which it does not hit; the faces beside it are hit. */
+    /* The ray runs exactly in the plane of a face, which it must not hit; it must hit the face
+     * beside it. */
     hit = cast(tree, m, (he_vec3){-5, 0.25, 1}, (he_vec3){1, 0, 0}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 4);
     he_bvh_free(tree);
@@ -226,7 +228,8 @@ static void rays_from_far_out_along_an_axis_are_exact(void **state)
 
 /* --- nearest points --- */
 
-/* Samples the triangle: never nearer than the right result, and hardly farther. */
+/* Returns the distance of the nearest of many points in the triangle: it is never less than the
+ * exact distance, and hardly more. */
 static double sampled(he_vec3 p, he_vec3 a, he_vec3 b, he_vec3 c)
 {
     enum { STEPS = 40 };
@@ -271,7 +274,8 @@ static void the_nearest_point_is_that_of_all_triangles(void **state)
     }
 }
 
-/* Is p nearer to a corner of the triangles below a node than the bounds of node or disc allow? */
+/* Requires that p is not nearer to any corner of the triangles below a node than the bounds of the
+ * node's box and disc allow. */
 static void check_bounds(const he_bvh *tree, const he_mesh *m, uint32_t at, he_vec3 p)
 {
     const he_box_node *node = &tree->nodes[at];
@@ -310,7 +314,8 @@ static void boxes_and_discs_hold_what_is_below_them(void **state)
                 static const double reaches[] = {0.5, 2, 1e3, 1e9};
                 check_bounds(tree, m, at, random_point(&seed, reaches[i]));
             }
-            /* Along the normal and across it, where the bounds are tight. */
+            /* The points are on the normal of the disc and across it, where the bounds are
+             * tight. */
             const he_bvh_disc *d = &tree->discs[at];
             he_vec3 c = {d->center[0], d->center[1], d->center[2]},
                     n = {d->normal[0], d->normal[1], d->normal[2]}, x = random_point(&seed, 1);
@@ -363,7 +368,8 @@ static void faces_without_area_are_the_segments_they_look_like(void **state)
     he_mesh_free(m);
 }
 
-/* Only faces can be hit, so only they determine the scale. */
+/* A vertex without faces cannot be hit, so however far away it is, it must not determine the scale
+ * of the tree. */
 static void a_far_vertex_does_not_hide_faces(void **state)
 {
     (void)state;
@@ -385,7 +391,7 @@ static void a_far_vertex_does_not_hide_faces(void **state)
     }
 }
 
-/* bvh.h says up to which ratio of sizes. */
+/* bvh.h says up to which ratio of distances a far face leaves near ones findable. */
 static void a_far_face_does_not_hide_near_ones(void **state)
 {
     (void)state;
@@ -411,7 +417,7 @@ static void a_far_face_does_not_hide_near_ones(void **state)
 static void a_tree_of_triangles_in_one_place_has_a_budget(void **state)
 {
     (void)state;
-    /* All centres at one place: there is nothing to split by. */
+    /* All triangles have their centre at one place, so there is nothing by which to divide them. */
     he_mesh *m = query_shape("grid", 40, 40, 1, 1);
     memset(m->c.position, 0, he_mesh_issued(m, HE_VERTEX) * sizeof *m->c.position);
     he_bvh *tree = tree_of(m);
@@ -471,7 +477,8 @@ static void hostile_coordinates_give_finite_hits(void **state)
 static void orientation_is_exact_where_doubles_round(void **state)
 {
     (void)state;
-    /* Points of a plane that doubles represent exactly, moved by one unit in the last place. */
+    /* Three points lie in a plane that doubles represent exactly; the fourth is moved out of it by
+     * one unit in the last place. */
     uint64_t seed = 41;
     for (int i = 0; i < 2000; i++) {
         double base = ldexp(1, (int)(query_random(&seed) % 30));
@@ -503,7 +510,7 @@ static void triangles_meet_where_they_should_not(void **state)
     (void)state;
     static const struct {
         const char *what;
-        he_vec3 b[3]; /* against (0,0,0) (2,0,0) (0,2,0) */
+        he_vec3 b[3]; /* tried with the triangle (0,0,0) (2,0,0) (0,2,0) */
         bool meet;
     } rows[] = {
         {"far away", {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}}, false},

@@ -1,4 +1,4 @@
-/* Corner normals, cotangents and curvature, compared with closed forms. */
+/* Corner normals, cotangent weights and curvature are compared with closed forms. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -53,11 +53,12 @@ static void corner_normals_of_a_cube_follow_the_crease(void **state)
     he_mesh_free(m);
 }
 
-/* A cube with a slanted top: of the three faces at a vertex only two are close enough. */
+/* A crease between two faces must separate their corner normals at a vertex, and not those of the
+ * other faces there. */
 static void a_crease_parts_only_the_faces_across_it(void **state)
 {
     (void)state;
-    /* Three faces around vertex 0; the edge 0-3 is folded sharply, the other two hardly. */
+    /* Three faces meet at vertex 0; the edge 0-3 is folded sharply, the other two edges hardly. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 0.5, 0}, {0.2, 1, 0.02}, {-0.3, 0, 1}};
     memcpy(m->c.position, places, sizeof places);
@@ -108,7 +109,7 @@ static void corner_normals_alone_are_those_of_the_whole(void **state)
 static void a_degenerate_face_parts_no_others(void **state)
 {
     (void)state;
-    /* In a plane: a sliver 0-2-3 without area between two triangles. */
+    /* The three triangles lie in a plane; the one between the other two, 0-2-3, has no area. */
     he_mesh *m = fixture_mesh("012,023,034");
     const he_vec3 places[] = {{0, 0, 0}, {1, -1, 0}, {1, 1, 0}, {2, 2, 0}, {-1, 1, 0}};
     memcpy(m->c.position, places, sizeof places);
@@ -156,7 +157,7 @@ static void cotangents_of_a_square_are_those_of_its_triangles(void **state)
     he_mesh *m = query_shape("cube", 3, 0, 0, 0);
     double *weights = cotangents(m);
     for (uint32_t e = 0; e < 12; e++) {
-        assert_close(weights[e], 1, 1e-14); /* 45 degrees on both sides */
+        assert_close(weights[e], 1, 1e-14); /* the opposite angles are 45 degrees */
     }
     free(weights);
     he_mesh_free(m);
@@ -211,7 +212,7 @@ static void a_sphere_turned_inside_out_bends_the_other_way(void **state)
     (void)state;
     he_mesh *m = query_shape("icosphere", 2, 1, 0, 0);
     for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
-        m->c.position[v] = he_vec3_scale(m->c.position[v], -1); /* a mirror image */
+        m->c.position[v] = he_vec3_scale(m->c.position[v], -1); /* mirrors the mesh */
     }
     he_curvature *c = curvatures(m);
     for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
@@ -241,7 +242,7 @@ static void planes_do_not_bend(void **state)
     he_mesh_free(m);
 }
 
-/* Holds for any faces and positions, with bow-ties and reflex corners. */
+/* This holds for any faces and positions, even with bow-ties and reflex corners. */
 static void angle_defects_sum_to_the_euler_number(void **state)
 {
     (void)state;
@@ -286,7 +287,7 @@ static void an_element_alone_has_the_value_it_has_among_all(void **state)
         double *weights = cotangents(m), weight[2];
         uint32_t vertices = he_mesh_vertices(m), edges = he_mesh_edges(m);
         for (uint32_t v = 0; v < vertices; v++) {
-            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated element is answered twice */
+            uint32_t list[3] = {v, vertices - 1, v}; /* a repeated element must be answered twice */
             assert_int_equal(he_curvatures(m, list, 3, UINT64_MAX, NULL, one, NULL), HE_OK);
             assert_memory_equal(&one[0], &c[v], sizeof one[0]);
             assert_memory_equal(&one[1], &c[vertices - 1], sizeof one[0]);

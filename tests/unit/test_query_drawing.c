@@ -1,4 +1,4 @@
-/* The arrays for drawing, compared with the polygons from which they are made. */
+/* The arrays for drawing are compared with the polygons from which they are made. */
 #include "query_specimens.h"
 
 #include "draw/drawing.h"
@@ -54,7 +54,7 @@ static he_vec3 area_vector(const he_mesh *m, const row *r)
     return he_vec3_scale(he_vec3_cross(he_vec3_sub(b, a), he_vec3_sub(c, a)), 0.5);
 }
 
-/* Is from -> to a side of the face? Decided by walking around the face. */
+/* Returns whether the face has a side from -> to, decided by walking around the face. */
 static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
 {
     uint32_t first = m->c.face_halfedge[face], h = first;
@@ -67,8 +67,9 @@ static bool is_side(const he_mesh *m, uint32_t face, uint32_t from, uint32_t to)
     return false;
 }
 
-/* The triangles of one face: two fewer than its corners, each side of the polygon marked once and
- * in its direction, each diagonal unmarked and used once in either direction. */
+/* Checks the triangles of one face: there must be two fewer than its corners; each side of the
+ * polygon must be marked once and in its direction; each diagonal must be unmarked and used once in
+ * either direction. */
 static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t count)
 {
     uint32_t degree = he_face_degree(m, (he_face){face}), marked = 0;
@@ -90,8 +91,9 @@ static void check_face(const he_mesh *m, uint32_t face, const row *r, uint32_t c
     assert_int_equal(marked, degree);
 }
 
-/* What must hold for a face's triangles besides their sides: their area vectors add up to the
- * face's; and if it is planar and does not cross itself, their areas do, too. */
+/* What must hold for the triangles of a face. OUTLINED: their sides are right. SUMMED: their area
+ * vectors also add up to that of the face. COVERED: their areas do, too, as in a planar face that
+ * does not cross itself. */
 typedef enum promise { OUTLINED, SUMMED, COVERED } promise;
 
 static void check_drawing(const he_mesh *m, promise promised)
@@ -220,7 +222,7 @@ static void test_shapes_are_covered(void **state)
         {"cone", 9, 1, 2, 1},     {"uv_sphere", 12, 9, 1, 0}, {"grid", 5, 4, 2, 1},
         {"disk", 9, 1, 0, 0},     {"polygon", 100, 1, 0, 0}};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        /* The quadrilaterals of a torus and a sphere are planar. */
+        /* The quadrilaterals of a torus and of a sphere are planar. */
         he_mesh *m =
             query_shape(shapes[i].name, shapes[i].a, shapes[i].b, shapes[i].c, shapes[i].d);
         check_drawing(m, COVERED);
@@ -236,8 +238,8 @@ typedef struct polygon {
     uint32_t n;
 } polygon;
 
-/* One face in a slanted plane, starting `turn` corners later, far from the origin or small if
- * requested. */
+/* Makes one face in a slanted plane, of which the corner `turn` is the first; `size` and `away`
+ * make it small, or put it far from the origin. */
 static he_mesh *face_of(const polygon *p, uint32_t turn, double size, double away)
 {
     he_soup soup;
@@ -286,8 +288,7 @@ static void test_concave_faces_from_every_corner(void **state)
     }
 }
 
-/* Star-shaped around the origin, so that it never crosses itself, with the given number of
- * corners. */
+/* The polygons are star-shaped around the origin, so that they never cross themselves. */
 static void test_random_polygons(void **state)
 {
     (void)state;
@@ -309,7 +310,7 @@ static void test_random_polygons(void **state)
     }
 }
 
-/* Faces without a plane, and a pentagram: still the right number of triangles. */
+/* The faces are not planar, and one is a pentagram: the number of triangles must still be right. */
 static void test_faces_without_a_plane(void **state)
 {
     (void)state;
@@ -347,7 +348,8 @@ static void test_a_comb_of_many_teeth_is_covered_once(void **state)
     double whole = he_face_area(m, (he_face){0});
     assert_true(fabs(area - whole) < 1e-9 * whole);
     free(all.row);
-    /* The time for a single face depends on the number of its corners, not on the square. */
+    /* The time for a single face must depend on the number of its corners, and not on the square of
+     * this number. */
     const uint32_t face = 0;
     he_frame frame = he_frame_of(m);
     he_drawing d;
@@ -379,7 +381,7 @@ static void test_moving_a_vertex_changes_only_faces_at_it(void **state)
     he_mesh *m = query_shape("grid", 6, 6, 1, 1);
     he_frame before, after;
     rows old = draw(m, &before);
-    uint32_t moved = 24; /* the middle */
+    uint32_t moved = 24; /* the middle of the grid */
     assert_int_equal(he_vertex_degree(m, (he_vertex){moved}), 4);
     m->c.position[moved].x += 0.1;
     m->c.position[moved].y += 0.12;
@@ -424,7 +426,8 @@ static void test_frames(void **state)
         assert_true(he_vec3_is_finite(frame.origin));
         he_mesh_free(m);
     }
-    /* The mesh is visible: it fills at least an eighth of the ball's width. */
+    /* The arrays must not lose the mesh in too large a frame: it fills at least an eighth of the
+     * width of the sphere around it. */
     he_mesh *m = query_shape("cube", 3.7, 0, 0, 0);
     he_frame frame = he_frame_of(m);
     assert_true(3.7 * frame.scale >= 0.5);
@@ -456,7 +459,8 @@ static void test_each_allocation_failing(void **state)
     he_mesh_free(m);
 }
 
-/* A single face has the same triangles as among all; long work is announced before it begins. */
+/* A single face must have the same triangles as among all faces; that it takes long must be
+ * announced before the work begins. */
 static void test_one_face_alone(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Lengths, areas, normals and angles, compared with closed forms and other formulas. */
+/* Lengths, areas, normals and angles are compared with closed forms and with other formulas. */
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
@@ -47,7 +47,8 @@ static void test_geometry_of_a_cube(void **state)
     for (uint32_t f = 0; f < 6; f++) {
         he_face_shape shape = he_face_measure(m, (he_face){f});
         assert_true(shape.area == 4 && shape.degree == 4 && !shape.degenerate);
-        /* The normal is parallel to the centroid. */
+        /* In a regular solid around the origin, the normal of a face is parallel to its
+         * centroid. */
         assert_vector(shape.normal, shape.centroid.x, shape.centroid.y, shape.centroid.z);
         he_vec3 normal, centroid = he_face_centroid(m, (he_face){f});
         assert_true(he_face_normal(m, (he_face){f}, &normal));
@@ -85,7 +86,7 @@ static void test_geometry_of_a_cube(void **state)
 static void test_geometry_weights_differ(void **state)
 {
     (void)state;
-    /* A corner of a box of 1 x 2 x 3: areas 6, 3, 2 meet at right angles. */
+    /* At the corner of a box of 1 x 2 x 3, faces with the areas 6, 3 and 2 meet at right angles. */
     he_mesh *m = cube();
     for (uint32_t v = 0; v < 8; v++) {
         he_vec3 *p = &m->c.position[v];
@@ -97,8 +98,8 @@ static void test_geometry_weights_differ(void **state)
     assert_true(he_vertex_normal(m, (he_vertex){6}, HE_WEIGHT_ANGLE, &normal));
     assert_vector(normal, 1 / sqrt(3), 1 / sqrt(3), 1 / sqrt(3));
     he_mesh_free(m);
-    /* Weighted by angle, dividing a face at the corner makes no difference; with equal weights it
-     * does. */
+    /* If the normals of faces are weighted by angle, dividing a face at the vertex must make no
+     * difference; with equal weights it does. */
     m = fixture_mesh("0123,034,045,051");
     place(m, 0, 0, 0, 0);
     place(m, 1, 0, 1, 0);
@@ -122,13 +123,14 @@ static void test_geometry_dihedral_has_a_sign(void **state)
     place(m, 1, 1, 0, 0);
     place(m, 2, 0, 1, 0);
     for (int i = -8; i <= 8; i++) {
-        /* Face 103 is folded down by the angle for a ridge, up for a valley. */
+        /* Face 103 is folded down by the angle, which makes a ridge, or up, which makes a
+         * valley. */
         double wanted = i * PI / 9;
         place(m, 3, 0, -cos(wanted), -sin(wanted));
         assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
         assert_near(angle, wanted);
     }
-    place(m, 3, 0, 1, 0); /* folded onto the other face */
+    place(m, 3, 0, 1, 0); /* folds face 103 onto the other face */
     assert_true(he_edge_dihedral(m, (he_edge){edge_between(m, 0, 1)}, &angle));
     assert_near(angle, PI);
     assert_false(he_edge_dihedral(m, (he_edge){edge_between(m, 1, 2)}, &angle));
@@ -165,7 +167,7 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
         he_mesh *m = fixture_mesh(query_specimens[i]);
         assert_dihedrals_agree(m);
         if (m->c.vertices.issued > 2) {
-            m->c.position[1] = m->c.position[2]; /* degenerate faces */
+            m->c.position[1] = m->c.position[2]; /* makes faces degenerate */
         }
         assert_dihedrals_agree(m);
         he_mesh_free(m);
@@ -175,8 +177,8 @@ static void dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one(void **state)
     he_mesh_free(m);
 }
 
-/* Each rim edge of a cone is beside its base of 200,000 corners: measuring the base again for each
- * edge would take 40 billion steps, and the run would not end in time. */
+/* Each edge on the rim of a cone is beside its base of 200,000 corners. If the base were measured
+ * again for each edge, 40 billion steps would be needed, and the run would not end in time. */
 static void dihedrals_measure_a_face_of_many_corners_once(void **state)
 {
     (void)state;
@@ -201,8 +203,8 @@ static void dihedrals_are_refused_where_memory_is_out(void **state)
     he_mesh_free(m);
 }
 
-/* Gauss and Bonnet: the sum of 2 pi minus the angles at each vertex is 2 pi times the Euler
- * number. */
+/* The theorem of Gauss and Bonnet: the sum over all vertices of 2 pi minus the angles there is 2 pi
+ * times the Euler number. */
 static void test_geometry_angle_defects_sum_to_euler(void **state)
 {
     (void)state;
@@ -268,8 +270,8 @@ static void test_geometry_degenerate_faces(void **state)
     he_mesh_free(m);
 }
 
-/* Scaling by powers of two changes no bit of a normal, and no bit of a length or area that does not
- * overflow. */
+/* Scaling by a power of two must change no bit of a normal, and no bit of a length or area that
+ * does not overflow. */
 static void test_geometry_does_not_depend_on_scale(void **state)
 {
     (void)state;
@@ -376,8 +378,8 @@ static void test_geometry_of_extreme_coordinates_is_finite(void **state)
     }
 }
 
-/* Functions for the whole mesh give the results of those for one element; the area vector is
- * Newell's other sum. */
+/* Functions for the whole mesh must give the results of those for one element; the area vector is
+ * compared with the other form of Newell's sum. */
 static void test_geometry_whole_and_single_agree(void **state)
 {
     (void)state;
@@ -434,7 +436,8 @@ static void test_geometry_whole_and_single_agree(void **state)
     }
 }
 
-/* The volume from tetrahedra to a point far away, and its sign when the mesh is inside out. */
+/* The volume is compared with a sum of tetrahedra with a point far away; it must be negative if the
+ * mesh is inside out. */
 static void test_geometry_volume(void **state)
 {
     (void)state;
@@ -467,7 +470,7 @@ static void test_geometry_volume(void **state)
     he_measures measures;
     assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
     assert_true(measures.volume == -8);
-    /* Far from the origin it is still a cube. */
+    /* A cube far from the origin must have the volume of a cube. */
     for (uint32_t v = 0; v < 8; v++) {
         m->c.position[v].x = 1e9 - m->c.position[v].x;
     }
@@ -496,7 +499,7 @@ static void assert_measures(const he_mesh *m, double area, double volume)
     }
 }
 
-/* Coordinates of the far vertices in the tests below. */
+/* The coordinates of the far vertices in the tests below. */
 static const double far_away[] = {1e60, 1e81, 1e108, 1e160, -1e200, 1e300, DBL_MAX};
 enum { DISTANCES = sizeof far_away / sizeof *far_away };
 
@@ -515,7 +518,8 @@ static void a_far_vertex_does_not_change_the_area(void **state)
     }
 }
 
-/* A component that is far away but small has no area; a near one keeps its own. */
+/* A component that is far away and small has no area in the result; a near component must keep its
+ * own area. */
 static void a_far_face_without_size_does_not_change_area_and_volume(void **state)
 {
     (void)state;
@@ -536,7 +540,7 @@ static void a_far_face_without_size_does_not_change_area_and_volume(void **state
     }
 }
 
-/* A right tetrahedron with legs `leg` has the volume leg^3 / 6, whatever its size. */
+/* A right tetrahedron with legs of length `leg` has the volume leg^3 / 6, whatever its size. */
 static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state)
 {
     (void)state;
@@ -563,7 +567,8 @@ static void sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches(void **state
     }
 }
 
-/* The distance to the origin costs no digits, even along an axis that is otherwise unused. */
+/* The distance of a face from the origin must cost no digits of its area, even along an axis in
+ * which the face has no extent. */
 static void a_small_face_far_from_the_origin_has_its_area(void **state)
 {
     (void)state;
@@ -649,7 +654,8 @@ static void test_geometry_ends_on_broken_links(void **state)
         he_mesh_free(m);
     }
     assert_true(corrupt > 1000);
-    /* A face whose links lead into a loop beside it, and a vertex whose turn never ends. */
+    /* The links of one face lead into a loop beside it, and the turn around one vertex never
+     * ends. */
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     m->c.next[4] = 2;
     m->c.prev[8] = 8 ^ 1;

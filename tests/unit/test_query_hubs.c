@@ -1,5 +1,6 @@
-/* Triangles that meet where very many have a corner: the same pairs as by testing all pairs, in
- * steps that grow with the number of triangles and not with its square. */
+/* Very many triangles meet at one position, a hub. The search for intersections must find the same
+ * pairs as testing all pairs, in steps that grow with the number of triangles and not with its
+ * square. */
 #include "query_specimens.h"
 
 #include "geometry/meet.h"
@@ -50,7 +51,8 @@ static he_vec3 on_grid(uint64_t *seed)
     return he_vec3_sub(p, (he_vec3){3, 3, 3});
 }
 
-/* A fan of n triangles: a disc, or a cone if z is not 0; wound `turns` times. */
+/* Makes a fan of n triangles around `hub`: a disc, or a cone if z is not 0, which goes around
+ * `turns` times. */
 static void fan(specimen *s, uint32_t n, he_vec3 hub, double z, double turns, double radius)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -61,7 +63,8 @@ static void fan(specimen *s, uint32_t n, he_vec3 hub, double z, double turns, do
     }
 }
 
-/* Triangles to points of a small grid: equal directions, folds, equal triangles, no area. */
+/* Makes triangles from `hub` to points of a small grid, so that equal directions, folds, equal
+ * triangles and triangles without area occur. */
 static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_flat)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -74,7 +77,7 @@ static void burst(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub, bool is_
     }
 }
 
-/* Triangles that share an edge, some of them twice. */
+/* Makes triangles that share an edge at `hub`, some of them twice. */
 static void book(specimen *s, uint64_t *seed, uint32_t n, he_vec3 hub)
 {
     for (uint32_t i = 0; i < n; i++) {
@@ -124,7 +127,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
         book(s, seed, n, aside);
         fan(s, n, aside, 0.5, 2, 1);
         break;
-    default: /* hubs beside ordinary triangles */
+    default: /* hubs together with ordinary triangles */
         fan(s, n, zero, 0.1, 1, 2);
         burst(s, seed, 40, zero, false);
         litter(s, seed, 60);
@@ -132,7 +135,7 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     }
 }
 
-/* Rotated, so that no plane is parallel to an axis, and moved. */
+/* Rotates the triangles, so that no plane is parallel to an axis, and moves them. */
 static void turn(specimen *s, uint64_t *seed)
 {
     he_vec3 x = {uniform(seed, -1, 1), uniform(seed, -1, 1), 0.3}, y = {0.2, 0.9, -0.7};
@@ -239,7 +242,7 @@ static searched search_for(const he_mesh *m, uint64_t most)
     return out;
 }
 
-/* One vertex with n triangles to a rim. */
+/* Makes a mesh of one vertex with n triangles to a rim. */
 static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
 {
     he_soup soup;
@@ -260,8 +263,8 @@ static he_mesh *fan_mesh(uint32_t n, double z, bool is_closed, bool is_tilted)
     return m;
 }
 
-/* Two hubs that share a rim take more steps, but fewer than all pairs: boxes around one fan overlap
- * those of the other. */
+/* Two hubs that share a rim take more steps, because the boxes around one fan overlap those around
+ * the other, but still fewer than all pairs would. */
 static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
 {
     (void)state;
@@ -282,7 +285,8 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
                          (unsigned long long)found.steps);
             }
             last = found.steps;
-            /* Charged exactly, on every thread, and refused one step earlier. */
+            /* The steps must be counted exactly, on every thread: a limit of this number suffices,
+             * and one step less is refused. */
             assert_int_equal(search_for(m, found.steps).steps, found.steps);
             assert_true(search_for(m, found.steps).complete);
             assert_false(search_for(m, found.steps - 1).complete);
@@ -291,7 +295,8 @@ static void a_hub_is_searched_in_steps_that_grow_with_its_spokes(void **state)
     }
 }
 
-/* All triangles of one polygon have its first corner. */
+/* All triangles of one polygon have its first corner, so they meet there and must not be tried with
+ * each other. */
 static void a_wide_polygon_is_not_tried_with_itself(void **state)
 {
     (void)state;
@@ -347,7 +352,7 @@ static bool ask(void *context, const char *phase, double done)
     return p->calls++ < p->most;
 }
 
-/* However many pairs there are, a cancelled search ends within a known number of steps. */
+/* However many pairs there are, a cancelled search must end within a known number of steps. */
 static void a_search_at_a_hub_ends_when_it_is_given_up(void **state)
 {
     (void)state;
@@ -392,7 +397,8 @@ static void starved_hubs_say_so(void **state)
         }
         bool done = fixture_memory.calls < n;
         fixture_memory_back();
-        /* A block that is only to be shrunk is kept if it cannot be moved. */
+        /* If a block that is only to be shrunk cannot be moved, it is kept, so the search may
+         * succeed. */
         assert_true(status == HE_NO_MEMORY || (status == HE_OK && complete));
         assert_int_equal(pairs.count, 0);
         he_ids_clear(&pairs);

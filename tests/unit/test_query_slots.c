@@ -1,4 +1,5 @@
-/* Runs of slots for faces of all sizes, as faces are added and removed. */
+/* Slots for the triangles of faces, which are kept together for each face, while faces of all sizes
+ * are added and removed. */
 #include "query_specimens.h"
 
 #include "draw/slots.h"
@@ -13,7 +14,8 @@
 
 enum { VERTICES = 3000, FACES = 60 };
 
-/* Isolated vertices on a circle, between which faces take intervals. */
+/* Isolated vertices on a circle; faces with different numbers of corners are made from intervals of
+ * them. */
 typedef struct world {
     he_mesh *m;
     he_delta *delta;
@@ -96,7 +98,8 @@ static he_status advance(world *w, uint64_t most)
     return status;
 }
 
-/* Each live face has one run of its length, and all other slots are dead. */
+/* Requires that each live face has one run of slots of its length, and that no other slot is in
+ * use. */
 static void check_slots(const world *w)
 {
     const he_slots *s = w->slots;
@@ -138,7 +141,8 @@ static uint32_t owner_of(const uint32_t *owner, uint32_t slot)
     return (owner[slot] & HE_SLOT_DEAD) != 0 ? HE_NONE : owner[slot];
 }
 
-/* Every difference is listed; if a slot of a face is listed, all its slots are. */
+/* Requires that every difference is in the list of changes, and that all slots of a face are listed
+ * if one is. */
 static void check_changes(const world *w, const uint32_t *before, uint32_t count)
 {
     he_ids vertices = {0}, slots = {0};
@@ -221,7 +225,8 @@ static void test_too_many_steps_change_nothing(void **state)
     close_world(&w);
 }
 
-/* A vertex that becomes live at the origin has no record of its position. */
+/* A vertex that becomes live at the origin writes no position, because it has this one already; it
+ * must still be noticed that it lies outside the frame of the coordinates. */
 static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
 {
     (void)state;
@@ -245,7 +250,7 @@ static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
     he_mesh_free(m);
 }
 
-/* The oldest changes are forgotten first, and the memory for them does not grow. */
+/* The oldest changes must be forgotten first, and the memory for changes must not grow. */
 static void test_old_changes_are_forgotten(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Components, holes and handles, compared with counting and with relabelling instead of
+/* Components, holes and handles are compared with counting, and with relabelling in place of
  * union-find. */
 #include "query_specimens.h"
 
@@ -21,7 +21,8 @@ static bool has_corner(const he_mesh *m, uint32_t f, uint32_t v)
 
 enum { SMALL = 64 };
 
-/* Gives every face the lowest label among the faces it touches until nothing changes. */
+/* Gives every face the lowest label among the faces that it touches, again and again until nothing
+ * changes. */
 static void label_faces(const he_mesh *m, he_connection by, uint32_t *label)
 {
     uint32_t n = he_mesh_issued(m, HE_FACE);
@@ -175,7 +176,8 @@ static void test_topology_agrees_with_counting(void **state)
     }
 }
 
-/* Random squares of a grid: holes, bow-ties, islands that touch at corners. */
+/* The meshes are random squares of a grid, with holes, bow-ties, and islands that touch at
+ * corners. */
 static void test_topology_agrees_on_random_holes(void **state)
 {
     (void)state;
@@ -208,7 +210,7 @@ static void test_topology_by_hand(void **state)
     static const struct {
         const char *faces;
         uint32_t loops, isolated, bowties, components, by_edge;
-        int euler, genus; /* -1: none */
+        int euler, genus; /* -1: the mesh has none */
     } rows[] = {
         {"", 0, 0, 0, 0, 0, 0, 0},
         {"012", 1, 0, 0, 1, 1, 1, 0},
@@ -223,7 +225,7 @@ static void test_topology_by_hand(void **state)
         he_mesh *m = fixture_mesh(rows[i].faces);
         he_topology t;
         assert_int_equal(he_topology_find(m, &t, NULL), HE_OK);
-        if (rows[i].bowties == 0) { /* the order of fans at a bow-tie decides the loops there */
+        if (rows[i].bowties == 0) { /* at a bow-tie, the order of the fans decides what a loop is */
             assert_int_equal(t.boundary_loops, rows[i].loops);
         }
         assert_int_equal(t.isolated_vertices, rows[i].isolated);

@@ -1,4 +1,5 @@
-/* Walks, compared with distances found in another way (Floyd and Warshall) and by hand. */
+/* Walks over the mesh are compared with distances by the algorithm of Floyd and Warshall, and with
+ * results found by hand. */
 #include "query_specimens.h"
 
 #include "geometry/geometry.h"
@@ -19,7 +20,7 @@ static void assert_ids(const he_ids *ids, const char *wanted)
 
 enum { SMALL = 100 };
 
-/* Distances between all vertices (or faces), INFINITY if not connected. */
+/* The distances between all vertices (or all faces), INFINITY if not connected. */
 typedef struct distances {
     double d[SMALL][SMALL];
     uint32_t n;
@@ -82,7 +83,7 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
             for (uint32_t i = 0; i < t.n; i++) {
                 assert_int_equal(seen[i], t.d[from][i] <= bound && !isinf(t.d[from][i]));
             }
-            /* A limit gives the beginning of the same answer. */
+            /* With a limit, a walk must give the beginning of the same answer. */
             for (size_t limit = 1; limit <= ids.count + 1; limit++) {
                 he_ids some = {0}, at = {0};
                 assert_int_equal(
@@ -180,7 +181,8 @@ static void test_traverse_path(void **state)
     he_mesh *m = fixture_mesh("012,023");
     he_ids ids = {0};
     he_halfedge start = {0};
-    /* Half-edges: 0 = 0>1, 2 = 1>2, 4 = 2>0; the second face has 5 = 0>2, 6 = 2>3, 8 = 3>0. */
+    /* The first face has the half-edges 0 (0>1), 2 (1>2) and 4 (2>0); the second has 5 (0>2), 6
+     * (2>3) and 8 (3>0). */
     assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 2 4 0 2");
@@ -202,13 +204,15 @@ static void test_traverse_path(void **state)
                      HE_OK);
     assert_ids(&ids, "0 2 4");
     ids.count = 0;
-    /* From 0 across the diagonal 5, to 9 = 0>3 of the hole. */
+    /* The path turns at vertex 0 across the diagonal 5 to half-edge 9 (0>3), which belongs to the
+     * hole. */
     assert_int_equal(
         he_traverse_path(m, start, turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
         HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
-    /* It never meets a hole: ends when the list of steps leads back. */
+    /* The path never meets a hole, so it must end when the list of steps leads back to a place
+     * where it began. */
     assert_int_equal(
         he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
         HE_OK);
@@ -218,7 +222,7 @@ static void test_traverse_path(void **state)
                                       0, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
-    /* The limit is in steps, and earlier contents of the list stay. */
+    /* The limit is a number of steps, and what the list contained before must stay. */
     assert_int_equal(he_traverse_path(m, start, next, 1, 3, HE_UNTIL_COUNT, 3, NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1 0 2 4 0");
@@ -244,7 +248,7 @@ static void test_traverse_loop(void **state)
     assert_int_equal(he_traverse_loop(m, (he_halfedge){2}, &ids, NULL), HE_OK);
     assert_ids(&ids, "2 4 0");
     ids.count = 0;
-    /* The hole runs in the opposite direction. */
+    /* The loop of the hole runs in the opposite direction. */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){1}, &ids, NULL), HE_OK);
     assert_ids(&ids, "1 9 7 3");
     assert_int_equal(he_traverse_loop(m, (he_halfedge){99}, &ids, NULL), HE_NO_SUCH_ELEMENT);
@@ -295,7 +299,7 @@ static void expect_chain(const he_mesh *m, bool ring, uint32_t edge, size_t coun
 static void test_traverse_edge_loops_and_rings(void **state)
 {
     (void)state;
-    /* On a torus of quads everything closes. */
+    /* On a torus of quads every loop and every ring must close. */
     he_mesh *m = query_shape("torus", 5, 4, 2, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
         bool tube = m->c.origin[2 * e] / 4 == m->c.origin[2 * e + 1] / 4;
@@ -303,7 +307,7 @@ static void test_traverse_edge_loops_and_rings(void **state)
         expect_chain(m, true, e, tube ? 5 : 4, true);
     }
     he_mesh_free(m);
-    /* On a grid a loop runs from side to side, and a ring has one edge more than there are
+    /* On a grid a loop runs from side to side, and a ring has one edge more than it crosses
      * cells. */
     m = query_shape("grid", 4, 3, 1, 1);
     for (uint32_t e = 0; e < he_mesh_edges(m); e++) {
@@ -314,7 +318,8 @@ static void test_traverse_edge_loops_and_rings(void **state)
     }
     he_ids ids = {0};
     bool closed;
-    /* In order from the end behind half-edge 2e: there are 5 vertices per row. */
+    /* The edges are listed in order, from the end that lies beyond the origin of half-edge 2e; the
+     * grid has 5 vertices in each row. */
     uint32_t e = edge_between(m, 6, 7);
     uint32_t a = edge_between(m, 5, 6), c = edge_between(m, 7, 8), d = edge_between(m, 8, 9);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){e}, &ids, &closed, NULL), HE_OK);
@@ -327,21 +332,23 @@ static void test_traverse_edge_loops_and_rings(void **state)
     assert_ids(&ids, wanted);
     he_ids_clear(&ids);
     he_mesh_free(m);
-    /* On a cube no vertex has four edges, and each ring has four edges. */
+    /* On a cube no vertex has four edges, so a loop is one edge; each ring has four edges. */
     m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     for (e = 0; e < 12; e++) {
         expect_chain(m, false, e, 1, false);
         expect_chain(m, true, e, 4, true);
     }
     he_mesh_free(m);
-    /* Octahedron: the loops are its three equators; triangles stop a ring. */
+    /* On an octahedron the loops are its three equators; a ring ends at once, because the faces are
+     * triangles. */
     m = query_shape("octahedron", 1, 0, 0, 0);
     for (e = 0; e < 12; e++) {
         expect_chain(m, false, e, 4, true);
         expect_chain(m, true, e, 1, false);
     }
     he_mesh_free(m);
-    /* A bow-tie of two quads has a vertex of four edges, which is on the boundary. */
+    /* The vertex between the two quads of a bow-tie has four edges, but is on the boundary, so a
+     * loop ends there. */
     m = fixture_mesh("0123,0456");
     expect_chain(m, false, edge_between(m, 0, 1), 1, false);
     expect_chain(m, true, edge_between(m, 0, 1), 2, false);
@@ -382,7 +389,7 @@ static void test_traverse_refuses(void **state)
     he_mesh_free(m);
 }
 
-/* Sums that overflow a double are replaced by finite ones. */
+/* Sums of lengths that overflow a double must be replaced by finite ones. */
 static void test_traverse_shortest_path_of_huge_lengths(void **state)
 {
     (void)state;
@@ -399,7 +406,7 @@ static void test_traverse_shortest_path_of_huge_lengths(void **state)
     he_mesh_free(m);
 }
 
-/* Runs every walk on a mesh; only that they end matters. */
+/* Runs every walk on a mesh with broken links; it only matters that each one ends. */
 static void walk_all(const he_mesh *m, he_status *worst)
 {
     static const he_step steps[] = {HE_STEP_NEXT, HE_STEP_TWIN, HE_STEP_PREV};
@@ -440,7 +447,7 @@ static void test_traverse_ends_on_broken_links(void **state)
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
     he_ids ids = {0};
     bool closed;
-    m->c.next[m->c.next[0]] = m->c.next[0]; /* a loop that never returns to 0 */
+    m->c.next[m->c.next[0]] = m->c.next[0]; /* a loop that never comes back to 0 */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){0}, &ids, NULL), HE_CORRUPT);
     m->c.next[0] = 1000;
     he_error err = {0};
@@ -518,7 +525,7 @@ static void test_traverse_survives_failing_memory(void **state)
     he_mesh_free(m);
 }
 
-/* The memory of a local walk does not grow with the mesh. */
+/* The memory that a local walk needs must not grow with the mesh. */
 static void test_traverse_costs_what_it_touches(void **state)
 {
     (void)state;

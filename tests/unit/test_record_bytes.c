@@ -1,19 +1,19 @@
-/* Records as bytes (core/journal/record_bytes.h): what was written reads back, from bytes that
- * every later release must read; damaged records are refused with the offset.
+/* Records of the store as bytes (core/journal/record_bytes.h): what was written is read back, from
+ * bytes that every later release must be able to read; damaged records are refused with the offset.
  *
- * `test_record_bytes --write FOLDER` writes the specimens as seeds of fuzz_record. */
+ * `test_record_bytes --write FOLDER` writes the records of this test as seeds of fuzz_record. */
 #include "journal/record_bytes.h"
 
 #include "journal/crc32c.h"
 #include "unit/fixture.h"
 
-/* The chain value with which they are sealed. */
+/* The value of the chain of checksums with which the records of this test are sealed. */
 #define CHAIN UINT64_C(0x0123456789abcdef)
 
 static const unsigned char body[] = {1, 2, 3, 250};
-static char in_parts; /* the journal owns what `stage` points to */
+static char in_parts; /* stands for staged parts, which the journal owns */
 
-/* Each kind, and its bytes in version 1. */
+/* A record of each kind, and its bytes in version 1 of the format. */
 static const struct specimen {
     const char *name;
     st_record record;
@@ -210,7 +210,7 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
         size_t size = frame_of(&specimens[i].record, CHAIN, bytes);
         for (size_t n = 0; n < 9 * size; n++) {
             size_t cut = n < size ? n : size, bit = n - size;
-            unsigned char *exact = malloc(cut + 1); /* the record ends where the block ends */
+            unsigned char *exact = malloc(cut + 1); /* the record fills the block to its end */
             memcpy(exact + 1, bytes, cut);
             if (n >= size) {
                 exact[1 + bit / 8] ^= (unsigned char)(1u << bit % 8);
@@ -227,7 +227,8 @@ static void a_cut_or_a_flipped_bit_is_refused(void **state)
     printf("note: %u damaged records: all refused\n", refused);
 }
 
-/* Damage with a correct checksum: what a reader meets when the checksum does not detect it. */
+/* Changes a byte of a record and corrects the checksum, then reads it: this is what a reader meets
+ * if the checksum does not detect some damage. */
 static he_status read_resealed(const st_record *record, size_t at, unsigned value, he_error *err)
 {
     unsigned char bytes[ROOM];
@@ -268,12 +269,12 @@ static void the_chain_covers_all_that_came_before(void **state)
     uint64_t next = st_frame_seal(first, size, chain);
     assert_true(next == st_frame_next_chain(first, size));
     assert_true(next != chain);
-    /* Chains of two meshes differ after equal records. */
+    /* If two meshes have equal records, their chains of checksums must differ all the same. */
     memcpy(second, first, size);
     assert_true(st_frame_seal(second, size, st_chain_of_origin(origin + 1)) != next);
 }
 
-/* The test values of RFC 3720, B.4, with both implementations. */
+/* The expected values are those of RFC 3720, B.4, for both implementations. */
 static void checksums_are_those_of_the_standard(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Each repair alone; failures, cancelling, and what does not fit. */
+/* Each repair by itself; then failing allocations, cancelling, and soups that cannot be
+ * repaired. */
 #include "repair_fixture.h"
 
 /* --- one by one --- */
@@ -14,31 +15,32 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         unsigned which;
         unsigned v, e, f;
     } rows[] = {
-        /* three faces on an edge; four, of two tetrahedra with a common face */
+        /* three faces on an edge; four on an edge, of two tetrahedra with a common face */
         {"012,103,014", HE_NONMANIFOLD_EDGE, SPLIT, 7, 8, 3},
         {"021,032,013,123,132,124,234,314", HE_NONMANIFOLD_EDGE, SPLIT, 8, 12, 8},
         /* a repeated corner, too few corners, no valid face left */
         {"012,0230", HE_REPEATED_CORNER, DEGENERATE, 4, 5, 2},
         {"012,23", HE_TOO_FEW_CORNERS, DEGENERATE, 4, 3, 1},
         {"011,22", HE_REPEATED_CORNER, DEGENERATE, 3, 0, 0},
-        /* neighbours that clash */
+        /* neighbours whose orientations do not agree */
         {"012,123,032", HE_ORIENTATION, ORIENT, 4, 6, 3},
         {CUBE ",0", HE_TOO_FEW_CORNERS, DEGENERATE, 8, 12, 6},
         {"0321,4567,0154,1562,2376,3047", HE_ORIENTATION, ORIENT, 8, 12, 6},
-        /* closed fans at one vertex: with another closed one, and with an open one */
+        /* a closed fan of faces at a vertex, together with another closed one, and with an
+         * open one */
         {"021,032,013,123,354,365,346,456", HE_CLOSED_FAN, SPLIT, 8, 12, 8},
         {"021,032,013,123,345", HE_CLOSED_FAN, SPLIT, 7, 9, 5},
         /* a face given twice: with equal orientation, and inside a surface */
         {"012,012", HE_ORIENTATION, DUPLICATES, 3, 3, 1},
         {"021,032,013,123,231", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
         {"021,032,013,123,132", HE_NONMANIFOLD_EDGE, DUPLICATES, 4, 6, 4},
-        /* a duplicate beside an edge of three faces, and a duplicate of one of its faces; the wall
-         * between two tetrahedra is no duplicate, though there is one, too */
+        /* a duplicate beside an edge of three faces, and a duplicate of one of these faces; the
+         * wall between two tetrahedra must not count as a duplicate */
         {"021,032,013,123,231,456,547,458", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 11, 14, 7},
         {"012,103,014,012", HE_NONMANIFOLD_EDGE, DUPLICATES | SPLIT, 7, 8, 3},
         /* a Moebius band of five triangles */
         {"012,123,234,340,401", HE_ORIENTATION, ORIENT | SPLIT, 7, 11, 5},
-        /* several at once */
+        /* several defects at once */
         {"012,103,014,11,3345", HE_REPEATED_CORNER, DEGENERATE | SPLIT, 10, 11, 4},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -114,11 +116,11 @@ static void a_moebius_band_is_not_orientable(void **state)
     fixture_soup(&soup, "01,012,123,234,340,401");
     assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), HE_NOT_ORIENTABLE);
     static const uint32_t left[] = {0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4, 0, 4, 0, 1};
-    assert_int_equal(soup.face_count, 5); /* as drop_degenerate left them, not reversed */
+    assert_int_equal(soup.face_count, 5); /* drop_degenerate was done, and nothing reversed */
     assert_int_equal(soup.corner_count, sizeof left / sizeof *left);
     assert_memory_equal(soup.corners, left, sizeof left);
     assert_int_equal(err.kind, HE_FACE);
-    assert_in_range(err.id, 1, 5); /* in the numbering of the input */
+    assert_in_range(err.id, 1, 5); /* a face number of the input */
     assert_int_equal(he_repair_advise(&soup, plan.which, &which, NULL), HE_OK);
     assert_int_equal(which, DEGENERATE | ORIENT | SPLIT);
     he_repaired_clear(&done);
@@ -140,7 +142,7 @@ static void the_larger_part_keeps_its_direction(void **state)
     assert_int_equal(account(&done, HE_REPAIR_ORIENT)->count, 1);
     assert_int_equal(account(&done, HE_REPAIR_ORIENT)->parts, 1);
     assert_int_equal(account(&done, HE_REPAIR_ORIENT)->pairs[0].a, 0);
-    /* reversed with its first corner unchanged */
+    /* the face is reversed, and its first corner stays the first */
     he_halfedge h = he_face_halfedge(mesh, (he_face){0});
     assert_int_equal(he_origin(mesh, h).i, 0);
     assert_int_equal(he_target(mesh, h).i, 3);
@@ -179,7 +181,7 @@ static void small_holes_are_filled(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    /* a cube without its lid, and without two sides that meet at a vertex */
+    /* a cube without its lid and without the two sides at vertex 7 */
     he_mesh *mesh = mend_faces("0321,0154,1265,2376,3047", FILL, &done);
     fixture_counts(mesh, 8, 12, 6);
     assert_int_equal(account(&done, HE_REPAIR_FILL)->count, 1);
@@ -188,7 +190,7 @@ static void small_holes_are_filled(void **state)
     he_mesh_free(mesh);
     he_repaired_clear(&done);
 
-    /* the rim of a single face stays, and so does one longer than allowed */
+    /* the outline of a single face must not be filled, nor a hole that is longer than allowed */
     done = (he_repaired){0};
     mesh = mend_faces("0123", FILL, &done);
     fixture_counts(mesh, 4, 4, 1);

@@ -1,9 +1,9 @@
-/* drop_degenerate: what is kept of faces that repeat a vertex. */
+/* The repair drop_degenerate: what it keeps of faces that repeat a vertex. */
 #include "repair_fixture.h"
 
 #include <math.h>
 
-/* Writes the faces of a soup as "012,230". */
+/* Writes the faces of a soup as text, as in "012,230". */
 static void faces_of(const he_soup *soup, char *text)
 {
     for (size_t f = 0; f < soup->face_count; f++) {
@@ -23,29 +23,29 @@ static void a_face_keeps_what_has_an_area(void **state)
         const char *before, *after;
         unsigned gone, mended;
     } rows[] = {
-        /* a quad that is a triangle, wherever the repeated vertex is */
+        /* a quadrilateral that is a triangle, wherever the repeated vertex is */
         {"0122", "012", 0, 1},
         {"0012", "012", 0, 1},
         {"0120", "012", 0, 1},
         {"00122", "012", 0, 1},
         {"0000123", "0123", 0, 1},
-        /* spikes at the end, at the beginning and around it */
+        /* faces with spikes at the end, at the beginning and around it */
         {"01232", "012", 0, 1},
         {"012343", "0123", 0, 1},
         {"20123", "201", 0, 1},
         {"0123432", "012", 0, 1},
         {"30123", "3012", 0, 1},
         {"3012333", "3012", 0, 1},
-        /* nothing is left, or nothing was there */
+        /* faces of which nothing is left, or which had nothing */
         {"011", "", 1, 0},
         {"0101", "", 1, 0},
         {"01210", "", 1, 0},
         {"0", "", 1, 0},
         {"01", "", 1, 0},
-        /* the loop runs around twice: it has no rim */
+        /* the loop of the face goes around twice, so it has no outline */
         {"012012", "", 1, 0},
         {"01230123", "", 1, 0},
-        /* among other faces, which keep their order */
+        /* the face is among others, which must keep their order */
         {"045,0122,11,123", "045,012,123", 1, 1},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -78,8 +78,8 @@ static double twice_area(const he_soup *soup, size_t f)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* A ring between two regular polygons with `sides` corners, as one face: along an edge to the inner
- * one, around it in the opposite direction, and back. */
+/* Makes the ring between two regular polygons of `sides` corners as one face: it goes along an edge
+ * to the inner polygon, around that in the opposite direction, and back. */
 static void make_keyhole(he_soup *soup, uint32_t sides)
 {
     const double turn = 6.283185307179586 / sides;
@@ -122,7 +122,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
         he_repaired_clear(&done);
         he_soup_clear(&copy);
         he_mesh *mesh = mend(&soup, &plan, &done);
-        fixture_counts(mesh, 2 * n, 4 * n, 2 * n); /* V - E + F = 0: a ring */
+        fixture_counts(mesh, 2 * n, 4 * n, 2 * n); /* V - E + F = 0, as for a ring */
         assert_int_equal(he_mesh_boundary_halfedges(mesh), 2 * n);
         he_mesh_free(mesh);
         he_repaired_clear(&done);
@@ -130,7 +130,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
     }
 }
 
-/* Loops that touch themselves at a vertex: side by side, and one inside the other. */
+/* The faces consist of two loops that touch at a vertex, side by side or one inside the other. */
 static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
 {
     (void)state;
@@ -168,7 +168,8 @@ static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
     }
 }
 
-/* Faces that visit a vertex many times are refused before they are divided. */
+/* A face that visits a vertex many times must be dropped without being divided, because that would
+ * take too long. */
 static void a_face_that_repeats_its_corners_is_left_out(void **state)
 {
     (void)state;

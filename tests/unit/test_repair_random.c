@@ -1,6 +1,5 @@
-/* Repairs compared with obvious checks, on soups of every kind. SEED=n in the environment repeats a
- * run.
- */
+/* Repairs are compared with obvious checks, on random soups of every kind. SEED=n in the
+ * environment repeats a run. */
 #include "repair_fixture.h"
 
 #include "model/random.h"
@@ -29,7 +28,7 @@ static bool is_near(he_vec3 a, he_vec3 b, double tolerance)
                                  1;
 }
 
-/* Checks the weld as the header defines it, comparing all pairs. */
+/* Checks the weld by the definition in the header, comparing all pairs of vertices. */
 static void expect_welded(const he_soup *soup, double tolerance)
 {
     he_soup copy;
@@ -104,7 +103,7 @@ static void welding_is_what_comparing_all_would_do(void **state)
 
 /* --- soups of every kind --- */
 
-/* Faces over few vertices: mostly triangles that continue from the one before. */
+/* Makes random faces with few vertices, mostly triangles on an edge of the face before. */
 static void random_soup(md_random *random, he_soup *soup)
 {
     uint32_t vertices = 3 + md_below(random, 8), corners[8] = {0, 1, 2};
@@ -155,7 +154,7 @@ static bool is_degenerate(const he_soup *soup, size_t f)
     return end - begin < 3;
 }
 
-/* Do the two faces have equal corners, from any corner on, in either direction? */
+/* Returns whether the two faces have equal corners, from any corner on, in either direction. */
 static bool are_duplicates(const he_soup *soup, size_t f, size_t g)
 {
     uint32_t n = he_soup_end(soup, f) - soup->starts[f];
@@ -190,7 +189,7 @@ static uint32_t reduce(uint32_t *loop, uint32_t n)
     return n;
 }
 
-/* The edges of loops, with both ends. */
+/* The edges of some loops, each with both its ends. */
 typedef struct runs {
     uint32_t ends[32][2];
     uint32_t count;
@@ -223,7 +222,7 @@ static bool runs_twice(const runs *r)
     return twice;
 }
 
-/* Apart from edges used in both directions, both must use the same edges. */
+/* Requires that both use the same edges, apart from edges that are used in both directions. */
 static void expect_same_rim(const runs *a, const runs *b)
 {
     for (uint32_t v = 0; v < 11; v++) {
@@ -234,7 +233,7 @@ static void expect_same_rim(const runs *a, const runs *b)
     }
 }
 
-/* Checks the faces from `at` on that replaced face f of the soup; returns their number. */
+/* Checks the faces, from `at` on, that replaced face f of the soup; returns how many there are. */
 static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
                             const uint32_t *from, size_t at)
 {
@@ -260,7 +259,8 @@ static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
     return made;
 }
 
-/* The caller clears `out`. */
+/* Requires that a soup is without degenerate faces after the repair, which `out` becomes; the
+ * caller must clear it. */
 static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cut)
 {
     he_repaired done = {0};
@@ -288,7 +288,8 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
     he_repaired_clear(&done);
 }
 
-/* Drops degenerate faces first, because they may be duplicates, too. */
+/* Requires that no duplicates are left. Degenerate faces are dropped first, because they may be
+ * duplicates, too. */
 static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;
@@ -316,7 +317,7 @@ static void expect_no_duplicates(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Counts the faces that run along a-b in each direction. */
+/* Counts the faces that run along the edge a-b in each direction. */
 static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up, unsigned *down)
 {
     *up = *down = 0;
@@ -330,8 +331,9 @@ static void count_runs(const he_soup *soup, uint32_t a, uint32_t b, unsigned *up
     }
 }
 
-/* Can the faces be reversed so that all edges with two faces agree? Each face is entered twice,
- * kept and reversed, in classes: no face may be in the class of its reverse. */
+/* Returns whether faces can be reversed so that each edge with two faces has one in each direction.
+ * Each face is entered twice into a union-find, as it is and reversed; the answer is no if a face
+ * is in one class with its reverse. */
 static bool is_orientable(const he_soup *soup)
 {
     size_t n = soup->face_count;
@@ -393,7 +395,8 @@ static void expect_oriented(const he_soup *soup)
     he_soup_clear(&copy);
 }
 
-/* Splitting leaves no bow-tie, and keeps joined what an edge of two opposite faces joins. */
+/* Requires that after the repair `split` there is no bow-tie, and that two faces in opposite
+ * directions on an edge are still joined. */
 static void expect_split(const he_soup *soup)
 {
     he_soup copy, again;
@@ -427,7 +430,8 @@ static void expect_split(const he_soup *soup)
     he_soup_clear(&again);
 }
 
-/* Whatever is requested first: if it is refused, the named set of repairs makes it pass. */
+/* Whatever repairs are requested first: if the soup is still refused, the repairs that the refusal
+ * names must suffice. */
 static void expect_advice(const he_soup *soup, unsigned asked)
 {
     he_soup copy;

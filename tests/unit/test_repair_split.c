@@ -1,10 +1,10 @@
-/* split: a closed, consistently oriented surface stays closed. */
+/* The repair split: a closed, consistently oriented surface stays closed. */
 #include "repair_fixture.h"
 
 #include "model/random.h"
 #include "seed.h"
 
-/* Splits and checks that the result is closed, with all faces. */
+/* Applies split, and requires that the result is closed and has all faces. */
 static void expect_closed(const he_soup *soup)
 {
     he_repaired done = {0};
@@ -16,17 +16,18 @@ static void expect_closed(const he_soup *soup)
     he_repaired_clear(&done);
 }
 
-/* Surfaces that are closed alone or together, with edges of four faces. If faces were paired in
- * their order, two pairs would lie between the same fans. */
+/* Surfaces that are closed by themselves or together, with edges of four faces. If faces were
+ * paired in their order, two pairs would connect the same two fans, so partners must be
+ * exchanged. */
 static void pairs_between_the_same_fans_exchange_partners(void **state)
 {
     (void)state;
     static const char *const rows[] = {
-        /* a tetrahedron and its reverse */
+        /* a tetrahedron and the same one reversed */
         "031,123,320,321,130,210,023,201",
-        /* two pillows of two triangles, the second in reverse order */
+        /* two pairs of triangles back to back, the second pair in reverse order */
         "012,013,103,102",
-        /* three, in a circle */
+        /* three such pairs, in a circle */
         "012,013,014,103,104,102",
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -77,7 +78,8 @@ static void random_closed_soups_stay_closed(void **state)
     }
 }
 
-/* Pillows around one edge: at first all their pairs lie between the same two fans. */
+/* Pairs of triangles back to back lie around one edge: at first, all pairs of faces at this edge
+ * would connect the same two fans. */
 static void an_edge_of_very_many_faces_takes_no_longer(void **state)
 {
     (void)state;

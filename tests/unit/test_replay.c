@@ -1,5 +1,6 @@
-/* A copy that travels along a log of edits equals the mesh of each point: links, positions, columns
- * that were added, removed and restored, replaced contents. */
+/* A copy of a mesh that goes forward and back along a log of edits must equal the mesh at
+ * each point: in links, positions, columns that were added, removed and restored, and
+ * replaced contents. */
 #include "tests/unit/edit_log.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -12,7 +13,7 @@
 
 enum { ENTRIES = 60 };
 
-/* Across the entry before `at` (back) or after it. */
+/* Takes the copy across the entry before `at` (back) or after it. */
 static he_status cross(const edit_log *h, he_replay *replay, size_t at, bool back)
 {
     size_t crossed = back ? at : at + 1;
@@ -37,7 +38,7 @@ static void test_every_point_of_a_log_can_be_reached(void **state)
         he_replay *replay;
         assert_int_equal(he_replay_new(h->mesh, &replay, NULL), HE_OK);
         size_t at = h->count - 1;
-        /* To the beginning, then back and forth, then to the end. */
+        /* The copy goes to the beginning, then back and forth, then to the end. */
         for (size_t leg = 0; leg < 8; leg++) {
             size_t to = leg == 0   ? 0
                         : leg == 7 ? h->count - 1
@@ -56,8 +57,8 @@ static void test_every_point_of_a_log_can_be_reached(void **state)
     }
 }
 
-/* A column that was added is owned by the mesh alone: a copy made before cannot get it from the
- * delta. */
+/* A column that was added belongs to the mesh alone while it is there: a copy made before cannot
+ * get it from the delta. */
 static void test_what_the_mesh_holds_cannot_be_had_from_the_delta(void **state)
 {
     (void)state;
@@ -94,7 +95,8 @@ static void test_every_allocation_may_fail(void **state)
         }
         failed = allocation_failed();
         fail_allocation(0);
-        /* A mesh without spare capacity may refuse to grow; nothing else may fail. */
+        /* A mesh without spare capacity may refuse to grow for lack of memory; nothing else may
+         * fail. */
         assert_true(status == HE_OK || (failed && status == HE_NO_MEMORY));
         if (status == HE_OK) {
             assert_true(he_mesh_equal(he_replay_mesh(replay), h->mesh));

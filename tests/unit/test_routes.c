@@ -1,4 +1,5 @@
-/* Dispatch and everything around a handler, with a store that holds one mesh, "m". */
+/* Finding the handler for a request, and everything around a handler, in a service whose store
+ * holds one mesh, "m". */
 #include "api/describe/routes.h"
 #include "api/request/exchange.h"
 #include "query/adjacency.h"
@@ -29,7 +30,7 @@ static bool not_ready(void *context)
 
 static bool is_ready = true;
 static st_store *store;
-static st_mesh *only; /* "m" */
+static st_mesh *only; /* the mesh "m" */
 static api_service *service;
 
 static int set_up(void **state)
@@ -62,10 +63,10 @@ static int tear_down(void **state)
 typedef struct sent {
     const char *line;    /* "GET /v1/meshes?limit=1" */
     const char *headers; /* "Name: value\n..." */
-    const char *body;    /* NULL: none */
+    const char *body;    /* NULL: no body */
 } sent;
 
-/* The values of a list of headers, which must live until api_free. */
+/* The values of the headers of a request, which must live until api_free. */
 typedef struct header_list {
     char value[API_REQUEST_HEADERS][256];
 } header_list;
@@ -126,7 +127,7 @@ static bool has_text(const api_answer *answer, const char *text)
     return false;
 }
 
-/* Does the body hold "code":"slug"? */
+/* Returns whether the body of the answer contains "code":"slug". */
 static bool has_code(const api_answer *answer, const char *slug)
 {
     char member[80];
@@ -140,7 +141,7 @@ static bool has_code(const api_answer *answer, const char *slug)
 static const struct {
     sent request;
     int status;
-    const char *code; /* of a problem */
+    const char *code; /* of the expected problem */
 } answers[] = {
     {{"GET /livez", NULL, NULL}, 200, NULL},
     {{"GET /readyz", NULL, NULL}, 200, NULL},
@@ -156,7 +157,7 @@ static const struct {
     {{"GET /v1/operations", NULL, NULL}, 200, NULL},
     {{"GET /v1/openapi.json", NULL, NULL}, 200, NULL},
     {{"GET /v1/meshes/m", NULL, NULL}, 200, NULL},
-    /* no such path */
+    /* unknown paths */
     {{"GET /v1", NULL, NULL}, 200, NULL},
     {{"GET /v1/admin", NULL, NULL}, 404, "no_such_route"},
     {{"GET /v1/mesh", NULL, NULL}, 404, "no_such_route"},
@@ -175,7 +176,7 @@ static const struct {
     {{"GET /v1/meshes/m%00", NULL, NULL}, 400, "bad_path"},
     {{"GET /v1/meshes/m%zz", NULL, NULL}, 400, "bad_path"},
     {{"GET /v1/meshes/m%FF", NULL, NULL}, 400, "bad_path"},
-    /* no such mesh or element */
+    /* unknown meshes and elements */
     {{"GET /v1/meshes/other", NULL, NULL}, 404, "no_such_mesh"},
     {{"GET /v1/meshes/..", NULL, NULL}, 404, "no_such_mesh"},
     {{"GET /v1/meshes/%2e%2e", NULL, NULL}, 404, "no_such_mesh"},
@@ -185,14 +186,14 @@ static const struct {
     {{"GET /v1/meshes/m/vertices/-1", NULL, NULL}, 404, "no_such_element"},
     {{"GET /v1/meshes/m/vertices/4294967296", NULL, NULL}, 404, "no_such_element"},
     {{"GET /v1/meshes/other/vertices/0", NULL, NULL}, 404, "no_such_mesh"},
-    /* methods */
+    /* wrong methods */
     {{"BREW /livez", NULL, NULL}, 405, "method_not_allowed"},
     {{"get /livez", NULL, NULL}, 405, "method_not_allowed"},
     {{"POST /v1/meshes/m", JSON, "{}"}, 405, "method_not_allowed"},
     {{"BREW /nowhere", NULL, NULL}, 404, "no_such_route"},
     {{"OPTIONS /v1/meshes/m", NULL, NULL}, 204, NULL},
     {{"OPTIONS /nowhere", NULL, NULL}, 404, "no_such_route"},
-    /* query parameters */
+    /* wrong query parameters */
     {{"GET /v1/operations?x=1", NULL, NULL}, 400, "unknown_parameter"},
     {{"GET /v1/meshes?Limit=1", NULL, NULL}, 400, "unknown_parameter"},
     {{"GET /v1/meshes?limit=1&limit=1", NULL, NULL}, 400, "repeated_parameter"},
@@ -204,7 +205,7 @@ static const struct {
     {{"GET /v1/meshes?limit", NULL, NULL}, 400, "bad_query"},
     {{"GET /v1/meshes/m/vertices/0/edges?cw=1", NULL, NULL}, 400, "bad_parameter"},
     {{"GET /v1/meshes/m/components?by=face", NULL, NULL}, 400, "bad_parameter"},
-    /* bodies */
+    /* missing and unexpected bodies */
     {{"GET /livez", NULL, "x"}, 400, "unexpected_body"},
     {{"GET /livez", NULL, ""}, 200, NULL},
     {{"POST /v1/meshes/m/query", JSON, NULL}, 400, "missing_body"},
@@ -236,14 +237,15 @@ static const struct {
     {{"POST /v1/meshes/m/query", JSON, "{\"queries\":"}, 400, "malformed_json"},
     {{"POST /v1/meshes/m/query", JSON, "{\"a\":1,\"a\":1}"}, 400, "duplicate_member"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", "{}"}, 415, "unsupported_media_type"},
-    /* A form may send no body, but with a type for which browsers do not ask the server first. */
+    /* A form in a browser may send no body, but then with a type that browsers send without asking
+     * the server first: this must be refused. */
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/copy", "Content-Type: text/plain", ""}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/undo", "Content-Type: text/plain", NULL}, 415, "unsupported_media_type"},
     {{"POST /v1/meshes/m/redo", "Content-Type: application/x-www-form-urlencoded", NULL},
      415,
      "unsupported_media_type"},
-    /* what pages of other sites may request */
+    /* requests from pages of other sites */
     {{"GET /v1/meshes/m/check", OTHER_SITE, NULL}, 403, "foreign_origin"},
     {{"HEAD /v1/meshes/m/check", OTHER_SITE, NULL}, 403, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: Cross-Site", NULL}, 403, "foreign_origin"},
@@ -255,13 +257,13 @@ static const struct {
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-origin", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: same-site", NULL}, 200, NULL},
     {{"GET /v1/meshes/m", "Sec-Fetch-Site: none", NULL}, 200, NULL},
-    /* The maximum upload is 100 bytes here. */
+    /* In this test, an upload may have 100 bytes at most. */
     {{"POST /v1/meshes", JSON,
       "{\"name\":\"012345678901234567890123456789012345678901234567890123456789012345678901234567"
       "8901234567890123456789\"}"},
      413,
      "body_too_large"},
-    /* what the client accepts */
+    /* Accept headers that exclude the answer */
     {{"GET /version", "Accept: text/html", NULL}, 406, "not_acceptable"},
     {{"GET /version", "Accept: application/json;q=0", NULL}, 406, "not_acceptable"},
     {{"GET /version", "Accept: text/html, */*;q=0.1", NULL}, 200, NULL},
@@ -348,7 +350,7 @@ static void a_slash_too_many_at_the_end_leads_to_the_path_without_it(void **stat
     (void)state;
     static const struct {
         sent request;
-        const char *location; /* NULL: 404 */
+        const char *location; /* NULL: the answer is 404 */
     } cases[] = {
         {{"GET /docs/", NULL, NULL}, "../docs"},
         {{"HEAD /docs/", NULL, NULL}, "../docs"},
@@ -544,7 +546,7 @@ static void documents_of_the_tables_are_json(void **state)
     }
 }
 
-/* Consistency of the table's rows. */
+/* Checks that the rows of the route table are complete and consistent. */
 static void rows_are_whole(void **state)
 {
     (void)state;
@@ -637,7 +639,7 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
     }
 }
 
-/* The answer is complete whichever allocation fails, or there is no exchange at all. */
+/* Whichever allocation fails, there must be a complete answer, or no exchange at all. */
 static void every_failed_allocation_is_answered(void **state)
 {
     (void)state;
@@ -660,7 +662,8 @@ static void every_failed_allocation_is_answered(void **state)
             assert_true(x != NULL || !good);
             if (x != NULL && !good && api_answer_of(x)->status != 507 &&
                 api_answer_of(x)->status >= 400) {
-                /* The refusal that the request gets anyway is also correct. */
+                /* The request is refused in any case; without memory, the refusal must still have a
+                 * body. */
                 assert_true(api_answer_of(x)->length > 0);
             }
             assert_true(x == NULL || api_answer_of(x)->status >= 200);

@@ -1,4 +1,4 @@
-/* The table of shapes: counts, positions, orientation, and what is refused. */
+/* The table of primitive shapes: counts, positions, orientation, and what is refused. */
 #include "fixture.h"
 
 #include "algo/shape.h"
@@ -18,7 +18,8 @@ static const he_shape *shape_named(const char *name)
     return shape;
 }
 
-/* Arguments in the order of the row; NAN takes the default. */
+/* Makes a shape; the arguments are in the order of its row in the table, and NAN takes the
+ * default. */
 static he_mesh *make(const char *name, double a, double b, double c, double d)
 {
     const he_shape *shape = shape_named(name);
@@ -138,7 +139,8 @@ static void test_shape_open_cylinder_has_two_loops_of_six(void **state)
     he_mesh_free(m);
 }
 
-/* Every row: it has the requested size, it builds, and its faces look outwards or up. */
+/* Requires for every shape that it has the requested size, that it is a valid mesh, and that its
+ * faces look outward or up. */
 static void test_shape_every_row(void **state)
 {
     (void)state;
@@ -197,7 +199,7 @@ static void test_shape_regular_solids(void **state)
             assert_near(he_vec3_length(he_position(m, (he_vertex){v})), 2.5);
         }
         double r = 2.5;
-        /* Closed forms from the circumscribed radius. */
+        /* The volumes are given by closed forms from the radius of the sphere around the solid. */
         double golden = (1 + sqrt(5)) / 2;
         double ico = r / sin(2 * PI / 5), dodeca = r * 2 / (sqrt(3) * golden);
         double wanted[4] = {
@@ -292,7 +294,7 @@ static void test_shape_arguments_are_refused(void **state)
         assert_int_equal(he_shape_make(shape, args, NULL, &soup, NULL), rows[i].status);
         assert_int_equal(soup.vertex_count, 77);
     }
-    /* Just inside. */
+    /* These arguments are just inside the limits. */
     he_mesh *m = make("disk", NAN, NAN, -2, NAN);
     he_mesh_free(m);
     m = make("cube", 1e-300, NAN, NAN, NAN);

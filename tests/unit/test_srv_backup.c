@@ -28,7 +28,7 @@ static int make_folders(void **state)
     return 0;
 }
 
-/* Removes the folders that a restore leaves, too. */
+/* Removes the folders in which a restore keeps the old store. */
 static void remove_befores(void)
 {
     DIR *dir = opendir(folder);
@@ -88,7 +88,7 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
     return status;
 }
 
-/* A closed store with a mesh "a" and this many edits. */
+/* Makes a store with a mesh "a" and this many edits, and closes it. */
 static kept_mesh make_store(unsigned edits)
 {
     told_journal told;
@@ -128,7 +128,7 @@ static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
     }
     kept_mesh other = new_mesh("b");
     told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
-    /* A restore is refused while a daemon uses the store. */
+    /* A restore must be refused while a daemon uses the store. */
     assert_false(st_sqlite_restore(folder, backup, before, message));
     assert_non_null(strstr(message, "in use by process"));
     told_end(&told);
@@ -159,7 +159,8 @@ static bool count_key(void *context, const st_kept_key *key)
     assert_string_equal(key->key.text, "a key");
     assert_string_equal(key->id, "a");
     assert_true(key->key.digest[1] == 8);
-    /* The key no longer names the state that its request made, because that state may be gone. */
+    /* After a restore, a key must not name the state that its request made, because that state may
+     * be gone. */
     assert_true(key->incarnation == 0 && key->revision == 0 && key->metadata == 0);
     return true;
 }
@@ -260,13 +261,13 @@ static void a_backup_takes_the_place_of_no_file_of_a_store(void **state)
                        names[i]);
         expect_no_backup(path, "of a store");
     }
-    /* Through another path to the same file. */
+    /* The path of the backup leads to the store's own file by a link: it must be refused. */
     (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
     (void)snprintf(linked, sizeof linked, "%s/linked", aside);
     assert_int_equal(symlink(path, linked), 0);
     expect_no_backup(linked, "hedge.db of a store");
     assert_int_equal(unlink(linked), 0);
-    /* With a name of its own it may be in the store's folder. */
+    /* A backup with another name may lie in the folder of the store. */
     (void)snprintf(path, sizeof path, "%s/of today.db", folder);
     for (int again = 0; again < 2; again++) {
         if (!st_sqlite_backup(folder, path, message)) {
@@ -295,7 +296,8 @@ static void a_backup_goes_under_no_log(void **state)
     }
 }
 
-/* A -wal file left by kill -9 is not replayed onto the restored file. */
+/* The write-ahead log (hedge.db-wal) of a store killed by kill -9 must not be applied to the
+ * database that is restored over it. */
 static void a_log_left_behind_stays_with_its_database(void **state)
 {
     (void)state;
@@ -331,8 +333,8 @@ static void move(const char *from, const char *to)
     (void)rename(a, b);
 }
 
-/* Each state that an interruption can leave is made by hand; the next start completes the
- * restore. */
+/* A restore may be interrupted between any two steps; the state after each step is made by hand.
+ * The next start must complete the restore. */
 static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
 {
     (void)state;
@@ -366,7 +368,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
         }
         expect_records(1, &incarnation);
         open_store(&told);
-        /* Before the note is written nothing is decided: the old store is kept. */
+        /* As long as the note about the restore is not written, the old store must be kept. */
         assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
         told_end(&told);
         char path[2 * FOLDER_PATH];
@@ -380,8 +382,8 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
     }
 }
 
-/* A journal that a killed restore left would write its pages (here a first page of zeros) into the
- * next copy. */
+/* A restore that was killed left a rollback journal of SQLite; if it stayed, SQLite would write its
+ * pages (here a first page of zeros) into the next copy. */
 static void what_a_killed_restore_left_is_not_played_into_the_next(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The table of jobs with real threads: cancelling a job frees its memory, an end is shown when it
- * is durable, and a stop ends everything. */
+/* The table of jobs with real threads: cancelling a job frees its memory, the end of a job is shown
+ * when it is durable, and a stop ends all jobs. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -27,7 +27,7 @@ static st_pool *pool;
 static api_job_table *jobs;
 static api_service *service;
 
-static const char *key; /* Idempotency-Key of the requests; NULL: none */
+static const char *key; /* Idempotency-Key of further requests; NULL: none */
 
 static bool submit(void *context, const st_task *task)
 {
@@ -62,7 +62,7 @@ static int start(void **state)
     return 0;
 }
 
-/* Nothing becomes durable until the test says so. */
+/* Starts a server whose journal makes nothing durable until the test says so. */
 static int start_behind(void **state)
 {
     (void)state;
@@ -80,7 +80,8 @@ static int stop(void **state)
     return 0;
 }
 
-/* Expects 202; writes the job's id to `id`. */
+/* Sends a request with Prefer: respond-async; returns the status, and writes the job's id to
+ * `id`. */
 static int post(const char *path, const char *body, char id[API_JOB_ID + 1])
 {
     api_request request = {.method = "POST",
@@ -126,7 +127,7 @@ static api_job wait_for(const char *id, api_job_state state)
     return job;
 }
 
-/* Returns how many values of a job's progress are seen before it ends. */
+/* Returns how many different values of a job's progress are seen before it ends. */
 static size_t watch_a_job(void)
 {
     char id[API_JOB_ID + 1];
@@ -142,7 +143,7 @@ static size_t watch_a_job(void)
     return values;
 }
 
-/* On a busy machine a job may end between two reads: the test then tries again. */
+/* On a busy machine a job may end between two looks, so the test tries several jobs. */
 static void progress_is_seen_and_never_falls(void **state)
 {
     (void)state;
@@ -154,7 +155,7 @@ static void progress_is_seen_and_never_falls(void **state)
     print_message("note: %zu values seen\n", values);
 }
 
-/* Returns false if the job ended before it could be cancelled. */
+/* Cancels a job at this progress; returns false if the job ended before it could be cancelled. */
 static bool cancel_at(int percent)
 {
     char id[API_JOB_ID + 1];
@@ -175,7 +176,8 @@ static bool cancel_at(int percent)
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
     assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
-    /* The pool's thread releases its reference to the job last. */
+    /* The thread that ran the job releases its reference last, so the memory is free a little
+     * later. */
     while (st_memory_used() != before) {
         assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
     }
@@ -214,7 +216,8 @@ static void an_end_is_shown_when_it_is_durable(void **state)
     do {
         job = look(first);
     } while (job.state != API_JOB_RUNNING || strcmp(job.phase, "storing") != 0);
-    /* A refusal may depend on something that is not durable, so it waits like any answer. */
+    /* Even a refusal may depend on something that is not durable yet, so the end of this job must
+     * wait, too. */
     assert_int_equal(post("/v1/meshes", "{\"vertices\":[],\"faces\":[[0,1,2]]}", second), 202);
     while (strcmp(look(second).phase, "storing") != 0) {
     }
@@ -381,7 +384,7 @@ static void a_stop_ends_what_waits_and_what_runs(void **state)
 
 /* --- records of jobs --- */
 
-static st_status refuses; /* result of recording */
+static st_status refuses; /* what recording a job returns */
 static unsigned notes;
 
 static st_status take_note(void *self, const st_note *what, uint64_t *position)
@@ -403,7 +406,8 @@ static int start_noting(void **state)
     return 0;
 }
 
-/* A journal that is behind refuses the job; with a full disk the job is kept in memory only. */
+/* A job is recorded in the journal. If the journal is behind, the job must be refused; if the disk
+ * is full, the job is kept in memory only. */
 static void a_job_that_cannot_be_noted(void **state)
 {
     (void)state;
@@ -424,7 +428,7 @@ static void a_job_that_cannot_be_noted(void **state)
         }
         assert_int_equal(notes, refuses == ST_OK ? 2 : 0);
     }
-    /* A recorded job is not deleted before the deletion is recorded, too. */
+    /* A job that is recorded must not be deleted before its deletion is recorded, too. */
     refuses = ST_OK;
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     (void)wait_for(id, API_JOB_DONE);

@@ -1,5 +1,5 @@
-/* Options: a flag overrides the environment, which overrides the default; every refusal is a
- * sentence. */
+/* Options of the daemon: a flag overrides the environment, which overrides the default; every
+ * refusal is a sentence. */
 #include "tests/unit/fixture.h"
 
 #include "server/config.h"
@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-static const char *const *variables; /* name, value, ..., NULL */
+static const char *const *variables; /* of the environment: name, value, ..., NULL */
 
 static char *environment(const char *name)
 {
@@ -187,7 +187,7 @@ static void test_actions(void **state)
     assert_true(READ(&config, "-V"));
     assert_true(config.version);
     srv_config_clear(&config);
-    /* Actions cannot be set in the environment, which is shared by all commands. */
+    /* An action such as --help cannot be requested by the environment, which all commands share. */
     static const char *const set[] = {"HEDGE_HELP", "1", NULL};
     variables = set;
     assert_true(read_words(&config, (const char *const[]){NULL}));
@@ -195,8 +195,8 @@ static void test_actions(void **state)
     srv_config_clear(&config);
 }
 
-/* The output of --print-config is a valid file that gives the same settings; --help names every
- * option in it. */
+/* The output of --print-config must be a valid file that gives the same settings; --help must name
+ * every option in it. */
 static void test_print_and_help(void **state)
 {
     (void)state;
@@ -237,7 +237,7 @@ static void test_print_and_help(void **state)
     assert_string_equal(printed, twice);
 }
 
-/* Reads a file of settings, with these words and variables in addition. */
+/* Reads a file of settings together with these words of the command line and these variables. */
 static bool read_file(srv_config *config, const char *text, size_t length, const char *word)
 {
     char path[] = "/tmp/settings-XXXXXX";
@@ -374,7 +374,8 @@ static void a_choice_is_one_of_its_words(void **state)
     }
 }
 
-/* The refusal itself is written in this format. */
+/* The file sets the format of the log and has a mistake: the message about the mistake must be
+ * written in that format. */
 static void the_format_of_the_log_outlives_a_refusal(void **state)
 {
     (void)state;

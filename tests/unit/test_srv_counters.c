@@ -1,4 +1,4 @@
-/* Counters and histograms: nothing that several threads add at the same time is lost. */
+/* Counters and histograms: nothing is lost when several threads add at the same time. */
 #include "tests/unit/fixture.h"
 
 #include "api/metric/metric_page.h"

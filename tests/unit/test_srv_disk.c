@@ -1,5 +1,5 @@
-/* A store on a disk, without memory or disk space: each request is done completely or not at all,
- * what was lost is reported however late, and no thread is blocked for ever. */
+/* A store on a disk while memory or disk space runs out: each request must be done completely or
+ * not at all, a loss must be reported however late, and no thread may be blocked for ever. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -60,7 +60,8 @@ static st_mesh *load(const char *id)
     return mesh;
 }
 
-/* The position of vertex 0 shows which revision put it there. */
+/* Makes an edit; the position of vertex 0 becomes the revision, so that a mesh shows which revision
+ * it is. */
 static st_status edit(st_mesh *mesh, st_mesh_info *info)
 {
     const uint32_t vertex = 0;
@@ -113,7 +114,8 @@ static void *failing_resize(void *context, void *memory, size_t size)
     return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
 }
 
-/* 0: none fails. The hook itself is set while the journal's thread is not running. */
+/* Makes the N-th allocation from now on fail; 0: none fails. The hook itself is set while the
+ * journal's thread does not run. */
 static void fail_memory_at(long n)
 {
     atomic_store(&calls, 0);
@@ -128,10 +130,11 @@ static bool was_done(st_status status)
 
 typedef struct did {
     bool made;
-    uint64_t revision; /* of m; 0: m was not changed */
+    uint64_t revision; /* of the mesh m; 0: m was not changed */
 } did;
 
-/* Loads m, which is on the disk only, reads and changes it, makes n and lists both. */
+/* Loads the mesh m, which is only on the disk, reads and changes it, makes the mesh n, and lists
+ * both. */
 static void use_all(did *out)
 {
     st_mesh *mesh = NULL, *made = NULL;
@@ -163,7 +166,7 @@ static void use_all(did *out)
     assert_int_equal(disk_status(), ST_OK);
 }
 
-/* Everything that was reported as done must be there, and nothing else. */
+/* Requires that everything that was reported as done is in the store, and nothing else. */
 static void compare(const did *done)
 {
     open_store();
@@ -177,7 +180,8 @@ static void compare(const did *done)
     close_store();
 }
 
-/* The start, which allocates most often, is tested in test_srv_journal_faults.c. */
+/* Each allocation of a request fails in turn. The start of a store, which allocates most often, is
+ * tested in test_srv_journal_faults.c. */
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;
@@ -218,8 +222,9 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* The handler is stopped after its commit. Meanwhile the disk is full and then accepts other
- * writes; only then the handler asks whether its answer may be sent. */
+/* A handler is stopped right after its commit. Meanwhile the disk becomes full, so that the commit
+ * is lost, and then accepts other writes; only then the handler asks whether its answer may be
+ * sent. It must learn of the loss. */
 static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **state)
 {
     (void)state;
@@ -244,7 +249,7 @@ static void a_handler_that_slept_through_a_full_disk_is_told_of_its_loss(void **
     while (disk_status() == ST_FULL) {
         sched_yield();
     }
-    /* Another request makes a revision with this number. */
+    /* Another request makes a revision that has the number of the lost one. */
     st_mesh *again = load("m");
     assert_int_equal(revision_of(again), 1);
     assert_int_equal(edit(again, &info), ST_OK);
@@ -312,8 +317,8 @@ static void await_all(writer writers[WRITERS])
     }
 }
 
-/* Takes all memory that the budget has left; returns the number of blocks. It tries repeatedly,
- * because other threads free some. */
+/* Allocates all memory that the budget has left; returns the number of blocks. It tries repeatedly,
+ * because other threads free memory meanwhile. */
 static size_t take_all(void **blocks, size_t count)
 {
     for (size_t size = LARGE; size >= SMALL / 16; size /= 4) {

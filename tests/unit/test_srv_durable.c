@@ -1,7 +1,7 @@
-/* Writers, readers and listeners of a few meshes that are created and deleted, on a journal that
- * lags and whose disk is sometimes full: nothing is shown before the journal has it, groups of
- * records are complete, lost changes are not shown, and nothing durable depends on a lost
- * change. */
+/* Threads write, read and listen to a few meshes, which are created and deleted, on a journal that
+ * lags behind and whose disk is sometimes full. Nothing may be shown before the journal has it,
+ * groups of records must be complete, lost changes must not be shown, and nothing durable may
+ * depend on a lost change. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -28,10 +28,10 @@ static const char *const ids[MESHES] = {"a", "b", "c"};
 
 /* --- the journal --- */
 
-/* A record; its index here is its position. */
+/* What the journal notes of a record; the index of a note is the position of its record. */
 typedef struct note {
     uint64_t incarnation, number, revision;
-    uint64_t group; /* position of the last record of its group */
+    uint64_t group; /* position of the last record in its group */
     bool lost;
 } note;
 
@@ -39,7 +39,7 @@ static struct {
     pthread_mutex_t lock;
     note notes[NOTES + 1];
     uint64_t newest;
-    bool losing;              /* appended records are lost, and no more are accepted */
+    bool losing;              /* the disk is full: records are lost and refused */
     size_t out;               /* rooms that exist */
     uint64_t removed[MESHES]; /* position of the last deletion of an id */
     _Atomic uint64_t durable;
@@ -135,8 +135,8 @@ static void lose(uint64_t from, uint64_t to)
 
 static _Atomic size_t incidents;
 
-/* Loses everything in the queue, and what arrives in existing rooms; returns up to which
- * position. */
+/* Loses everything in the queue, and everything that arrives in rooms that exist already; returns
+ * the position up to which records are lost. */
 static uint64_t fill_up(uint64_t at)
 {
     pthread_mutex_lock(&journal.lock);
@@ -158,7 +158,7 @@ static uint64_t fill_up(uint64_t at)
     return at;
 }
 
-/* Groups become durable as a whole. */
+/* Makes records durable after a while; all records of a group become durable at once. */
 static void *lag_behind(void *context)
 {
     md_random *random = context;
@@ -222,7 +222,7 @@ static uint64_t position_of_revision(uint64_t incarnation, uint64_t revision)
 
 typedef struct answer {
     st_wait wait;
-    uint64_t needs[MESHES]; /* the newest records that it shows */
+    uint64_t needs[MESHES]; /* position of the newest record of each mesh that it shows */
     _Atomic bool over;
 } answer;
 
@@ -403,7 +403,7 @@ static void read_one(worker *w)
     if (!info.removed) {
         show_mesh(w->store, &w->answers[w->made++], &info);
     } else if (mesh == NULL) {
-        /* It shows the last deletion before the search, or a later one. */
+        /* The answer shows the last deletion before the search, or a later one. */
         bool shows = removed > since && removed < st_waits_newest(st_store_waits(w->store));
         const uint64_t needs[MESHES] = {shows ? removed : 0};
         send_when_durable(w->store, &w->answers[w->made++], st_shown_all(w->store, since), needs);
@@ -447,7 +447,7 @@ static void wake(void *context)
 
 static _Atomic size_t events;
 
-/* Listens until the mesh is deleted, or the run ends; returns false if there is nothing to read
+/* Reads events until the mesh is deleted or the run ends; returns false if no event is there
  * now. */
 static bool hear(st_listener *listener, bool *ended)
 {
@@ -502,8 +502,8 @@ static void *listen_some(void *context)
 
 /* --- the run --- */
 
-/* The records of a mesh are numbered without gaps in the order of positions, and none is kept after
- * a lost one. */
+/* Requires that the records of each mesh are numbered without gaps in the order of positions, and
+ * that none is kept after a lost one. */
 static void expect_order(void)
 {
     for (uint64_t at = 1; at <= journal.newest; at++) {
@@ -573,7 +573,8 @@ static void nothing_is_shown_before_it_is_durable(void **state)
     }
     pthread_join(lagging, NULL);
 
-    /* The rest is lost, and answers that showed it were not sent. */
+    /* The records that are not durable at the end are lost, and no answer that showed one may have
+     * been sent. */
     advance(fill_up(atomic_load(&journal.durable)));
     assert_int_equal(journal.out, 0);
     size_t made = 0;

@@ -1,5 +1,6 @@
-/* Meshes leave memory and are loaded again while threads find, change, create, delete and list
- * them: each is loaded once for all threads that need it, and nothing is lost or doubled. */
+/* Meshes leave memory and are loaded again while threads find, change, create, delete and
+ * list them: each must be loaded once for all threads that need it, and nothing may be lost
+ * or doubled. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/slow_journal.h"
@@ -45,7 +46,7 @@ static void expect(bool good)
     }
 }
 
-/* Evicts every mesh that is not in use. */
+/* Removes every mesh that is not in use from memory. */
 static void evict(void)
 {
     st_make_room(store, BUDGET - BUDGET / 16);
@@ -65,7 +66,8 @@ static void make(const char *id)
     }
 }
 
-/* Each edit moves vertex 0 to a position that shows its revision. */
+/* Each edit moves vertex 0 to a position that shows its revision: returns whether the mesh has this
+ * revision. */
 static bool is_whole(const he_mesh *m, uint64_t revision)
 {
     double x = he_position(m, (he_vertex){0}).x;
@@ -258,7 +260,8 @@ static void what_is_used_stays_in_memory(void **state)
     he_mem_set_hook(NULL);
 }
 
-/* The meshes used longest ago are evicted, and no more than needed. */
+/* The meshes that were used longest ago must leave memory first, and no more of them than
+ * needed. */
 static void the_least_recently_used_go_first(void **state)
 {
     (void)state;
@@ -272,7 +275,7 @@ static void the_least_recently_used_go_first(void **state)
     for (int i = 0; i < MANY; i++) {
         atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
     }
-    /* An eighth must become free: about as much as one of them takes. */
+    /* An eighth of the memory must become free, which is about what one of the meshes takes. */
     st_memory_set_budget(st_memory_used());
     st_make_room(store, 0);
     st_memory_set_budget(BUDGET);
@@ -310,7 +313,7 @@ static void for_what_never_fits_nothing_goes(void **state)
 
 enum { LARGE = 1 << 20, SIDE = 128 };
 
-/* A store whose meshes use almost all memory. */
+/* Makes a store whose meshes use almost all memory of the budget. */
 static void open_full(void)
 {
     st_memory_install(BUDGET);
@@ -354,7 +357,7 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     assert_non_null(memory);
     const size_t left = in_memory();
     assert_true(left < MESHES);
-    /* A request that could never fit evicts nothing. */
+    /* A request for more memory than the budget must remove no mesh from memory. */
     assert_null(he_mem_alloc(st_memory_budget()));
     assert_int_equal(in_memory(), left);
     st_store_serve(NULL);
@@ -362,7 +365,8 @@ static void a_request_gets_what_cold_meshes_hold(void **state)
     close_full();
 }
 
-/* Under a lock the request is refused, and not delayed: there is nothing to wait for. */
+/* While a thread holds the lock of the store, no mesh can leave memory: an allocation that does not
+ * fit must fail at once and not wait. */
 static void a_request_under_locks_is_not_stopped(void **state)
 {
     (void)state;
@@ -378,7 +382,7 @@ static void a_request_under_locks_is_not_stopped(void **state)
     const size_t before = in_memory();
     void *first = he_mem_alloc(LARGE), *second = he_mem_alloc(LARGE);
     assert_true(first != NULL && second != NULL && in_memory() < before);
-    /* The mesh that is being written stays. */
+    /* The mesh that is being written must stay in memory. */
     st_mesh *found = NULL;
     assert_int_equal(st_find(store, "a", &found), ST_OK);
     st_release(found);
@@ -393,13 +397,13 @@ static void a_request_under_locks_is_not_stopped(void **state)
 /* --- what is on its way to the disk --- */
 
 static slow_journal slow;
-static bool disk_moves; /* while a thread waits for it */
+static bool disk_moves; /* the disk makes progress while a thread waits */
 static unsigned waits;
 
 bool __real_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until);
 
-/* Lets the disk catch up, or the time pass, in place of the wait. */
+/* Replaces the wait of the store: the disk catches up, or the time passes, without waiting. */
 bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until)
 {
     if (!slow.is_heard) {
@@ -414,7 +418,8 @@ bool __wrap_st_clock_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint
     return disk_moves;
 }
 
-/* A store whose one mesh, which is not on the disk yet, holds memory that is all but used up. */
+/* Makes a store whose only mesh is not on the disk yet, so that it cannot leave memory, and uses
+ * almost all of it. */
 static void open_full_and_slow(void)
 {
     st_mesh *mesh = NULL;
@@ -475,7 +480,7 @@ static void a_request_waits_for_the_disk_before_it_is_refused(void **state)
     assert_non_null(memory);
     assert_int_equal(waits, 1);
     assert_int_equal(in_memory(), 0);
-    /* Nothing is on its way any more. */
+    /* No change is on its way to the disk any more, so waiting would not help. */
     assert_null(he_mem_alloc(st_memory_budget() - st_memory_budget() / 8));
     assert_int_equal(waits, 1);
     he_mem_free(memory);
@@ -493,7 +498,7 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     assert_int_equal(in_memory(), MESHES - 1);
     st_mesh *mesh = NULL;
     assert_int_equal(st_find(store, ids[1], &mesh), ST_COLD);
-    /* With enough memory all stay. */
+    /* With enough memory all meshes must stay. */
     st_memory_set_budget(BUDGET);
     for (size_t i = 0; i < store->count; i++) {
         atomic_store(&store->meshes[i]->used, 1);
@@ -503,8 +508,8 @@ static void what_was_not_used_for_a_minute_leaves(void **state)
     close_full();
 }
 
-/* Resident memory besides counted blocks: here a mapping, in a daemon its program and the holes
- * between blocks. */
+/* Resident memory that is not in counted blocks also uses up the budget, so meshes must leave for
+ * it: here it is a mapping; in a daemon it is the program and the gaps between blocks. */
 static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state)
 {
     (void)state;
@@ -522,21 +527,21 @@ static void what_is_resident_beside_counted_blocks_has_meshes_leave(void **state
     memset(beside, 1, BESIDE);
     st_make_room(store, 0);
     st_store_rest(store);
-    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* without a measurement */
+    assert_int_equal(st_find(store, "a", &mesh), ST_OK); /* before resident memory is measured */
     st_release(mesh);
     st_resident_watch();
-    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* it is limited to this */
+    assert_int_equal(st_resident_beside(), SMALL_BUDGET / 2); /* at most half the budget */
     st_make_room(store, 0);
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
 
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
     st_store_rest(
-        store); /* resident bytes exceed the budget, so recently used meshes are evicted, too */
+        store); /* resident memory exceeds the budget, so recently used meshes must leave, too */
     assert_int_equal(st_find(store, "a", &mesh), ST_COLD);
     assert_int_equal(st_load(store, "a", &mesh), ST_OK);
     st_release(mesh);
-    st_store_rest(store); /* they did not grow */
+    st_store_rest(store); /* resident memory has not grown since */
     assert_int_equal(st_find(store, "a", &mesh), ST_OK);
     st_release(mesh);
     munmap(beside, BESIDE);

@@ -1,5 +1,6 @@
-/* The broadcast queue: every listener reads all messages in order, and none that is not released; a
- * slow listener is told so and costs nothing. */
+/* The queue of events: every listener must read all messages in order, and none that is not
+ * released because it is not durable; a slow listener must be told that it missed messages, and
+ * must hold no memory. */
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
@@ -38,7 +39,7 @@ static void join(st_listener *listener, unsigned *wakes)
     st_queue_wake(listener, count_wake, wakes);
 }
 
-/* Adds a message that contains its stamp. */
+/* Adds a message that contains its stamp, the number by which it is released. */
 static void add(uint64_t stamp, uint64_t key)
 {
     char text[32];
@@ -76,7 +77,7 @@ static void everybody_reads_everything_once(void **state)
     join(&late, &late_wakes);
     add(9, 5);
     st_queue_allow(&feed, 9);
-    assert_int_equal(early_wakes, 0); /* it is not waiting yet */
+    assert_int_equal(early_wakes, 0); /* the listener does not wait yet */
     assert_reads(&early, "8;9;");
     assert_reads(&late, "9;");
     add(10, 5);
@@ -84,7 +85,7 @@ static void everybody_reads_everything_once(void **state)
     assert_int_equal(early_wakes, 1);
     add(12, 6);
     st_queue_allow(&feed, 12);
-    assert_int_equal(early_wakes, 1); /* once for each wait */
+    assert_int_equal(early_wakes, 1); /* a listener is woken once for each wait */
     assert_int_equal(late_wakes, 1);
     assert_reads(&early, "10;12;");
     assert_reads(&late, "10;12;");
@@ -108,7 +109,7 @@ static void what_is_not_allowed_is_not_read(void **state)
     assert_int_equal(wakes, 1);
     assert_reads(&listener, "8;9;");
     st_queue_end(&feed);
-    assert_step(&listener, ST_QUEUE_WAIT); /* the end, too, is not released yet */
+    assert_step(&listener, ST_QUEUE_WAIT); /* the end of the stream is not released either */
     st_queue_allow(&feed, 10);
     assert_reads(&listener, "10;");
     assert_step(&listener, ST_QUEUE_ENDED);
@@ -165,7 +166,8 @@ static void who_is_slow_is_behind_once(void **state)
         add(stamp, stamp);
     }
     assert_int_equal(feed.count, ST_QUEUE_MESSAGES);
-    /* Not even the position to continue from may be shown. */
+    /* The position from which a slow listener may continue must not be shown before it is
+     * durable. */
     assert_step(&slow, ST_QUEUE_WAIT);
     st_queue_allow(&feed, stamp - 3);
     assert_step(&slow, ST_QUEUE_BEHIND);
@@ -173,7 +175,7 @@ static void who_is_slow_is_behind_once(void **state)
     assert_int_equal(place.stamp, stamp - 3);
     assert_int_equal(place.key, stamp - 3);
     assert_step(&slow, ST_QUEUE_WAIT);
-    /* A message that was begun is read to its end. */
+    /* A message of which a listener has read a part must be read to its end. */
     assert_int_equal(st_queue_read(&middle, byte, 2, &got), ST_QUEUE_GOT);
     assert_int_equal(got, 1);
     assert_int_equal(byte[0], ';');
@@ -198,10 +200,10 @@ static void bytes_are_bounded_too(void **state)
         assert_true(feed.bytes <= ST_QUEUE_BYTES);
     }
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
-    st_queue_shed(&feed); /* there is a listener */
+    st_queue_shed(&feed); /* keeps its memory: there is a listener */
     assert_int_equal(feed.count, ST_QUEUE_BYTES / LARGE);
     st_queue_leave(&slow);
-    assert_true(st_queue_is_followed(&feed)); /* there was one until recently */
+    assert_true(st_queue_is_followed(&feed)); /* there was a listener until recently */
     st_queue_shed(&feed);
     assert_int_equal(feed.count, 0);
     assert_int_equal(feed.bytes, 0);
@@ -283,7 +285,7 @@ typedef struct reader {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     bool woken, leaves;
-    uint64_t last; /* stamp */
+    uint64_t last; /* stamp of the last message */
     unsigned behind;
 } reader;
 
@@ -307,7 +309,7 @@ static void wait_for_wake(reader *r)
     pthread_mutex_unlock(&r->lock);
 }
 
-/* A message is a stamp of eight bytes; a buffer holds complete ones. */
+/* Each message is a stamp of eight bytes; a buffer must hold complete messages only. */
 static void take(reader *r, const char *bytes, size_t length)
 {
     for (size_t at = 0; at < length; at += sizeof(uint64_t)) {

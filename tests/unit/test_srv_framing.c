@@ -1,5 +1,5 @@
-/* Finding target, body and headers of a request, and requests for other servers. Ambiguous and too
- * large requests are found in their bytes: test_srv_syntax.c. */
+/* Finding the target, the body and the headers of a request, and requests that are meant for other
+ * servers. test_srv_syntax.c tests ambiguous and too large requests. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/syntax/http_framing.h"

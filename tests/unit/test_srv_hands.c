@@ -1,5 +1,5 @@
-/* Parallel work: each part is run once, on whichever thread, and the result does not depend on
- * that. */
+/* Parallel work: each part is run exactly once, on whichever thread, and the result does not depend
+ * on the threads. */
 #include "tests/unit/fixture.h"
 
 #include "algo/subdivide.h"
@@ -20,7 +20,7 @@ enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
 
 typedef struct tally {
     _Atomic uint32_t runs[PARTS];
-    const he_exec *exec; /* with it each part is divided into parts again */
+    const he_exec *exec; /* if not NULL, each part divides its work into parts again */
     uint32_t failing;    /* this part and all later ones fail */
 } tally;
 
@@ -143,12 +143,13 @@ static void work_is_given_up_between_parts_on_its_own_thread(void **state)
 
 /* --- what core computes in parallel --- */
 
-/* Soups large enough for many parts; vertices and faces are in random order if `shuffled`. */
+/* The soups are large enough for many parts; if `shuffled` is set, their vertices and faces are in
+ * random order. */
 enum { SIDE = 220 };
 
 static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
 {
-    /* 7919 is prime and divides neither count below. */
+    /* The prime 7919 divides neither of the counts below, so each number is reached once. */
     return shuffled ? (uint32_t)((uint64_t)i * 7919u % count) : i;
 }
 
@@ -171,7 +172,7 @@ static void add_torus(he_soup *soup, bool shuffled)
     }
 }
 
-/* Quads and pentagons with holes in them, and a fan of triangles around one vertex. */
+/* Adds quads and pentagons with holes between them, and a fan of triangles around one vertex. */
 static void add_mixed(he_soup *soup)
 {
     for (uint32_t v = 0; v < (SIDE + 1) * (SIDE + 1) + 2 * SIDE * SIDE; v++) {
@@ -232,7 +233,7 @@ static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
     }
 }
 
-/* Returns the normals of all faces, then of all corners; the caller frees them. */
+/* Returns the normals of all faces, then of all corners; the caller must free them. */
 static he_vec3 *normals_of(const he_mesh *mesh, he_watch *watch)
 {
     size_t faces = he_mesh_issued(mesh, HE_FACE),
@@ -246,7 +247,8 @@ static he_vec3 *normals_of(const he_mesh *mesh, he_watch *watch)
 
 enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
 
-/* The result of a scheme; loop refuses faces other than triangles and names one. */
+/* The result of a subdivision; the scheme `loop` refuses faces other than triangles, and
+ * names one. */
 typedef struct subdivided {
     he_mesh *mesh;
     he_status status;
@@ -311,7 +313,8 @@ static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **sta
 static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 {
     (void)state;
-    /* A third face on two edges, a face given twice, and a second closed fan at a vertex. */
+    /* The additional faces make a third face on two edges, a duplicate, and a second closed fan at
+     * a vertex. */
     static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
     for (int which = 0; which < 3; which++) {
         static he_report alone, report;

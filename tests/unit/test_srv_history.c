@@ -1,5 +1,6 @@
-/* The history of a stored mesh: earlier revisions and cursors along them equal the mesh at that
- * time, with columns that were added and removed, within the budget, while other threads write. */
+/* The history of a stored mesh: earlier revisions, and cursors along them, must equal the mesh at
+ * that time, with columns that were added and removed, within the memory budget, and while other
+ * threads write. */
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -60,7 +61,7 @@ static void drop_column(he_mesh *m)
     }
 }
 
-/* Makes one edit; a refused one makes no revision. */
+/* Makes one edit, which may be refused; then there is no new revision. */
 static void edit(st_mesh *mesh, md_random *random, unsigned serial)
 {
     char text[96];
@@ -122,7 +123,8 @@ static uint64_t head_of(st_mesh *mesh, he_mesh **content)
     return info.revision;
 }
 
-/* Copies of all revisions, except those that a change of several steps passed through. */
+/* Copies of the mesh at all revisions, except revisions that an undo or redo of several steps
+ * passed through. */
 typedef struct album {
     he_mesh *at[MOST];
     uint64_t head;
@@ -179,7 +181,7 @@ static void snapshots_of_earlier_revisions(void **state)
         take_picture(&pictures, mesh);
         uint64_t revision = 1 + md_below(&random, (uint32_t)pictures.head);
         expect_snapshot(&pictures, mesh, revision);
-        if (i % 16 == 0) { /* a cursor is still open, so the copy must stay */
+        if (i % 16 == 0) { /* its cursor is still open, so the copy must stay */
             if (held != NULL) {
                 st_snapshot_release(held);
             }
@@ -237,7 +239,7 @@ static void a_walk_follows_the_mesh(void **state)
         assert_int_equal(st_cursor_begin(mesh, from, &walk), ST_OK);
         assert_int_equal(st_cursor_begin(mesh, pictures.head + 1, &none), ST_AHEAD);
         follow(&pictures, walk, pictures.head);
-        /* Continues while the mesh changes, with columns that only the mesh owns. */
+        /* The cursor continues while the mesh changes and gets columns that only the mesh owns. */
         for (unsigned i = 0; i < 30; i++) {
             change(mesh, &random, 100 + i);
             take_picture(&pictures, mesh);
@@ -252,9 +254,8 @@ static void a_walk_follows_the_mesh(void **state)
     }
 }
 
-/* What a cursor lends stays after the log dropped it; and the cursor reports when the history was
- * cut behind it.
- */
+/* The mesh that a cursor has lent must stay after its entry was dropped from the log; and the
+ * cursor must report that the history was cut behind it. */
 static void a_walk_is_told_that_the_history_was_cut(void **state)
 {
     (void)state;
@@ -289,7 +290,8 @@ static void a_walk_is_told_that_the_history_was_cut(void **state)
 
 /* --- memory --- */
 
-/* After undo the log owns a column: its bytes are counted there. */
+/* After an undo, a column that the edit had added belongs to the log: its bytes must be counted in
+ * the log's budget. */
 static void the_log_keeps_its_budget(void **state)
 {
     (void)state;
@@ -403,8 +405,8 @@ static void every_allocation_may_fail(void **state)
 enum { ROUNDS = 400, THREADS = 4 };
 static _Atomic bool writing, broken;
 
-/* Vertices 0 and 1 are at one position in each revision, which identifies it: x is the revision of
- * the edit that put them there. */
+/* In each revision the vertices 0 and 1 are at one position that identifies the revision: x is the
+ * revision of the edit that put them there. */
 static void *write_on(void *context)
 {
     st_mesh *mesh = context;

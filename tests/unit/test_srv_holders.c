@@ -1,5 +1,6 @@
-/* Quotas of holders, on a disk: counts include all meshes, in memory or not, stay within the limits
- * under concurrent requests, and follow losses. */
+/* Quotas of holders of tokens, in a store on a disk: the counts include all meshes, in memory
+ * or not, stay within the limits under concurrent requests, and are corrected when changes
+ * are lost. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -52,7 +53,7 @@ static int remove_folder(void **state)
     return 0;
 }
 
-/* A store without a thread of its own, so that the hook for memory can be set. */
+/* Makes a store without threads, so that the hook for allocations can be set. */
 static int keep_in_memory(void **state)
 {
     (void)state;
@@ -157,7 +158,7 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     limit("alice", 2, 0);
     expect("alice", 2);
     assert_int_equal(bytes_of("alice"), bytes);
-    assert_int_equal(create("e", "alice"), ST_QUOTA); /* none of them is in memory */
+    assert_int_equal(create("e", "alice"), ST_QUOTA); /* none of her meshes is in memory */
     st_mesh *mesh = load("a");
     assert_string_equal(st_holder_of(mesh), "alice");
     st_release(mesh);
@@ -166,7 +167,7 @@ static void a_holder_s_meshes_are_counted_in_memory_or_not_and_given_back(void *
     expect("alice", 1);
     assert_int_equal(create("e", "alice"), ST_OK);
     assert_int_equal(create("f", "alice"), ST_QUOTA);
-    limit("bob", 1, 0); /* and alice has no limit */
+    limit("bob", 1, 0); /* alice has no limit now */
     assert_int_equal(create("f", "alice"), ST_OK);
     assert_int_equal(create("g", "bob"), ST_QUOTA);
 
@@ -211,8 +212,8 @@ static void what_would_grow_beyond_the_bytes_is_refused_and_changes_nothing(void
     assert_int_equal(bytes_of("alice"), grown);
     assert_int_equal(create("n", "alice"), ST_QUOTA);
 
-    /* A PUT that makes the mesh smaller is accepted from any holder; one that makes it larger is
-     * not. */
+    /* The creator of the mesh is over the quota: a write that makes the mesh smaller is accepted
+     * from any holder of a token, and one that makes it larger is not. */
     st_mesh *mesh = load("m");
     st_write w;
     assert_int_equal(st_write_begin(mesh, &(st_cause){.holder = "bob"}, &w), ST_OK);

@@ -1,5 +1,6 @@
-/* The real server in this process, over real sockets: answers wait for a journal that is slow on
- * purpose (D1), a full job queue and too many connections are 503, a stop ends everything. */
+/* The real server in the process of the test, over real sockets, on a journal that the test can
+ * make slow: answers must wait until what they show is durable (D1), a full job queue and too many
+ * connections must give 503, and a stop must end everything. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 
@@ -118,7 +119,7 @@ static void ask(int fd, const char *method, const char *path, const char *body)
     assert_int_equal(send(fd, request, (size_t)length, MSG_NOSIGNAL), length);
 }
 
-/* Reads the next answer to its end and returns its status; `text` gets all of it. */
+/* Reads the next answer to its end and returns its status; `text` becomes the whole answer. */
 static int answer(int fd, char *text, size_t size)
 {
     size_t got = 0;
@@ -154,7 +155,8 @@ static int round_trip(const char *method, const char *path, const char *body)
     return status;
 }
 
-/* The only worker has served other requests since, so an answer that could be sent was sent. */
+/* Requires that an answer is held back. The only worker has served other requests since, so an
+ * answer that could be sent would have arrived. */
 static void assert_held(int fd)
 {
     char byte;
@@ -173,14 +175,15 @@ static void test_answers_wait_until_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     assert_held(writer);
-    /* A read of a state that is not durable waits, too. */
+    /* The answer to a read of a state that is not durable must wait, too. */
     ask(reader, "GET", "/v1/meshes/m", "");
     assert_held(reader);
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     assert_int_equal(answer(reader, text, sizeof text), 200);
 
-    /* On the same connections, with a second revision: only answers that show it wait. */
+    /* The second revision is written on the same connections: only answers that show it may
+     * wait. */
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"tetrahedron\"}");
     slow_journal_wait(&slow, 2);
     assert_held(writer);
@@ -192,7 +195,8 @@ static void test_answers_wait_until_durable(void **state)
     assert_int_equal(answer(reader, text, sizeof text), 200);
     assert_non_null(strstr(text, "\"revision\":2"));
 
-    /* A change that makes no revision can be lost as well. */
+    /* A change that makes no revision, such as a new name, can be lost as well, so answers must
+     * wait for it. */
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"other\"}");
     slow_journal_wait(&slow, 3);
     assert_held(writer);
@@ -210,7 +214,7 @@ static void test_answers_wait_until_durable(void **state)
     close(reader);
 }
 
-/* Reads until the bytes contain `text`. */
+/* Reads until the bytes from the server contain `text`. */
 static void read_until(int fd, const char *text)
 {
     char all[8192];
@@ -224,7 +228,8 @@ static void read_until(int fd, const char *text)
     } while (strstr(all, text) == NULL);
 }
 
-/* D1 for answers about no single mesh: lists, and meshes that do not exist any more. */
+/* Answers that show more than one mesh must wait until all that they show is durable (D1): lists,
+ * and answers that a mesh does not exist any more. */
 static void lists_and_absence_wait_until_durable(void **state)
 {
     (void)state;
@@ -261,7 +266,7 @@ static void lists_and_absence_wait_until_durable(void **state)
             assert_held(fds[i]);
         }
     }
-    /* Answers that show nothing stored wait for no journal. */
+    /* Answers that show nothing from the store must not wait for the journal. */
     static const char *const free_of_it[] = {
         "/livez", "/readyz", "/version", "/v1/operations", "/v1/openapi.json", "/problems/stale"};
     for (size_t i = 0; i < sizeof free_of_it / sizeof *free_of_it; i++) {
@@ -283,8 +288,8 @@ static void lists_and_absence_wait_until_durable(void **state)
     close(early);
 }
 
-/* A mesh that is not being changed is read at once, however far behind the journal is with
- * others. */
+/* A mesh that is not being changed must be read at once, however far the journal is behind with
+ * other meshes. */
 static void an_idle_mesh_never_waits(void **state)
 {
     (void)state;
@@ -304,7 +309,8 @@ static void an_idle_mesh_never_waits(void **state)
     slow_journal_advance(&slow, 2);
 }
 
-/* Not modified, gone, stale, refused, dry run: all of them show the state of the mesh. */
+/* Answers of every kind show the state of the mesh, so all must wait: not modified, gone, stale,
+ * refused, dry run. */
 static void every_kind_of_answer_waits(void **state)
 {
     (void)state;
@@ -344,8 +350,8 @@ static void every_kind_of_answer_waits(void **state)
     close(writer);
 }
 
-/* A loss that is reported before the answer is held, and one reported later: neither is answered as
- * a success. */
+/* A loss may be reported before the answer is held back or after that: in neither case may the
+ * request be answered as a success. */
 static void an_answer_that_shows_what_was_lost_is_503(void **state)
 {
     (void)state;
@@ -368,17 +374,18 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     assert_non_null(strstr(text, "\"code\":\"store_failed\""));
     assert_non_null(strstr(text, loss.reason));
     assert_non_null(strstr(text, "Retry-After: "));
-    /* A reader of the lost state must ask again; this journal has no mesh for it then. */
+    /* The client that read the lost state must send its request again; this journal has no mesh for
+     * it then. */
     assert_int_equal(answer(reader, text, sizeof text), 503);
     assert_non_null(strstr(text, "\"code\":\"store_lost\""));
     assert_non_null(strstr(text, "Retry-After: 0"));
     ask(writer, "GET", "/v1/meshes/m", "");
     assert_int_equal(answer(writer, text, sizeof text), 404);
-    /* No listener gets its event. */
+    /* No listener may get the event of the lost change. */
     read_until(listener, "\"reason\":\"lost\"");
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
-    /* Other meshes lost nothing. */
+    /* Other meshes have lost nothing. */
     slow_journal_advance(&slow, 3);
     assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);
@@ -394,14 +401,14 @@ static void test_events_wait_until_durable(void **state)
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
     slow_journal_wait(&slow, 1);
     ask(listener, "GET", "/v1/meshes/m/events", "");
-    assert_held(listener); /* the state where it begins is not durable itself */
+    assert_held(listener); /* the state from which it begins is not durable itself */
     slow_journal_advance(&slow, 1);
     assert_int_equal(answer(writer, text, sizeof text), 201);
     read_until(listener, ".1\n\n");
     ask(writer, "PATCH", "/v1/meshes/m", "{\"name\":\"first\"}");
     slow_journal_wait(&slow, 2);
     assert_held(listener);
-    /* The next one is added while the first still waits. */
+    /* A second change is made while the event of the first one still waits. */
     int other = connect_client();
     ask(other, "PATCH", "/v1/meshes/m", "{\"name\":\"second\"}");
     slow_journal_wait(&slow, 3);
@@ -419,7 +426,7 @@ static void test_events_wait_until_durable(void **state)
     ask(writer, "DELETE", "/v1/meshes/m", "");
     slow_journal_wait(&slow, 4);
     assert_held(listener);
-    /* What was not durable is not sent at the end either. */
+    /* An event that is not durable must not be sent when the server stops either. */
     assert_int_equal(stop(state), 0);
     read_until(listener, "\"stopping\"");
     read_until(late, "\"stopping\"");
@@ -430,7 +437,8 @@ static void test_events_wait_until_durable(void **state)
     start(state);
 }
 
-/* Known before the body arrived, sent when the state it shows is durable. */
+/* The refusal is known before the body of the request arrives, but must be sent only when the state
+ * that it shows is durable. */
 static void test_early_refusals_wait_too(void **state)
 {
     (void)state;
@@ -481,7 +489,7 @@ static void wait_at_gate(void *context)
     pthread_mutex_unlock(&gate);
 }
 
-/* Blocks the only thread for long work. */
+/* Blocks the only thread for long work, until open_gate() is called. */
 static void shut_gate(void)
 {
     gate_entered = gate_open = false;
@@ -520,7 +528,7 @@ static void test_full_queue_is_503(void **state)
     assert_non_null(strstr(text, "RateLimit: \"requests\";r=9999"));
 
     open_gate();
-    /* The request was refused without closing the connection. The queue may still be emptying. */
+    /* The refusal must not have closed the connection. The queue may still be full for a moment. */
     int status;
     do {
         ask(fd, "POST", "/v1/meshes", large);
@@ -530,7 +538,7 @@ static void test_full_queue_is_503(void **state)
     close(fd);
 }
 
-/* The client disconnects at once, by a reset. */
+/* Disconnects a client by a reset. */
 static void hang_up(int fd)
 {
     const struct linger at_once = {.l_onoff = 1};
@@ -538,7 +546,8 @@ static void hang_up(int fd)
     close(fd);
 }
 
-/* A stop does not wait for a client that disconnected while its request was suspended. */
+/* A client disconnects while its request is suspended to wait for the journal: a stop must not wait
+ * for it. */
 static void test_a_stop_after_a_held_client_hung_up(void **state)
 {
     int writer = connect_client();
@@ -565,7 +574,7 @@ static void test_a_stop_after_a_working_client_hung_up(void **state)
     start(state);
 }
 
-/* Work for a client that disconnected is cancelled. */
+/* If a client disconnects, the work for its request must be cancelled. */
 static void test_work_of_who_hung_up_is_given_up(void **state)
 {
     (void)state;
@@ -578,14 +587,14 @@ static void test_work_of_who_hung_up_is_given_up(void **state)
     hang_up(writer);
     open_gate();
     int status;
-    do { /* until the queue accepts the request, and after that */
+    do { /* the queue is full until the cancelled work has left it */
         status = round_trip("PUT", "/v1/meshes/n", large);
     } while (status == 503);
     assert_int_equal(status, 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/m", ""), 404);
 
-    /* A client that closed only its writing side can still read. The server waits a second for it,
-     * so the test uses the shortest work that leaves the worker. */
+    /* A client that has closed only its writing side can still read its answer. The server gives it
+     * a second, so the test uses the shortest work that leaves the worker. */
     char text[8192];
     writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":4}");
@@ -601,7 +610,8 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     read_seconds = 0;
     start(state);
     slow_journal_advance(&slow, UINT64_MAX);
-    /* Large enough that the read leaves the worker. Imports and edits have no such limit. */
+    /* The mesh is so large that a read leaves the worker. The limit of time applies to reads, and
+     * not to imports and edits. */
     int fd = connect_client();
     ask(fd, "PUT", "/v1/meshes/m", "{\"shape\":\"icosphere\",\"subdivisions\":6}");
     assert_int_equal(answer(fd, text, sizeof text), 201);
@@ -623,7 +633,7 @@ static void a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one
     start(state);
 }
 
-/* Sends everything and the end of the stream in one segment, so that the server notices both at
+/* Sends a request and the end of the stream in one segment, so that the server notices both at
  * once. */
 static void send_with_end(int fd, const char *text)
 {
@@ -664,7 +674,7 @@ static void a_client_that_ends_with_its_request_is_answered_and_closed(void **st
         read_to_end(fd, text, sizeof text);
         close(fd);
         assert_int_equal(count_of(text, "HTTP/1.1 200"), answers[i]);
-        /* The last answer says that the connection closes. */
+        /* Only the last answer may say that the connection closes. */
         assert_int_equal(count_of(text, "Connection: close"), 1);
         const char *last = text;
         for (const char *at = text; (at = strstr(at, "HTTP/1.1 200")) != NULL; at++) {
@@ -693,14 +703,14 @@ static void test_too_many_connections(void **state)
         close(fds[i]);
     }
     int status;
-    do { /* until the server has noticed that they are gone */
+    do { /* until the server has noticed that the clients are gone */
         status = round_trip("GET", "/livez", "");
     } while (status == 503);
     assert_int_equal(status, 200);
 }
 
-/* A refused body: if it is small, it is skipped and the connection stays open; if it is large or
- * endless, it is cut off, with the reason. */
+/* The body of a refused request is skipped if it is small, and the connection stays open; if it is
+ * large or endless, the connection is closed after the refusal is sent. */
 static void test_refused_bodies(void **state)
 {
     (void)state;
@@ -743,7 +753,8 @@ static void test_refused_bodies(void **state)
     close(fd);
 }
 
-/* If libmicrohttpd read from the socket without the check. */
+/* If libmicrohttpd read bytes from a socket that the syntax check has not seen, the request must
+ * not be served. */
 static void a_request_that_was_not_checked_is_not_served(void **state)
 {
     (void)state;

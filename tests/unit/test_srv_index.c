@@ -1,5 +1,5 @@
-/* The start of a store compares the list of its meshes with the indexes (sqlite_index.c), for any
- * number of meshes. */
+/* When a store starts, the list of its meshes is compared with the indexes of the database
+ * (sqlite_index.c), for any number of meshes. */
 #include "tests/pace.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
@@ -57,7 +57,8 @@ static void run_sql(const char *text)
     assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
-/* A store that counts this many meshes; the start does not check the checksums of their rows. */
+/* Makes a store with this many meshes in its list; their rows need no correct checksums, since the
+ * start does not check these. */
 static void make_store(size_t meshes)
 {
     char text[1024];
@@ -75,7 +76,8 @@ static void make_store(size_t meshes)
     run_sql(text);
 }
 
-/* Flips one bit at a time in each place where the id is stored: in the row, and in the index. */
+/* Flips one bit at a time wherever the id is stored, in the row and in the index; returns how many
+ * starts were refused. */
 static unsigned expect_refusals(const char *id)
 {
     size_t size;
@@ -105,7 +107,7 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     expect_start(folder);
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
-    /* Index entries of another key. */
+    /* The index is replaced by the index of another column. */
     run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
             "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "
             "WHERE name = 'sqlite_autoindex_mesh_2'");

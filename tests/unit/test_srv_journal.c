@@ -1,5 +1,5 @@
-/* The journal in a folder (core/journal/sqlite) alone: appended records are there after a restart,
- * and damage is named. */
+/* The journal in a folder (core/journal/sqlite) by itself: records that were appended are there
+ * after a restart, and damage is named. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -80,8 +80,8 @@ static kept_mesh mesh_as(const char *id, const he_mesh *content)
     return mesh;
 }
 
-/* The result of loading a mesh: the content of the base, and how many records of each kind
- * follow. */
+/* The result of loading a mesh: the content of the base (the record with a whole content), and how
+ * many records of each kind follow it. */
 typedef struct loaded {
     st_status status;
     st_card card;
@@ -90,7 +90,7 @@ typedef struct loaded {
     unsigned records, edits, renames, staged;
     uint64_t last; /* number of the last record */
     char name[ST_MESH_NAME + 1];
-    unsigned char body[64]; /* of the last edit */
+    unsigned char body[64]; /* of the last record of an edit */
     size_t body_size;
     he_mesh *staged_content;
 } loaded;
@@ -101,7 +101,8 @@ static void loaded_clear(loaded *l)
     he_mesh_free(l->staged_content);
 }
 
-/* A mesh found damaged is marked, as the store does it. */
+/* Reads the next piece of a mesh; if it is damaged, marks the mesh as damaged, as the store
+ * does. */
 static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *out)
 {
     st_status status = j->read(reader, out);
@@ -111,7 +112,7 @@ static st_status read_piece(const st_journal *j, st_reader *reader, st_piece *ou
     return status;
 }
 
-/* Reads the parts that follow a piece. */
+/* Reads the parts of a content, which follow a piece. */
 static st_status load_parts(const st_journal *j, st_reader *reader, uint64_t parts, he_mesh **out)
 {
     he_stored_reader *content;
@@ -231,7 +232,7 @@ static void what_was_appended_is_there_after_a_restart(void **state)
     assert_int_equal(l.body[0], 49);
     assert_int_equal(l.card.counts.faces, he_mesh_faces(content));
     loaded_clear(&l);
-    /* Positions continue. */
+    /* Positions must continue where they were before the restart. */
     assert_true(kept_append(j, kept_edit(&b), &b, "x", 1) == last + 1);
     l = load(j, "b");
     assert_int_equal(l.status, ST_OK);
@@ -271,7 +272,7 @@ static void cards_are_listed_in_the_order_of_ids(void **state)
     st_card card;
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_ABSENT);
     assert_int_equal(j->open(j->self, "z", &card, NULL), ST_OK);
-    /* The id can be used by another incarnation. */
+    /* The id of a deleted mesh can be given to another one, with another incarnation. */
     kept_mesh again = mesh_as("c", content);
     kept_append(j, kept_content(&again), &again, NULL, 0);
     assert_int_equal(j->open(j->self, "c", &card, NULL), ST_OK);
@@ -306,7 +307,8 @@ static void wait_until_purged(told_journal *told)
     const st_room_need need = {.records = 1};
     st_room *room;
     st_card card;
-    /* Each read lets a commit pass; purging proceeds while there are writes. */
+    /* A deleted content is purged in steps between commits, so this loop writes until all is
+     * gone. */
     do {
         assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
         j->leave(j->self, room);
@@ -323,7 +325,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     st_stage *stage;
     const st_journal *j = &told.journal;
     kept_append(j, kept_edit(&mesh), &mesh, "x", 1);
-    /* An edit with a content that can be undone: the base stays. */
+    /* The content is replaced by an edit that can be undone, so the base must stay. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     st_record record = kept_edit(&mesh);
     record.stage = stage;
@@ -334,7 +336,7 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(l.staged, 1);
     assert_true(l.base.number == 1);
     loaded_clear(&l);
-    /* A PUT: everything before it is purged. */
+    /* The content is replaced by a PUT, so everything before it must be purged. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     record = kept_content(&mesh);
     record.stage = stage;
@@ -350,13 +352,13 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(number_of("SELECT count(*) FROM record"), 1);
     assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 1);
     assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
-    /* A stage that is not used leaves nothing. */
+    /* A content that was staged and not used must leave nothing on the disk. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->unstage(j->self, stage);
     kept_append(j, kept_edit(&mesh), &mesh, "z", 1);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
-    /* And after the deletion there is nothing at all. */
+    /* After the mesh is deleted, nothing of it must be left. */
     kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
@@ -425,7 +427,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     for (unsigned char i = 0; i < 20; i++) {
         kept_append(j, kept_edit(&mesh), &mesh, &i, 1);
     }
-    kept_mesh behind = mesh; /* the snapshot is of record 22 */
+    kept_mesh behind = mesh; /* the new base will be the state after record 22 */
     st_record facts = kept_edit(&behind);
     facts.name = mesh.name;
     facts.inverts = 3;
@@ -434,7 +436,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->rebase(j->self, stage, &facts, facts.revision);
     loaded l = load(j, "a");
-    /* Because of the order of queues, the load may have begun before the rebase was accepted. */
+    /* The load may have been queued before the new base was accepted, so the first result is not
+     * checked. */
     loaded_clear(&l);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "d", 1));
     l = load(j, "a");
@@ -446,7 +449,8 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     loaded_clear(&l);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT min(number) FROM record"), 23);
-    /* The record that it belongs to never existed: nothing happens, and nothing is left. */
+    /* The new base is for a record number that never existed: it must be ignored, and leave
+     * nothing. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
@@ -467,7 +471,7 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
 
 /* --- damage --- */
 
-/* Makes a closed store of two meshes, "good" and "bad". */
+/* Makes a store of two meshes, "good" and "bad", and closes it. */
 static void make_two(void)
 {
     told_journal told;
@@ -531,7 +535,8 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         st_card at_once;
         assert_int_equal(j->open(j->self, "bad", &at_once, NULL), ST_DAMAGED);
         assert_true(at_once.damage[0] != '\0');
-        /* The damage is on the card from now on. */
+        /* From now on, the description of the damage must be on the card of the mesh, its row in
+         * the list. */
         kept_mesh other = mesh_as("other", NULL);
         he_mesh *content = script_mesh("012", NULL);
         other.content = content;
@@ -545,7 +550,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
         assert_int_equal(l.status, ST_OK);
         assert_int_equal(l.edits, 5);
         loaded_clear(&l);
-        /* It can be deleted by its card, and created again. */
+        /* A damaged mesh can be deleted with the facts on its card, and created again. */
         kept_mesh bad = {.incarnation = card.incarnation, .number = card.record};
         memcpy(bad.id, card.id, sizeof bad.id);
         bad.revision = card.revision;
@@ -608,7 +613,8 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused("/proc/1/no/folder", "cannot make");
 }
 
-/* Every key is written to its pages, so the first write would fail for ever. */
+/* The start reads every page of the table of keys and must find the damage; otherwise the first
+ * write to it would fail, and every later one. */
 static void a_damaged_table_of_keys_refuses_the_start(void **state)
 {
     (void)state;
@@ -621,8 +627,8 @@ static void a_damaged_table_of_keys_refuses_the_start(void **state)
 
 enum { EDITS = 4 };
 
-/* Opens the copy: it must be refused with a sentence, or contain everything that was
- * acknowledged. */
+/* Opens a copy of the store whose write-ahead log is damaged at some place: it must be refused with
+ * a sentence, or contain everything that was acknowledged. */
 static bool open_copy(const char *copy, const char *what, size_t at)
 {
     st_sqlite_opened out;
@@ -645,7 +651,8 @@ static bool open_copy(const char *copy, const char *what, size_t at)
     return whole;
 }
 
-/* The files that kill -9 leaves of a store with a mesh "a" and some edits, all acknowledged. */
+/* Makes the files that kill -9 leaves of a store with a mesh "a" and some edits, all of them
+ * acknowledged. */
 static void make_killed(const char *copy)
 {
     told_journal told;
@@ -734,7 +741,8 @@ static void a_flipped_bit_is_refused_or_named_or_harmless(void **state)
     folder_remove(copy);
 }
 
-/* The process that fills a new store may be killed before it is done. */
+/* The process that fills a new store may be killed before it is done: the next start must then fill
+ * it again. */
 static void a_store_is_new_until_its_first_start_is_over(void **state)
 {
     (void)state;

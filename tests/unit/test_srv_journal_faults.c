@@ -1,5 +1,6 @@
 /* The journal in a folder when the disk is full, slow or failing, and when memory is out:
- * acknowledged records are there, others are reported as lost, and nothing else changes. */
+ * acknowledged records must be there, others must be reported as lost, and nothing else may
+ * change. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
@@ -84,7 +85,8 @@ static st_status count_records(const st_journal *j, const char *id, unsigned *re
     return status;
 }
 
-/* Reserves again and again until the refusal ends; the journal gets there without further calls. */
+/* Reserves again and again until the journal no longer refuses with `refusal`; it must get there by
+ * itself. */
 static st_room *reserve_after(const st_journal *j, st_status refusal, bool freeing)
 {
     const st_room_need need = {.records = 1, .bytes = 16, .freeing = freeing};
@@ -127,7 +129,7 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     assert_int_equal(records, 1);
     disk_fill(false);
     j->leave(j->self, reserve_after(j, ST_FULL, false));
-    /* The number of the lost record can be used again. */
+    /* The number of the lost record must be free for the next one. */
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "4", 1));
     assert_int_equal(count_records(j, "a", &records), ST_OK);
     assert_int_equal(records, 2);
@@ -135,9 +137,9 @@ static void a_full_disk_loses_what_is_queued_and_recovers(void **state)
     told_end(&told);
 }
 
-/* Files that SQLite does not write get no disk space either. */
+/* With `no_space`, files that SQLite does not write get no disk space either. */
 static _Atomic bool no_space;
-static _Atomic unsigned asked_for_space; /* number of requests for disk space */
+static _Atomic unsigned asked_for_space; /* number of such requests for disk space */
 
 int __real_fstatvfs(int file, struct statvfs *out);
 int __wrap_fstatvfs(int file, struct statvfs *out);
@@ -157,7 +159,7 @@ int __wrap_posix_fallocate(int file, off_t from, off_t size)
     return no_space ? ENOSPC : __real_posix_fallocate(file, from, size);
 }
 
-/* The folder whose sync is watched, and may fail. */
+/* The folder whose syncs are counted, and fail if the test wants that. */
 static struct stat watched;
 static bool watched_fails;
 static unsigned watched_syncs;
@@ -177,7 +179,8 @@ int __wrap_fsync(int file)
     return watched_fails ? -1 : __real_fsync(file);
 }
 
-/* Otherwise a power loss removes the folder with everything acknowledged in it. */
+/* A new folder must be followed by a sync of the folder above it; otherwise a power loss could
+ * remove it together with everything acknowledged in it. */
 static void the_folder_above_a_new_one_is_synced(void **state)
 {
     (void)state;
@@ -197,7 +200,7 @@ static void the_folder_above_a_new_one_is_synced(void **state)
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
-        /* Once is enough. */
+        /* A second start must not sync the folder above again. */
         assert_true(st_sqlite_open(&options, &out));
         out.journal.close(out.journal.self);
         assert_int_equal(watched_syncs, 2);
@@ -213,7 +216,8 @@ static bool has_ballast(void)
     return size > 0;
 }
 
-/* The ballast file makes space for the start, and the rest of it for deletions. */
+/* The ballast is a file that only reserves space. On a full disk, a part of it must be given up for
+ * the start, and the rest for deletions. */
 static void a_store_starts_from_a_full_disk(void **state)
 {
     (void)state;
@@ -248,7 +252,8 @@ static st_health health_of(const st_journal *j)
     return health;
 }
 
-/* The -wal file has space that is reused, so a successful write shows nothing. */
+/* SQLite writes into reused space of its log, so a successful write does not show that there is
+ * space again; the journal must check that itself. */
 static void a_full_disk_stays_full_until_there_is_space(void **state)
 {
     (void)state;
@@ -303,7 +308,7 @@ static void rooms_from_before_are_lost_too_and_nothing_is_admitted_meanwhile(voi
     assert_true(told.loss.from == last && told.loss.to == last);
     assert_int_equal(j->reserve(j->self, &removal, &room), ST_FULL);
     j->leave(j->self, left);
-    /* Now a deletion is accepted, and then everything. */
+    /* After some space was freed, first a deletion must be accepted, and then everything. */
     room = reserve_after(j, ST_FULL, true);
     record = kept_remove(&mesh);
     told_wait(&told, j->append(j->self, room, &record, 1));
@@ -350,8 +355,8 @@ static void what_was_made_and_lost_was_never_there(void **state)
 
 enum { EDITS = 12 };
 
-/* Appends one record at a time while the N-th sync fails. Returns how many were acknowledged, the
- * creation first. */
+/* Appends one record at a time while the N-th sync fails. Returns how many were acknowledged; the
+ * first one creates the mesh. */
 static unsigned append_while_failing(told_journal *told, kept_mesh *mesh)
 {
     const st_journal *j = &told->journal;
@@ -400,8 +405,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
         open_store(&told, 0);
         unsigned records = 0;
         st_status status = count_records(&told.journal, "a", &records);
-        /* A record that was not acknowledged may be there: it had reached the disk before the
-         * sync. */
+        /* One record more than was acknowledged may be there, since it had reached the disk before
+         * the sync failed. */
         assert_true(status == ST_OK ? records + 1 >= acknowledged && records <= acknowledged
                                     : status == ST_ABSENT && acknowledged == 0);
         told_end(&told);
@@ -412,7 +417,8 @@ static void after_a_failed_sync_nothing_is_acknowledged(void **state)
     assert_true(runs > EDITS && opened > EDITS);
 }
 
-/* The store checks for space on its own: a sync that fails there counts like any other. */
+/* The journal checks by itself whether a full disk has space again; if the sync of this check
+ * fails, that must end writing like any failed sync. */
 static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
 {
     (void)state;
@@ -486,7 +492,7 @@ static void a_slow_disk_bounds_the_queue(void **state)
     assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);
     disk_hold(false);
     told_wait(&told, last);
-    /* A record larger than the queue is accepted when the queue is empty. */
+    /* A record larger than the whole queue must be accepted when the queue is empty. */
     st_status status;
     while ((status = j->reserve(j->self, &large, &room)) == ST_BEHIND) {
         sched_yield();
@@ -545,7 +551,7 @@ static void fail_memory_at(long n)
     }
 }
 
-/* Does everything once. The caller checks what was done. */
+/* Makes each kind of change once; the caller checks which of them were done. */
 static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
 {
     const st_journal *j = &told->journal;

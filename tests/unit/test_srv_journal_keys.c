@@ -1,4 +1,5 @@
-/* Idempotency-Keys in a folder: those of the last day are restored, completely or not at all. */
+/* Idempotency-Keys in the journal of a folder: the keys of the last day are restored, completely or
+ * not at all. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -45,7 +46,7 @@ static int teardown(void **state)
 typedef struct taken {
     char texts[MOST][32], holders[MOST][32];
     st_kept_key keys[MOST];
-    size_t count, most; /* no more than `most` are accepted */
+    size_t count, most; /* at most `most` keys are accepted from the journal */
 } taken;
 
 static bool take(void *context, const st_kept_key *key)
@@ -67,7 +68,7 @@ static taken keys_of(const char *id)
     return t;
 }
 
-static const char *holder = NULL; /* of the keys that are appended */
+static const char *holder = NULL; /* the token whose keys are appended */
 
 static void append(kept_mesh *mesh, st_record record, const char *text, double time, bool of_store)
 {
@@ -109,7 +110,8 @@ static void keys_come_back_with_what_they_were_for(void **state)
         told_end(&told);
         open_store();
     }
-    /* They are deleted with their mesh, but the creation of the mesh stays known. */
+    /* The keys of a mesh are deleted with it, but the key with which it was created must stay
+     * known. */
     told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
     assert_int_equal(keys_of("a").count, 0);
     assert_int_equal(keys_of(NULL).count, 2);
@@ -152,7 +154,8 @@ static void keys_older_than_a_day_go(void **state)
     taken t = keys_of("a");
     assert_int_equal(t.count, 1);
     assert_string_equal(t.texts[0], "new");
-    /* Two rows were deleted with it: that of the creation, and the oldest of the edits. */
+    /* When the newest key was appended, the two oldest rows were deleted: the key of the creation,
+     * and the oldest key of an edit. */
     assert_int_equal(keys_of(NULL).count, 0);
 }
 
@@ -185,7 +188,7 @@ static int64_t rows(void)
     return count;
 }
 
-/* A request that changed nothing, and so has no record. */
+/* Appends the key of a request that changed nothing, and so has no record. */
 static uint64_t note(const kept_mesh *mesh, const char *text, double time)
 {
     const st_kept_key kept = {.key = {.text = text, .digest = {7, (uint64_t)time}, .time = time},
@@ -226,13 +229,13 @@ static void a_key_of_a_request_that_changed_nothing_is_kept(void **state)
 static bool count_key(void *context, const st_kept_key *key)
 {
     uint64_t *at = context;
-    assert_true(key->key.digest[1] > at[1]); /* in the order of time */
+    assert_true(key->key.digest[1] > at[1]); /* keys come in the order of time */
     at[1] = key->key.digest[1];
     at[0]++;
     return true;
 }
 
-/* It is reported as damaged, so that the request is not silently executed again. */
+/* A damaged key must be reported, so that its request is not silently executed again. */
 static void a_damaged_key_is_told(void **state)
 {
     (void)state;
@@ -291,7 +294,7 @@ static void of_all_meshes_the_newest_are_kept(void **state)
         kept_mesh a = {.name = "", .content = content, .incarnation = 11 + (uint64_t)i};
         snprintf(a.id, sizeof a.id, "m%d", i);
         append(&a, kept_content(&a), a.id, 100 + i, true);
-        if (i == MESHES / 2) { /* a restart counts them */
+        if (i == MESHES / 2) { /* after a restart, the keys are counted anew */
             told_end(&told);
             open_with(MOST_KEYS);
         }

@@ -1,4 +1,5 @@
-/* Changes of a mesh in a folder's journal while it is read, and records of a newer release. */
+/* A mesh in the journal of a folder changes while it is read; and records of a newer release are
+ * left alone. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -68,7 +69,7 @@ static int64_t number_of(const char *text)
 
 /* --- memory --- */
 
-/* Appends edits of `each` bytes until `bytes` are on disk, and reads them all once. */
+/* Appends edits of `each` bytes until `bytes` are on the disk, and reads all of them once. */
 static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, size_t each)
 {
     const st_journal *j = &told->journal;
@@ -78,7 +79,7 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
         position = kept_append(j, kept_edit(mesh), mesh, body, each);
         assert_int_not_equal(position, 0);
         if (done % (64 * each) == 0) {
-            told_wait(told, position); /* the queue is limited */
+            told_wait(told, position); /* so that the queue does not overflow */
         }
     }
     told_wait(told, position);
@@ -93,8 +94,8 @@ static void write_and_read(told_journal *told, kept_mesh *mesh, size_t bytes, si
     j->shut(reader);
 }
 
-/* SQLite's allocations are never refused: a large cache of the file would leave no memory for
- * meshes. */
+/* SQLite allocates beside the budget and is never refused: if it kept a large cache of the file,
+ * there would be no memory for meshes. */
 static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 {
     (void)state;
@@ -115,8 +116,9 @@ static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
 
 /* --- changes while it is read --- */
 
-/* Opens a reader, changes the mesh, and reports what was read as damaged: is the mesh with that id
- * damaged then? `change` is 0 for an edit, 1 for a new content, 2 for a mesh created again. */
+/* Opens a reader, changes the mesh, and then reports what was read as damaged; returns whether the
+ * mesh with this id counts as damaged. `change` is 0 for an edit, 1 for a new content, 2 for a mesh
+ * that is deleted and created again. */
 static bool is_condemned_after(int change, bool restarts)
 {
     told_journal told;
@@ -160,7 +162,7 @@ static void a_mesh_made_anew_is_not_condemned_for_its_predecessor(void **state)
     }
 }
 
-/* Writes a record back with another version and a correct checksum. */
+/* Writes a record back with another version number and a correct checksum. */
 static void set_version(unsigned char version)
 {
     unsigned char bytes[256];
@@ -227,7 +229,8 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     assert_int_equal(read_to_end(), ST_OK);
 }
 
-/* A staged snapshot of a content that was replaced before the snapshot could become the base. */
+/* A snapshot was staged to become the base, but the content was replaced before: the snapshot must
+ * be removed. */
 static void a_base_before_the_base_leaves_nothing(void **state)
 {
     (void)state;
@@ -249,7 +252,7 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
 }
 
-/* Reads the mesh "a": its base, record 2, which has those bytes in parts, and record 3. */
+/* Reads the mesh "a": its base, then record 2, which has these bytes in parts, then record 3. */
 static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes, size_t size)
 {
     st_reader *reader = NULL;
@@ -284,7 +287,7 @@ static void wait_until_purged(told_journal *told)
     const st_room_need need = {.records = 1};
     st_room *room;
     st_card card;
-    /* Each read lets a commit pass; purging proceeds while there are writes. */
+    /* Old contents are purged in steps between commits, so this loop writes until all is gone. */
     do {
         assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
         j->leave(j->self, room);
@@ -317,7 +320,7 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     open_store(&told);
     expect_parts_of_edit(&told.journal, bytes, SIZE);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 4);
-    /* A PUT: its parts are deleted with the record. */
+    /* A PUT replaces the content: the parts of the old record must be deleted with it. */
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     wait_until_purged(&told);
     assert_int_equal(number_of("SELECT count(*) FROM part"), 0);

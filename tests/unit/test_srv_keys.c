@@ -1,4 +1,5 @@
-/* Answers kept for an Idempotency-Key: repeated, limited in number, forgotten in time. */
+/* The answers kept for Idempotency-Keys: they are repeated, limited in number, and forgotten in
+ * time. */
 #include "store/idempotency.h"
 
 #include "base/mem.h"
@@ -44,7 +45,7 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
     st_keyed_end(c);
 }
 
-/* Begins a key and keeps its answer at once. */
+/* Begins a request with this key and keeps its answer at once. */
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;
@@ -162,8 +163,8 @@ static void bytes_are_bounded(void **state)
     assert_int_equal(c->answer.length, ST_KEPT_BODY + 1);
     st_keyed_end(c);
 
-    /* If a request changed nothing, executing it again is better than an answer without its
-     * body. */
+    /* A request that changed nothing can be executed again, which is better than an answer without
+     * its body, so no key is kept for it. */
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);
     keep(c, body, ST_KEPT_BODY + 1, false);
     assert_int_equal(begin_keyed("dry", 1, 10, &c), ST_KEYED_NEW);

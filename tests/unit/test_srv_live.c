@@ -1,5 +1,5 @@
-/* Streams that wait: each is resumed exactly once for each time it was put aside, whatever wakes it
- * and when; comments are sent in silence; a stop ends all. */
+/* Event streams that wait: each must be resumed exactly once for each time it was suspended,
+ * whatever wakes it and when; comments must be sent in silence; a stop must end all streams. */
 #include "tests/unit/fixture.h"
 
 #include "server/http/http_live.h"
@@ -9,7 +9,7 @@
 
 enum { STREAMS = 40, NEWS = 2000, LONG = 1000000000 };
 
-/* A stream with its source: numbers that were announced and not read yet. */
+/* A stream together with its source, which counts numbers that were announced and not read yet. */
 typedef struct talk {
     srv_stream stream;
     pthread_mutex_t lock;
@@ -17,7 +17,7 @@ typedef struct talk {
     void *context;
     unsigned told, read, starts, finishes;
     bool waiting, finished;
-    /* The pool uses the rest. */
+    /* The other members are used by the threads that play the server's workers. */
     bool aside, begun, ended;
     unsigned comments;
     struct talk *next;
@@ -94,7 +94,7 @@ static void resume(srv_stream *stream)
     pthread_mutex_unlock(&pool.lock);
 }
 
-/* Pulls until it waits or ends. */
+/* Reads the stream until it waits or ends. */
 static void pull(talk *t)
 {
     char buffer[64];
@@ -227,7 +227,7 @@ static void silence_is_filled(void **state)
     }
 }
 
-/* Before the first pull, between two, or while put aside. */
+/* The stop finds streams before their first read, between two reads, and suspended. */
 static void a_stop_finds_them_all(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Meshes that are loaded from the journal: after random edits a mesh that is dropped and loaded
- * equals the old one, with its history. */
+/* Meshes are loaded from the journal: after random edits, a mesh that left memory and was loaded
+ * again must equal the old one, with its history. */
 #include "tests/kept_journal.h"
 #include "tests/seed.h"
 #include "tests/unit/edit_log.h"
@@ -147,10 +147,10 @@ static uint64_t dropped_by(st_mesh *mesh)
     return reach.dropped;
 }
 
-/* Undo and redo must lead to the same states. Each makes a revision, for which older ones may have
- * to be dropped. An edit that replaced the content among other changes does not take exactly as
- * many bytes as before, so one of the meshes may have to drop a step earlier. The journal gets the
- * steps of both and keeps neither. */
+/* Requires that undo or redo of both meshes lead to the same states. Each step makes a revision,
+ * for which old entries may have to be dropped. An edit that replaced the content among other
+ * changes does not take exactly as many bytes as before, so one of the meshes may have to drop a
+ * step earlier. The steps of both go to the journal, which is told to ignore them. */
 static bool expect_stack(st_mesh *was, st_mesh *is, st_action which)
 {
     while (writing_step(was, which, 1) == ST_OK) {
@@ -171,7 +171,7 @@ static void expect_stacks(st_mesh *was, st_mesh *is)
     }
 }
 
-/* Loads the mesh into a store of its own, where it must equal the old one. Returns the store. */
+/* Loads the mesh into a store of its own, where it must equal the old one. Returns that store. */
 static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
 {
     st_store *other = open_store(budget);
@@ -180,7 +180,8 @@ static st_store *expect_loads(st_mesh *mesh, uint64_t budget, st_mesh **loaded)
     return other;
 }
 
-/* At the end of a run: the loaded mesh is equal, and so are the states that undo and redo reach. */
+/* Requires, at the end of a run, that the loaded mesh is equal and that undo and redo reach equal
+ * states. */
 static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 {
     st_mesh *loaded;
@@ -194,7 +195,8 @@ static void expect_loads_with_stacks(st_mesh *mesh, uint64_t budget)
 
 enum { ROUNDS = 12, CHANGES = 80 };
 
-/* Loaded again and again during the run, and once more at its end beside the old one. */
+/* During the run the mesh is loaded again and again; at its end it is loaded once more and compared
+ * with the old one. */
 static void a_mesh_comes_back_as_it_was(void **state)
 {
     (void)state;
@@ -210,7 +212,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
             if (md_chance(&random, 15)) {
                 st_mesh *loaded;
                 st_store *other = expect_loads(mesh, budget, &loaded);
-                /* The loaded mesh continues. */
+                /* The loaded mesh must accept further edits. */
                 st_release(mesh);
                 st_store_free(store);
                 mesh = loaded;
@@ -223,7 +225,8 @@ static void a_mesh_comes_back_as_it_was(void **state)
     }
 }
 
-/* A claim changes more than a body holds: the changes reach the journal in parts. */
+/* The claim makes more changes than fit into the body of a record, so these must reach the journal
+ * in parts. */
 static void a_large_edit_comes_back_from_its_parts(void **state)
 {
     (void)state;
@@ -251,7 +254,8 @@ static void a_large_edit_comes_back_from_its_parts(void **state)
     kept_journal_free(journal);
 }
 
-/* Three threads run background work, so this comes after all earlier requests of the mesh. */
+/* Signals that a task has run. Each mesh has its tasks in order, so all earlier tasks for the mesh
+ * have then been done. */
 static void post(void *context)
 {
     sem_post(context);
@@ -330,8 +334,8 @@ static void a_smaller_budget_keeps_the_newest(void **state)
     kept_journal_free(journal);
 }
 
-/* Revisions that the history has dropped are read from the disk as long as their records are
- * there. */
+/* A revision that the history in memory has dropped must be read from the disk as long as its
+ * records are there. */
 static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
 {
     (void)state;
@@ -371,7 +375,8 @@ static void a_revision_beyond_memory_is_read_from_the_disk(void **state)
     kept_journal_free(journal);
 }
 
-/* A mesh whose base is newer than its last many changes, with none of them in memory. */
+/* Makes a mesh whose base is newer than many of its changes, and removes these changes from
+ * memory. */
 static st_mesh *make_rebased(st_store **store, st_pool **pool)
 {
     journal = kept_journal_new();
@@ -430,7 +435,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
         assert_int_equal(info.revision, 4);
         assert_true(i == 0 || info.modified == modified);
         modified = info.modified;
-        /* A request for a revision that does not exist does not evict copies that others use. */
+        /* A request for a revision that does not exist must not make the store drop copies of other
+         * revisions. */
         assert_int_equal(st_snapshot_at(mesh, 99, &none), ST_AHEAD);
         assert_int_equal(st_snapshot_at(mesh, 0, &none), ST_GONE);
         st_snapshot_release(snapshot);
@@ -441,7 +447,8 @@ static void a_revision_of_the_disk_is_loaded_once_for_all_who_read_it(void **sta
     kept_journal_free(journal);
 }
 
-/* The undo stack keeps the snapshot from becoming the base; replacing the content ends that. */
+/* A snapshot is staged but cannot become the base as long as undo leads to before it. When the
+ * content is replaced, the snapshot must be given up. */
 static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
 {
     (void)state;
@@ -455,11 +462,11 @@ static void a_base_that_waits_goes_with_the_content_it_was_of(void **state)
         assert_true(writing_commit(&w, "vertex_move", NULL));
     }
     await_bases(pool);
-    assert_int_equal(kept_journal_out(journal), 1); /* it is staged */
+    assert_int_equal(kept_journal_out(journal), 1); /* the snapshot is staged */
     assert_int_equal(writing_replace(mesh, script_mesh("012,023", NULL), NULL, NULL), ST_OK);
     assert_int_equal(kept_journal_out(journal), 0);
     assert_int_equal(kept_journal_facts(journal, "m").base, 1);
-    /* The replacement does not request another base either. */
+    /* The replacement writes a whole content itself, so it must not cause another snapshot. */
     await_bases(pool);
     assert_int_equal(kept_journal_out(journal), 0);
     end_rebased(mesh, store, pool);
@@ -493,7 +500,7 @@ static void without_memory_nothing_is_loaded(void **state)
             st_release(loaded);
         } else {
             assert_false(kept_journal_facts(journal, "m").condemned);
-            st_release(kept_store_load(other, "m")); /* the next one finds the memory */
+            st_release(kept_store_load(other, "m")); /* now there is memory */
         }
         st_store_free(other);
     }
@@ -565,7 +572,8 @@ static void a_list_has_what_is_in_memory_and_what_is_not(void **state)
     }
     assert_int_equal(all, 40);
     assert_int_equal(st_store_count(store), 40);
-    /* An id on the disk is in use, and nothing is loaded to find that. */
+    /* An id that is only on the disk is in use all the same, and no mesh must be loaded to find
+     * that. */
     st_mesh *mesh;
     he_mesh *content = fixture_mesh("012");
     size_t opened = kept_journal_facts(journal, "m01").opened;

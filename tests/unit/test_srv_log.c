@@ -1,4 +1,5 @@
-/* The log: its lines in both formats, its levels, and lines that are not read. */
+/* The log of the daemon: its lines in both formats, its levels, and what happens if nobody reads
+ * it. */
 #include "tests/unit/fixture.h"
 
 #include "server/log/log.h"
@@ -79,7 +80,7 @@ static void a_trace_is_in_each_line(void **state)
                                  "0123456789abcdef\n"));
 }
 
-/* Every field has its maximum length, and every character of the path is escaped. */
+/* Every field has its maximum length, and every character of the path must be escaped. */
 static void the_longest_line_fits(void **state)
 {
     (void)state;
@@ -125,7 +126,7 @@ static void open_log(reader *r, const srv_log_settings *settings, size_t ring)
     assert_non_null(r->log);
 }
 
-/* Everything that the log has written when it is freed. */
+/* Frees the log; returns everything that it has written until then. */
 static const char *close_log(reader *r)
 {
     size_t got = 0;
@@ -273,8 +274,8 @@ static void *free_log(void *log)
     return NULL;
 }
 
-/* Nothing is read until the ring has overflowed: lines and drops together must be the lines
- * logged. */
+/* Nothing reads the log until its ring buffer has overflowed: the lines read later and the dropped
+ * lines that are reported must together be all lines. */
 static void lines_that_find_no_place_are_counted(void **state)
 {
     (void)state;
@@ -292,7 +293,8 @@ static void lines_that_find_no_place_are_counted(void **state)
             srv_log_request(log, &sample, false);
         }
     }
-    /* Freeing waits for the writing thread, which waits for space in the pipe. */
+    /* Freeing the log waits for the writing thread, which waits for space in the pipe, so another
+     * thread frees it. */
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
     size_t got = 0;
@@ -320,7 +322,7 @@ static void lines_that_find_no_place_are_counted(void **state)
     close(ends[1]);
 }
 
-/* Nothing is read at all: the daemon must end nevertheless. */
+/* Nothing ever reads the log: the daemon must end nevertheless. */
 static void a_log_ends_without_a_reader(void **state)
 {
     (void)state;

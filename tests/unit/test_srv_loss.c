@@ -1,4 +1,5 @@
-/* What the journal loses is also removed from memory: meshes, claims, listeners, keys, answers. */
+/* When the journal loses changes, everything that depends on them must go from memory, too: meshes,
+ * claims, streams, keys, answers. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -77,7 +78,7 @@ static st_shown change(st_mesh *of)
     return st_shown_of(&w.info);
 }
 
-/* Loses everything from position `from` on. */
+/* Makes the journal lose all records from position `from` on. */
 static void lose(uint64_t from)
 {
     const uint64_t to = slow_journal_newest(&journal);
@@ -110,14 +111,15 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     st_release(found);
     assert_false(facts(other).lost);
     (void)change(other);
-    /* The id may be used again, for another mesh. */
+    /* The id of the lost mesh can be given to another mesh. */
     st_mesh *again = create("m");
     assert_true(facts(again).incarnation != facts(mesh).incarnation);
     assert_false(facts(again).lost);
     st_release(again);
 }
 
-/* Copies made of a change are lost with it, or are refused if they come later. */
+/* Meshes that were made from a change must be lost with it; if they are made after the loss, they
+ * must be refused. */
 static void nothing_is_made_of_what_was_lost(void **state)
 {
     (void)state;
@@ -126,7 +128,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     const st_shown kept = st_shown_of(&(st_mesh_info){.position = 2});
     const st_shown from[] = {kept, change(other)};
     he_mesh *content = fixture_mesh("012");
-    /* Until it is lost, it can be copied. */
+    /* As long as the change is not lost, a mesh can be made from it. */
     assert_int_equal(st_create_from(store, "c", NULL, fixture_mesh("012"), NULL, &from[1], &made),
                      ST_OK);
     assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
@@ -153,7 +155,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
     assert_int_equal(st_write_commit(&w, "append"), ST_LOST);
     assert_int_equal(facts(mesh).revision, 1);
     assert_true(journal.groups == groups);
-    /* A copy of the kept state is made. */
+    /* A mesh can be made from the state that was kept. */
     assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[0], &made), ST_OK);
     st_release(made);
 }
@@ -161,7 +163,7 @@ static void nothing_is_made_of_what_was_lost(void **state)
 static void creations_and_removals_are_lost_too(void **state)
 {
     (void)state;
-    enum { MANY = 150 }; /* more than are processed at once */
+    enum { MANY = 150 }; /* more meshes than one step of the loss removes */
     st_mesh *found = NULL;
     uint64_t durable = slow_journal_newest(&journal);
     for (int i = 0; i < MANY; i++) {
@@ -202,8 +204,8 @@ static void resume(st_wait *wait)
     fail_msg("it was over when it was added");
 }
 
-/* The handler was stopped after its commit while the disk was full, and continues when all is well
- * again. */
+/* A handler was stopped after its commit while the disk was full, and continues when the disk works
+ * again: its answer must still count as lost. */
 static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
 {
     (void)state;
@@ -229,7 +231,8 @@ static void an_answer_that_comes_late_is_lost_all_the_same(void **state)
     }
 }
 
-/* A long edit is in progress when the state it started from is lost. */
+/* While a long edit is in progress, the state from which it started is lost, so its commit must do
+ * nothing. */
 static void a_claim_of_a_lost_mesh_commits_nothing(void **state)
 {
     (void)state;
@@ -272,7 +275,8 @@ static void listeners_are_sent_away(void **state)
     st_unfollow(mesh, &listener);
 }
 
-/* The request is executed again rather than answered with a mesh that does not exist. */
+/* The mesh that a request had created is lost, so the repeated request must be executed again and
+ * not be answered with a mesh that does not exist. */
 static void the_key_of_a_lost_creation_is_forgotten(void **state)
 {
     (void)state;

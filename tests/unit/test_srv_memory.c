@@ -1,4 +1,5 @@
-/* Memory of the daemon: freed memory is returned to the system once the process is idle. */
+/* The memory of the daemon: freed memory must be returned to the system once the process is
+ * idle. */
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
@@ -13,19 +14,19 @@ static void pages_are_given_back_once_after_work_when_it_rests(void **state)
 {
     (void)state;
     st_memory_rest rest = {0};
-    assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* hardly anything was done */
+    assert_false(st_memory_rests(&rest, 10 * MILLIS)); /* hardly any memory was freed */
     assert_false(st_memory_rests(&rest, 400 * MILLIS));
-    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* it is still working */
+    assert_false(st_memory_rests(&rest, 450 * MILLIS)); /* the process is still working */
     assert_true(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 499 * MILLIS));
     assert_false(st_memory_rests(&rest, 518 * MILLIS));
-    assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* little by little */
+    assert_true(st_memory_rests(&rest, 519 * MILLIS)); /* freed in small amounts */
     assert_false(st_memory_rests(&rest, 520 * MILLIS));
 }
 
-/* A sanitizer has its own allocator. */
+/* A sanitizer has an allocator of its own, so under one nothing is measured. */
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB, and each 64th block stays */
+enum { BLOCKS = 4096, BLOCK = 16 * 1024, KEPT = 64 }; /* 64 MiB; each 64th block is kept */
 
 static size_t resident_bytes(void)
 {
@@ -61,7 +62,7 @@ static void what_is_freed_between_used_blocks_goes_back_to_the_system(void **sta
     }
 }
 
-/* Did the process request huge pages at this address? */
+/* Returns whether the process has requested huge pages at this address. */
 static bool asks_for_huge_pages(const void *address)
 {
     char line[512];
@@ -80,8 +81,9 @@ static bool asks_for_huge_pages(const void *address)
     return asks;
 }
 
-/* Small blocks are in the heap, and once they are freed there is space for a large block between
- * them. */
+/* Small blocks lie in the heap, and once they are freed there is room for a large block between
+ * them. A large block must still get a mapping of its own, because only there huge pages are
+ * requested. */
 static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **state)
 {
     (void)state;

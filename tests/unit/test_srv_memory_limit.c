@@ -1,6 +1,7 @@
-/* The memory limit of the kernel is found wherever it is in the tree of control groups, seen from
- * the machine or from a container. Each test makes a small file system of its own in a folder. */
-#define _XOPEN_SOURCE 700 /* nftw */
+/* The memory limit of the kernel must be found wherever it is in the tree of control groups, seen
+ * from the machine or from a container. Each test makes the files of /proc and /sys that it needs
+ * in a folder. */
+#define _XOPEN_SOURCE 700 /* declares nftw */
 
 #include "tests/unit/fixture.h"
 
@@ -40,7 +41,7 @@ static int remove_root(void **state)
     return nftw(root, remove_one, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Writes a file of that file system, with the folders above it. */
+/* Writes one of these files, and makes the folders above it. */
 static void put(const char *name, const char *text)
 {
     char path[PATH_MAX];
@@ -124,8 +125,8 @@ static void version_1_and_a_mixed_system_are_read(void **state)
     expect(100 * MIB, "/sys/fs/cgroup/unified/user/memory.max");
 }
 
-/* A container of version 1 has a bind mount of its own group, whose path the process still
- * shows. */
+/* In a container with control groups of version 1, the container's own group is mounted at the
+ * root, but /proc still shows the path that it has on the machine. */
 static void a_bind_mount_of_the_own_group_is_found(void **state)
 {
     (void)state;
@@ -137,12 +138,13 @@ static void a_bind_mount_of_the_own_group_is_found(void **state)
     put("/proc/self/cgroup", "4:memory:/docker/abc/inner\n");
     put("/sys/fs/cgroup/memory/inner/memory.limit_in_bytes", "104857600\n");
     expect(100 * MIB, "/sys/fs/cgroup/memory/inner/memory.limit_in_bytes");
-    /* /docker/abcd is not below /docker/abc: of the visible groups only the mount's root counts. */
+    /* The group /docker/abcd is not below /docker/abc, although its name begins so: of the visible
+     * groups only the root of the mount applies. */
     put("/proc/self/cgroup", "4:memory:/docker/abcd/inner\n");
     expect(300 * MIB, "/sys/fs/cgroup/memory/memory.limit_in_bytes");
 }
 
-/* In a namespace the own group is "/", and the groups above it are "/..". */
+/* In a namespace of control groups, the own group is "/", and the groups above it are "/..". */
 static void a_namespace_is_read_from_inside(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Jobs in a folder: restored as they were recorded last, as done if their work is recorded, or not
- * at all. */
+/* Jobs that the journal of a folder keeps: they are restored as they were recorded last, or as done
+ * if their change is recorded, or not at all. */
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -63,7 +63,7 @@ static void run_sql(const char *text)
 enum { MOST = 8, BODY = 64 };
 
 typedef struct seen {
-    st_job jobs[MOST]; /* without texts */
+    st_job jobs[MOST]; /* copies, whose texts are in `texts` */
     char texts[MOST][600], bodies[MOST][BODY];
     size_t count, most;
 } seen;
@@ -144,7 +144,7 @@ static void a_job_comes_back_as_it_was_noted_last(void **state)
     for (int again = 0; again < 2; again++) {
         const seen s = jobs_kept();
         assert_int_equal(s.count, 2);
-        assert_string_equal(s.jobs[0].id, "b"); /* by number */
+        assert_string_equal(s.jobs[0].id, "b"); /* in the order of numbers */
         assert_int_equal(s.jobs[0].state, ST_JOB_ACCEPTED);
         assert_null(s.jobs[0].body);
         assert_string_equal(s.texts[0], "edits_post||m||token||||");
@@ -204,11 +204,11 @@ static void old_jobs_go_when_new_ones_come(void **state)
     }
     st_job late = accepted("late", 5);
     late.created = 1001 + ST_JOB_SECONDS;
-    note_job(&late); /* "a" alone is too old by then */
+    note_job(&late); /* at this time only "a" is too old */
     assert_int_equal(jobs_kept().count, 4);
     late.created = 5000 + ST_JOB_SECONDS;
     note_job(&late);
-    note_job(&late); /* two at a time */
+    note_job(&late); /* each call removes at most two old ones */
     const seen s = jobs_kept();
     assert_int_equal(s.count, 1);
     assert_string_equal(s.jobs[0].id, "late");
@@ -223,14 +223,15 @@ static void a_damaged_job_is_as_good_as_none(void **state)
     run_sql("UPDATE job SET number = 9 WHERE id = 'a'");
     run_sql("UPDATE job SET state = 7 WHERE id = 'b'");
     assert_int_equal(jobs_kept().count, 0);
-    /* The work that it did is still done. */
+    /* The damaged job is gone, but the change that it has made must stay. */
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), "a");
     assert_int_equal(told_losses(&told), 0);
     assert_int_equal(told.journal.count(told.journal.self), 1);
 }
 
-/* A file of version 1, which had no jobs, is upgraded by the first start, and by a restore. */
+/* A file of version 1, which had no table of jobs, must be upgraded by the first start, and by a
+ * restore. */
 static void an_older_file_is_raised(void **state)
 {
     (void)state;
@@ -261,7 +262,8 @@ static void an_older_file_is_raised(void **state)
     open_store();
 }
 
-/* A tag names a state that a restore may have undone. */
+/* A job's entity tag names a state that may be gone after a restore, so a restore must remove
+ * it. */
 static void a_restore_takes_the_tags(void **state)
 {
     (void)state;

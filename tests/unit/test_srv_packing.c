@@ -1,5 +1,5 @@
-/* Parts of contents are restored from zstd unchanged; damaged ones are refused, within the memory
- * of one part. */
+/* Parts of contents that were compressed with zstd must be restored unchanged; damaged ones must be
+ * refused, within the memory of one part. */
 #include "journal/part_packing.h"
 #include "tests/unit/dense.h"
 #include "tests/unit/edit_script.h"
@@ -13,7 +13,7 @@
 
 static unsigned char plain[HE_STORED_PART_ROOM], packed[HE_STORED_PART_ROOM];
 
-/* The first part of a mesh of many faces. */
+/* Makes the first part of a mesh with many faces. */
 static size_t make_part(unsigned *coding)
 {
     he_mesh *mesh = dense_grid(64, NULL, 1);
@@ -94,7 +94,7 @@ static void what_would_be_longer_than_a_part_is_refused(void **state)
     expect_refused("not a frame at all", 18, "no zstd frame");
 }
 
-/* Whatever happened to its bytes, it is refused with a reason or has the length that it
+/* However its bytes were changed, a part must be refused with a reason or have the length that it
  * declares. */
 static void a_damaged_part_stays_within_its_room(void **state)
 {
@@ -115,7 +115,7 @@ static void a_damaged_part_stays_within_its_room(void **state)
                                     : status == ST_DAMAGED && why[0] != '\0');
         packed[i] ^= (unsigned char)(1 << i % 8);
         status = st_part_unpack(unpacker, packed, i, &out, &out_size, &why);
-        assert_int_equal(status, ST_DAMAGED); /* cut off */
+        assert_int_equal(status, ST_DAMAGED); /* the part is truncated */
         refused++;
     }
     assert_true(refused > 100);

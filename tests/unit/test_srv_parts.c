@@ -1,4 +1,4 @@
-/* Small parts of the server: thread pool, the page's files, deadlines. */
+/* Small parts of the server: the thread pool, the files of the page, and deadlines. */
 #include "tests/unit/fixture.h"
 
 #include "server/assets.h"
@@ -135,7 +135,8 @@ static void test_assets(void **state)
     remove_files(inner, inside);
     remove_files(folder, outside);
 
-    /* The folder is gone: a notice, and a sentence with the reason. */
+    /* The folder of the page is gone: the server must show a notice, and say the reason in a
+     * sentence. */
     assets = srv_assets_load(folder, message, sizeof message);
     assert_true(strlen(message) > 0);
     assert_true(find(assets, "/", &f));
@@ -190,18 +191,19 @@ static void test_slow_readers(void **state)
     srv_connection c = {0};
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(1)));
     assert_false(srv_connection_is_stuck(&c, &o, 100, 10, SECONDS(5)));
-    /* 6000 bytes in 5 seconds are enough, and begin a new interval. */
+    /* A client that reads 6000 bytes in 5 seconds is fast enough, and begins a new interval. */
     assert_false(srv_connection_is_stuck(&c, &o, 100, 6000, SECONDS(6)));
     assert_false(srv_connection_is_stuck(&c, &o, 100, 6100, SECONDS(10)));
     assert_true(srv_connection_is_stuck(&c, &o, 100, 7000, SECONDS(11)));
-    /* A client that has read everything is not slow, however long nothing is sent. */
+    /* A client that has read everything is not slow, however long nothing is sent to it. */
     c = (srv_connection){0};
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(1)));
     assert_false(srv_connection_is_stuck(&c, &o, 0, 0, SECONDS(100)));
     assert_false(srv_connection_is_stuck(&c, &o, 100, 0, SECONDS(200)));
 }
 
-/* Makes two ends of a connection; `c` watches the server's, in its present stage since `since`. */
+/* Makes both ends of a connection, and returns the client's; `c` watches the server's end, which
+ * has been in its present stage since `since`. */
 static int connect_pair(srv_connection *c, uint64_t since)
 {
     struct sockaddr_in address = {.sin_family = AF_INET};
@@ -225,7 +227,8 @@ static void a_client_that_closed_its_side_waits_for_a_second(void **state)
     srv_connection c;
     int client = connect_pair(&c, SECONDS(100));
     assert_false(srv_connection_is_left(&c, SECONDS(200)));
-    /* Bytes after its request do not hide that it has closed. */
+    /* The client sends more bytes after its request and then closes; the bytes must not hide that
+     * it has closed. */
     assert_int_equal(send(client, "next", 4, MSG_NOSIGNAL), 4);
     assert_int_equal(shutdown(client, SHUT_WR), 0);
     assert_false(srv_connection_is_left(&c, SECONDS(100)));
@@ -235,7 +238,8 @@ static void a_client_that_closed_its_side_waits_for_a_second(void **state)
     close(c.socket);
 }
 
-/* Small messages fill the buffer of a Unix socket by the kernel's bookkeeping for each. */
+/* Small messages fill the buffer of a Unix socket early, because the kernel counts its own records
+ * for each of them. */
 static void a_last_answer_fits_beside_those_not_read_yet(void **state)
 {
     (void)state;

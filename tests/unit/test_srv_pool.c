@@ -1,4 +1,5 @@
-/* The thread pool: the order of tasks, and which tasks may occupy all threads. */
+/* The thread pool: in which order tasks run, and which tasks may occupy all threads. The gate is a
+ * condition at which blocked tasks wait until the test opens it. */
 #include "system/thread_pool.h"
 
 #include <pthread.h>
@@ -97,7 +98,8 @@ static void submit(st_pool *pool, const char *name, double cost, uint64_t flow)
         pool, &(st_task){.work = note, .context = (void *)name, .cost = cost, .flow = flow}));
 }
 
-/* Four threads: at most two run long reads, at most two jobs, and at most three either. */
+/* Four threads: at most two may run long reads, at most two jobs, and at most three either of
+ * these. */
 static void long_work_leaves_a_thread_to_brief_work(void **state)
 {
     (void)state;
@@ -150,7 +152,7 @@ static void a_full_queue_refuses_its_own_share_only(void **state)
     assert_string_equal(order, "b");
 }
 
-/* One thread, which is blocked while tasks are submitted. */
+/* Makes a pool of one thread, which is blocked while the test submits tasks. */
 static st_pool *one_at_gate(void)
 {
     st_pool *pool = st_pool_new("test", 1, ROOM);
@@ -198,7 +200,7 @@ static void a_flow_keeps_its_order(void **state)
     assert_string_equal(order, "123");
 }
 
-/* Each short task is submitted by the one before, so that there is always one waiting. */
+/* A chain of short tasks: each one submits the next, so that one is always waiting. */
 typedef struct stream {
     st_pool *pool;
     int left;
@@ -230,7 +232,7 @@ static void long_work_is_not_passed_over_for_ever(void **state)
     assert_in_range(at - order, 9, 11);
 }
 
-/* The linker gives the pool's calls to this one. */
+/* Counts the pool's calls of pthread_cond_signal, which the linker redirects to this function. */
 static _Atomic int signals;
 int __real_pthread_cond_signal(pthread_cond_t *condition);
 int __wrap_pthread_cond_signal(pthread_cond_t *condition);
@@ -241,7 +243,7 @@ int __wrap_pthread_cond_signal(pthread_cond_t *condition)
     return __real_pthread_cond_signal(condition);
 }
 
-/* Neither the end of a task nor a task that may not begin yet is a reason to wake a thread. */
+/* A thread must not be woken when a task ends, nor for a task that may not begin yet. */
 static void a_thread_is_woken_only_for_something_to_do(void **state)
 {
     (void)state;
@@ -255,7 +257,8 @@ static void a_thread_is_woken_only_for_something_to_do(void **state)
     }
     assert_in_range(atomic_load(&signals), 0, TASKS);
 
-    /* As many long ones as may run at once wait at the gate, and more behind them. */
+    /* Two long reads, as many as may run at once, are blocked; further ones that are submitted must
+     * wake no thread. */
     send_to_gate(pool, ST_SHARE_LONG);
     send_to_gate(pool, ST_SHARE_LONG);
     await_at_gate(ST_SHARE_LONG, 2);

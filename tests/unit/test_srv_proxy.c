@@ -1,4 +1,5 @@
-/* What a trusted proxy says about its client, and what a client cannot forge. */
+/* Which facts about a client the server takes from a trusted proxy, and what a client cannot
+ * forge. */
 #include "tests/unit/fixture.h"
 
 #include "server/net/proxy.h"
@@ -51,8 +52,8 @@ static void what_is_no_network_is_refused(void **state)
 }
 
 typedef struct told {
-    const char *lines[3]; /* "Name: value" */
-    const char *address;  /* NULL: refused */
+    const char *lines[3]; /* headers: "Name: value" */
+    const char *address;  /* the client's; NULL: the request is refused */
     srv_scheme scheme;
 } told;
 

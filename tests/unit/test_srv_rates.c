@@ -1,5 +1,6 @@
-/* Buckets of requests and bytes, with a clock that the test sets: what they let in, what a debt
- * costs, which bucket is evicted when the table is full, and the header fields. */
+/* Token buckets that limit the requests and bytes of clients, with a clock that the test sets:
+ * which requests they admit, what a debt costs, which bucket is dropped when the table is full, and
+ * the header fields. */
 #include "unit/fixture.h"
 
 #include "api/limit/rate.h"
@@ -9,7 +10,7 @@
 #include <time.h>
 
 #define SECOND UINT64_C(1000000)
-/* A clock may start anywhere. */
+/* The clock of the test starts at an arbitrary time. */
 #define START UINT64_C(77000000)
 
 static api_rate_key key_of(uint64_t client)
@@ -50,12 +51,12 @@ static void a_bucket_lets_its_burst_in_and_then_its_rate(void **state)
     assert_false(admit(rates, 1, &rate, START + SECOND / 5 - 1, &said));
     assert_true(admit(rates, 1, &rate, START + SECOND / 5, &said));
     assert_false(admit(rates, 1, &rate, START + SECOND / 5, &said));
-    /* It never holds more than its burst. */
+    /* A bucket must never hold more than its burst. */
     for (int i = 0; i < 10; i++) {
         assert_true(admit(rates, 1, &rate, START + 100 * SECOND, &said));
     }
     assert_false(admit(rates, 1, &rate, START + 100 * SECOND, &said));
-    assert_true(admit(rates, 2, &rate, START, &said)); /* another client has its own */
+    assert_true(admit(rates, 2, &rate, START, &said)); /* another client has its own bucket */
     api_rates_free(rates);
 }
 
@@ -68,16 +69,16 @@ static void bytes_make_a_debt_that_is_paid_before_another_request(void **state)
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
     charge(rates, 1, &rate, 9999, START);
-    assert_true(admit(rates, 1, &rate, START, &said)); /* one byte is left */
+    assert_true(admit(rates, 1, &rate, START, &said)); /* the bucket has one byte left */
     assert_int_equal(said.bytes.left, 1);
-    assert_int_equal(said.requests.reset, 0); /* without a limit of requests, none is reported */
+    assert_int_equal(said.requests.reset, 0); /* requests have no limit, so none is reported */
     charge(rates, 1, &rate, 50001, START);
     assert_false(admit(rates, 1, &rate, START, &said));
-    assert_int_equal(said.bytes.wait, 51); /* until a byte is available: rounded up */
+    assert_int_equal(said.bytes.wait, 51); /* seconds until one byte is there, rounded up */
     assert_int_equal(said.bytes.reset, 60);
     assert_false(admit(rates, 1, &rate, START + 50 * SECOND, &said));
     assert_true(admit(rates, 1, &rate, START + 50 * SECOND + 1000, &said));
-    /* A charge larger than any bucket is a debt for ever, without overflow. */
+    /* A charge that is larger than any bucket must be a debt for ever, without overflow. */
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     charge(rates, 1, &rate, UINT64_MAX, START + 50 * SECOND);
     assert_false(admit(rates, 1, &rate, START + 1000 * SECOND, &said));
@@ -97,7 +98,7 @@ static void a_refused_request_costs_nothing(void **state)
     }
     assert_true(admit(rates, 1, &rate, START + SECOND, &said));
     charge(rates, 1, &rate, 20, START + SECOND);
-    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* because of its bytes */
+    assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said)); /* bytes are missing */
     assert_int_equal(said.requests.left, 1);
     assert_int_equal(said.requests.wait, 0);
     assert_true(said.bytes.wait > 0);
@@ -115,11 +116,11 @@ static void new_limits_hold_at_once_for_a_bucket_that_is_there(void **state)
     assert_true(admit(rates, 1, &small, START, &said));
     assert_true(admit(rates, 1, &small, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &large, START, &said)); /* two more, not four */
+    assert_true(admit(rates, 1, &large, START, &said)); /* admits two more, not four */
     assert_true(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &large, START, &said));
     assert_false(admit(rates, 1, &small, START, &said));
-    assert_true(admit(rates, 1, &none, START, &said)); /* a limit that was removed is forgotten */
+    assert_true(admit(rates, 1, &none, START, &said)); /* without a limit the past is forgotten */
     assert_true(admit(rates, 1, &small, START, &said));
     api_rates_free(rates);
 }
@@ -146,31 +147,33 @@ static void of_a_full_table_the_oldest_full_bucket_goes(void **state)
     api_rate_state said;
     assert_non_null(rates);
     assert_true(admit(rates, 1, &rate, START, &said));
-    charge(rates, 1, &rate, 1000, START); /* in debt for long */
+    charge(rates, 1, &rate, 1000, START); /* client 1 is in debt for long */
     assert_true(admit(rates, 2, &rate, START, &said));
     assert_true(admit(rates, 3, &rate, START, &said));
     assert_int_equal(api_rates_count(rates), 3);
-    /* 2 and 3 are full again by then; 2 is older. */
+    /* The buckets of clients 2 and 3 are full again by now; that of 2 was used earlier, so it is
+     * dropped. */
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(api_rates_count(rates), 3);
     assert_false(admit(rates, 1, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 3, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
-    /* None is full: the one used longest ago is evicted, and starts again as a new one. */
+    /* No bucket is full: the one that was used longest ago is dropped, and its client starts with a
+     * new one. */
     assert_true(admit(rates, 5, &rate, START + 2 * SECOND, &said));
     assert_true(admit(rates, 4, &rate, START + 2 * SECOND, &said));
     assert_int_equal(said.requests.left, 9);
     api_rates_free(rates);
 }
 
-/* --- compared with an oracle that fills one microsecond at a time --- */
+/* --- compared with an oracle that fills buckets every microsecond --- */
 
 enum { CLIENTS = 14, ROOM = 10 };
 
 typedef struct naive {
     bool is_there;
-    uint64_t requests, bytes; /* taken, millionths */
-    uint64_t used;            /* which step used it last */
+    uint64_t requests, bytes; /* taken from the bucket, in millionths */
+    uint64_t used;            /* the step that used it last */
     api_rate rate;            /* the rate at that time */
 } naive;
 
@@ -198,7 +201,7 @@ static bool is_full(const naive *n)
     return (n->requests == 0 || n->rate.requests == 0) && (n->bytes == 0 || n->rate.bytes == 0);
 }
 
-/* The existing ones, the one used longest ago first. */
+/* Lists the clients that have a bucket, the one used longest ago first. */
 static size_t by_age(size_t order[CLIENTS])
 {
     size_t count = 0;
@@ -250,8 +253,8 @@ static bool expect_admit(naive *n)
 static void random_steps_agree_with_a_slow_oracle(void **state)
 {
     (void)state;
-    /* A client keeps its limits, because in the oracle a bucket fills at the rate of its last
-     * use. */
+    /* A client keeps its limits during the test, because in the oracle a bucket fills at the rate
+     * of its last use. */
     static const api_rate kinds[] = {{.requests = 2000, .seconds = 1},
                                      {.bytes = 50000, .seconds = 1},
                                      {.requests = 900, .bytes = 30000, .seconds = 2},
@@ -314,7 +317,8 @@ static void the_fields_say_what_is_limited_and_what_is_left(void **state)
     rate.requests = 0;
     api_rate_policy(&rate, policy);
     assert_string_equal(policy, "\"bytes\";q=10000;w=10;qu=\"content-bytes\"");
-    /* The largest values fit; an integer of a structured field has at most 15 digits. */
+    /* The largest values must fit into the header: an integer in a structured field has at most 15
+     * digits. */
     rate = (api_rate){API_LIMIT_MOST, API_LIMIT_MOST_BYTES, API_BURST_MOST};
     const api_rate_state most = {{UINT64_MAX, UINT64_MAX, 0}, {UINT64_MAX, UINT64_MAX, 0}};
     api_rate_policy(&rate, policy);
@@ -370,7 +374,7 @@ static void a_table_is_made_whole_or_not_at_all(void **state)
         assert_true(n < 10);
     }
     assert_true(n > 3);
-    /* From now on it allocates nothing. */
+    /* From now on requests must allocate nothing. */
     fixture_fail_at(1);
     for (uint64_t i = 0; i < 100; i++) {
         assert_true(admit(rates, i, &rate, START + i, &said));
@@ -452,7 +456,7 @@ static void a_request_costs_as_much_among_many_clients_as_among_few(void **state
     }
     printf("note: limits cost a request %.2f us with 16 clients, %.2f us with %d\n", costs[0],
            costs[1], API_ADDRESS_RATES);
-    assert_true(costs[0] < 20 && costs[1] < 20); /* also with sanitizers on a slow machine */
+    assert_true(costs[0] < 20 && costs[1] < 20); /* generous, for sanitizers on slow machines */
 }
 
 int main(void)

@@ -1,4 +1,5 @@
-/* How far back a mesh can be followed: to the base on the disk, however little is in memory. */
+/* How far back the changes of a mesh can be read: to the base on the disk, however few of them are
+ * in memory. */
 #include "tests/kept_journal.h"
 #include "tests/unit/edit_script.h"
 #include "tests/unit/fixture.h"
@@ -39,7 +40,7 @@ static he_mesh *content_of(st_mesh *mesh)
     return copy;
 }
 
-/* Follows from the first revision on, as a listener does that missed events. */
+/* Reads all changes from the first revision on, as a listener does that has missed events. */
 static void follow_all(st_mesh *mesh, he_mesh *const at[], uint64_t last)
 {
     st_cursor *cursor;
@@ -85,7 +86,7 @@ static void what_memory_has_dropped_is_followed_from_the_disk(void **state)
         store = open_store();
         mesh = load(store);
     }
-    /* The history begins at a replacement. */
+    /* The history must begin at a replacement of the content. */
     assert_int_equal(writing_replace(mesh, content_of(mesh), NULL, NULL), ST_OK);
     st_history reach;
     st_cursor *gone;

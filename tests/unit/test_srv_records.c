@@ -1,4 +1,4 @@
-/* What the journal gets: a mesh can be restored from its records alone. */
+/* The records that the journal gets: a mesh must be restorable from its records alone. */
 #include "tests/slow_journal.h"
 #include "tests/unit/dense.h"
 #include "tests/writing.h"
@@ -55,7 +55,7 @@ static he_mesh *copy_of_content(void)
     return copy;
 }
 
-/* The facts of the newest record must be those of the mesh. */
+/* Requires that the newest record is of this kind and has the facts of the mesh; returns it. */
 static const st_record *expect(st_record_kind kind, bool barrier, const char *ops, uint64_t inverts)
 {
     const st_record *r = &journal.record;
@@ -85,7 +85,7 @@ static const st_record *expect(st_record_kind kind, bool barrier, const char *op
     return r;
 }
 
-/* The body must transform the old state into the present one. */
+/* Requires that the body of the newest record transforms the old state into the present one. */
 static void expect_edit(he_mesh *before, bool barrier, const char *ops)
 {
     const st_record *r = expect(ST_RECORD_EDIT, barrier, ops, 0);
@@ -135,7 +135,7 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     assert_int_equal(journal.record.tally.created[0], 1);
     poke(1);
 
-    /* Each step undoes these. */
+    /* The two edits are undone and redone, and each step must be a record of its own. */
     assert_int_equal(writing_step(mesh, ST_UNDO, 1), ST_OK);
     assert_null(expect(ST_RECORD_UNDO, false, "", 3)->body);
     assert_int_equal(writing_step(mesh, ST_REDO, 1), ST_OK);
@@ -165,7 +165,8 @@ static void a_mesh_can_be_made_again_from_its_records(void **state)
     assert_null(expect(ST_RECORD_REMOVE, false, "", 0)->body);
 }
 
-/* An edit that the history cannot undo also ends undo for readers of the records. */
+/* An edit that is too large for the undo history must say so in its record, so that a start does
+ * not offer to undo it. */
 static void an_edit_beyond_the_undo_budget_says_so(void **state)
 {
     (void)state;
@@ -229,7 +230,8 @@ static void a_large_content_is_staged(void **state)
     compact_claimed(&w);
     assert_int_equal(st_write_commit(&w, "compact"), ST_OK);
     expect_staged(ST_RECORD_EDIT, true, "compact");
-    /* A large edit that is no replacement is encoded without the lock. */
+    /* A large edit that does not replace the content must be encoded without the lock of the
+     * mesh. */
     claim(&w);
     assert_int_equal(he_face_poke(w.content, (he_face){0}, NULL, NULL, NULL, NULL, NULL), HE_OK);
     he_mesh *before = copy_of_content();
@@ -240,7 +242,7 @@ static void a_large_content_is_staged(void **state)
     st_mesh *made = NULL;
     assert_int_equal(st_create(store, "n", NULL, large(), NULL, &made), ST_OK);
     assert_non_null(slow_journal_staged(&journal));
-    /* The id is in use: what was staged is released. */
+    /* The id of the new mesh is taken, so its staged content must be released. */
     he_mesh *again = large();
     assert_int_equal(st_create(store, "n", NULL, again, NULL, &made), ST_TAKEN);
     assert_int_equal(journal.out, 0);
@@ -267,9 +269,10 @@ static void a_refused_stage_changes_nothing(void **state)
     assert_true(journal.groups == groups);
     assert_true(he_mesh_equal(before, st_read_begin(mesh, NULL)));
     st_read_end(mesh);
-    /* The claim has ended. */
+    /* The claim ended with its commit. */
     compact_claimed(&w);
-    /* A claim whose mesh is deleted meanwhile releases its stage. */
+    /* If the mesh of a claim is deleted meanwhile, the content that the claim has staged must be
+     * released. */
     assert_int_equal(writing_remove(mesh), ST_OK);
     assert_int_equal(st_write_commit(&w, "compact"), ST_ABSENT);
     assert_int_equal(journal.out, 0);
@@ -277,7 +280,8 @@ static void a_refused_stage_changes_nothing(void **state)
     he_mesh_free(other);
 }
 
-/* Allocations of rooms and stages, too: refused, and nothing changes. */
+/* Each allocation of a claim fails in turn, including those of rooms and stages: the claim must be
+ * refused, and nothing change. */
 static void every_allocation_of_a_claim_may_fail(void **state)
 {
     (void)state;

@@ -46,7 +46,7 @@ static void move_vertex(st_mesh *mesh, unsigned to)
     assert_true(writing_commit(&w, "vertex_move", NULL));
 }
 
-/* Meshes with some edits each, so that every table takes several pages. */
+/* Makes a store of meshes with some edits each, so that every table takes several pages. */
 static void make_store(void)
 {
     st_sqlite_opened out;
@@ -100,7 +100,7 @@ static void read_one(st_store *store, const st_card *card, found *f)
     st_release(mesh);
 }
 
-/* Returns false if the file is refused as a whole. */
+/* Reads everything that can be read; returns false if the file is refused as a whole. */
 static bool read_all(const char *file, found *f)
 {
     st_sqlite_opened out;
@@ -126,7 +126,8 @@ static bool read_all(const char *file, found *f)
     return true;
 }
 
-/* Each page in turn is overwritten: its contents are lost, the rest is read. */
+/* Each page of the file is overwritten in turn: what was on it is lost, and the rest must be
+ * read. */
 static void a_damaged_page_costs_what_was_on_it(void **state)
 {
     (void)state;
@@ -149,22 +150,23 @@ static void a_damaged_page_costs_what_was_on_it(void **state)
             refused++;
             continue;
         }
-        /* A free page contains nothing; the loss of any other page is noticed. */
+        /* A free page contains nothing; if any other page is lost, that must be noticed. */
         assert_true(f.faults > 0 || f.whole == MESHES);
         named += f.faults > 0;
         if (f.listed < MESHES / 2) {
-            lists++; /* the page that leads to all other pages of the list */
+            lists++; /* a page through which all rows of the list are found */
         } else if (f.whole + f.part >= MESHES / 2) {
             least = f.whole < least ? f.whole : least;
         } else {
-            lists++; /* the page that leads to all records */
+            lists++; /* a page through which all records are found */
         }
     }
     printf("note: %zu pages: %u refused, %u named, %u led to all of a table; else %u of %d meshes "
            "at least are whole\n",
            size / PAGE, refused, named, lists, least, MESHES);
     assert_int_equal(refused, 1);
-    /* The roots of meshes and records, and the level below the latter. */
+    /* At most three pages lead to a whole table: the roots of meshes and of records, and a page
+     * below the latter. */
     assert_true(lists <= 3);
     assert_true(named + refused + 8 > size / PAGE);
     assert_true(least > MESHES / 2);

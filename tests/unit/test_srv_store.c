@@ -1,4 +1,4 @@
-/* The store: ids, revisions, undo and redo within a budget, snapshots, caches, threads. */
+/* The store: ids, revisions, undo and redo within a memory budget, snapshots, caches, threads. */
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
 
@@ -45,7 +45,7 @@ static st_mesh *create(const char *id)
     return mesh;
 }
 
-/* Moves vertex 0 to x: one edit, one step. */
+/* Moves vertex 0 to x, in one edit. */
 static void move(st_mesh *mesh, double x, bool barrier, st_mesh_info *info)
 {
     st_write w;
@@ -112,7 +112,7 @@ static void test_ids(void **state)
 
     st_mesh *c = create("a"), *d = create("c");
     assert_int_equal(st_list(store, "a", list, 1), 1);
-    /* The id that the store chose may sort anywhere among the others. */
+    /* The store chose the id of the third mesh, so it may sort anywhere among the others. */
     bool first = strcmp(info.id, "a") > 0 && strcmp(info.id, "b") < 0;
     assert_ptr_equal(list[0], first ? b : a);
     st_release(list[0]);
@@ -296,7 +296,7 @@ static void test_undo_budget(void **state)
     }
     assert_true(x_of(mesh) < EDITS - 2);
 
-    /* One edit exceeds the budget: it is applied, but neither it nor earlier edits can be
+    /* An edit larger than the budget must be applied, but then neither it nor earlier edits can be
      * undone. */
     st_write w;
     he_mesh *content = writing_begin(mesh, &w);
@@ -353,7 +353,7 @@ static void test_snapshots(void **state)
     assert_ptr_equal(st_snapshot_content(b, NULL), shared);
     assert_int_equal(info.revision, 2);
 
-    /* While referenced it does not change. */
+    /* A snapshot must not change as long as a reference to it is held. */
     move(mesh, 2, false, NULL);
     assert_true(he_position(shared, (he_vertex){0}).x == 1);
     st_snapshot_release(b);
@@ -364,7 +364,8 @@ static void test_snapshots(void **state)
     st_snapshot_release(a);
     st_snapshot_release(b);
 
-    /* After release it is brought up to date, with undo and new rows. */
+    /* When it was released, it is brought up to date with the mesh, also after undo and with new
+     * rows. */
     for (int round = 0; round < 4; round++) {
         if (round == 1) {
             assert_int_equal(step(mesh, ST_UNDO), ST_OK);
@@ -384,7 +385,7 @@ static void test_snapshots(void **state)
         st_snapshot_release(a);
     }
 
-    /* It outlives its mesh. */
+    /* A snapshot that is referenced must stay when its mesh is deleted. */
     assert_int_equal(st_snapshot_take(mesh, &a), ST_OK);
     assert_int_equal(take_away(mesh), ST_OK);
     st_release(mesh);
@@ -412,8 +413,8 @@ static void test_cache(void **state)
     st_release(mesh);
 }
 
-/* Every call of the store with each of its allocations failing in turn: a clean refusal, and the
- * mesh is unchanged. */
+/* Each call of the store is made with each of its allocations failing in turn: it must be refused,
+ * and the mesh be unchanged. */
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
@@ -482,7 +483,7 @@ static void test_memory_budget(void **state)
     assert_true(st_memory_is_full());
     assert_int_equal(st_create(store, "n", NULL, content, NULL, &other), ST_BUDGET);
     assert_null(he_mem_alloc(1 << 20));
-    /* A write has caches freed. */
+    /* A write that needs memory must free caches to get it. */
     st_memory_set_budget(0);
     st_snapshot *snapshot = NULL;
     assert_int_equal(st_snapshot_take(mesh, &snapshot), ST_OK);
@@ -514,8 +515,8 @@ static void test_memory_budget(void **state)
     open_store(BUDGET, MESHES);
 }
 
-/* Threads. Writers move vertices 0 and 1 to one point in one edit: readers must never see them
- * apart, nor a revision decrease. */
+/* Threads move the vertices 0 and 1 to one point in one edit: readers must never see the two apart,
+ * nor a revision decrease. */
 enum { ROUNDS = 300, WRITERS = 2, READERS = 2 };
 static _Atomic bool broken;
 
@@ -529,7 +530,7 @@ static void destroy(void *value)
     atomic_fetch_add(&destroyed, 1);
 }
 
-/* One of each kind. */
+/* Makes derived data of each kind. */
 static void derive(st_mesh *mesh)
 {
     for (int kind = 0; kind < ST_DERIVED_COUNT; kind++) {
@@ -559,7 +560,8 @@ static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
     assert_int_equal(atomic_load(&destroyed), 2 * ST_DERIVED_COUNT);
 }
 
-/* Each revision has its delta while the history is kept; a barrier ends what came before. */
+/* Each revision must have its delta as long as the history keeps it; a barrier (an edit that cannot
+ * be undone) ends what came before. */
 static void test_deltas_by_revision(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
-/* Connections that are late at the same time are closed a few at a time, so that others are served
- * in between: the test counts the calls of the closing thread. */
+/* Connections that reach their deadline at the same time must be closed a few at a time, so that
+ * others are served in between: the test counts how many the closing thread closes while it holds
+ * the lock. */
 #include "server/http/http_deadline.h"
 
 #include <setjmp.h>
@@ -15,7 +16,7 @@
 
 enum { LATE = 500 };
 
-static _Thread_local int closed_since; /* this thread took the lock */
+static _Thread_local int closed_since; /* connections closed since this thread took the lock */
 static _Atomic int most, closed;
 
 int __real_pthread_mutex_lock(pthread_mutex_t *mutex);
@@ -36,7 +37,7 @@ int __wrap_shutdown(int socket, int how)
     return __real_shutdown(socket, how);
 }
 
-/* The clients' ends, and the module's data about the server's ends. */
+/* The clients' ends of the connections, and the records of the server's ends. */
 typedef struct pairs {
     int others[LATE];
     srv_connection *watched[LATE];
@@ -73,7 +74,7 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
     assert_non_null(d);
     open_pairs(d, &p);
     char byte;
-    for (int i = 0; i < LATE; i++) { /* until each has ended */
+    for (int i = 0; i < LATE; i++) { /* until each connection is closed */
         assert_int_equal(recv(p.others[i], &byte, 1, 0), 0);
     }
     assert_true(closed >= LATE);
@@ -82,7 +83,8 @@ static void those_who_are_late_together_are_closed_a_few_at_a_time(void **state)
     srv_deadlines_free(d);
 }
 
-/* The sweep continues after one that is closed during its pause. */
+/* While the sweep (the search for late connections) pauses, some connections are closed by others:
+ * it must go on with the next. */
 static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
 {
     (void)state;
@@ -93,7 +95,7 @@ static void some_who_leave_during_a_sweep_do_not_end_it(void **state)
     closed = 0;
     open_pairs(d, &p);
     while (closed == 0) {
-        /* The sweep begins with the one added last. */
+        /* The sweep begins with the connection that was added last. */
     }
     char byte;
     for (int i = LATE - 1; i >= 0; i--) {

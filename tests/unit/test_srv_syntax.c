@@ -1,6 +1,6 @@
-/* The state machine that reads before libmicrohttpd: each case of framing_cases.h has its fault,
- * wherever the bytes are split and however little space there is, and no byte after a fault is
- * passed on. */
+/* The state machine that checks the bytes of a connection before libmicrohttpd reads them: in each
+ * case of framing_cases.h it must find the fault, wherever the bytes are split and however little
+ * space there is, and must pass on no byte after a fault. */
 #include "tests/unit/fixture.h"
 
 #include "framing_cases.h"
@@ -17,11 +17,11 @@ typedef struct passed {
     srv_syntax syntax;
     char *bytes;
     size_t length;
-    size_t taken; /* bytes of the input that were read */
+    size_t taken; /* bytes of the input that were consumed */
 } passed;
 
-/* Passes bytes[from, to) in a buffer with this much free space, as recv() would; returns false
- * after a fault. */
+/* Passes bytes[from, to) through the check in a buffer with this much free space, as recv() would;
+ * returns false after a fault. */
 static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
 {
     char *at = p->bytes + p->length;
@@ -39,7 +39,8 @@ static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
     return false;
 }
 
-/* Passes pieces of `piece` bytes, the first of `first` bytes (0: like the others). */
+/* Passes the bytes in pieces of `piece` bytes, of which the first has `first` bytes (0: like the
+ * others). */
 static void feed(passed *p, const char *bytes, size_t length, size_t first, size_t piece,
                  size_t room)
 {
@@ -119,7 +120,8 @@ static void a_case_is_the_same_wherever_it_is_cut(void **state)
     }
 }
 
-/* The output equals the client's bytes up to the fault, except for blanks and cookies. */
+/* The output must equal the client's bytes up to the fault, except that blanks and cookies may be
+ * removed. */
 static void no_byte_after_a_fault_is_passed_on(void **state)
 {
     passed *p = *state;
@@ -128,7 +130,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         size_t length, same = 0, taken;
         char *bytes = framing_case_bytes(c, &length);
         feed(&p[0], bytes, length, 0, 1, 0);
-        taken = p[0].taken - (c->fault ? 1 : 0); /* the last byte is the fault */
+        taken = p[0].taken - (c->fault ? 1 : 0); /* the last consumed byte is the fault */
         while (same < taken && (bytes[same] == p[0].bytes[same] || p[0].bytes[same] == '\0' ||
                                 ((bytes[same] | 0x20) == 'e' && p[0].bytes[same] == '-') ||
                                 (bytes[same] != '\n' && p[0].bytes[same] == ';'))) {
@@ -136,7 +138,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         }
         assert_int_equal(same, taken);
         assert_true(p[0].length - taken <= 24);
-        /* The bytes after the faulty byte may be anything. */
+        /* The bytes after the faulty byte may be anything: they must not change the result. */
         if (c->fault) {
             memset(bytes + taken + 1, 'x', length - taken - 1);
             feed(&p[1], bytes, length, 0, length, ROOM / 2);
@@ -262,7 +264,8 @@ static void the_end_of_a_socket_is_passed_on(void **state)
     assert_int_equal(recv(pair[0], &byte, 1, 0), 0);
 }
 
-/* A head that arrives byte by byte has no more time than one that arrives at once. */
+/* The time for a head counts from its first byte: a head that arrives byte by byte has no more time
+ * than one that arrives at once. */
 static void a_head_begins_with_its_first_byte(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The traceparent of a request and of its answer: cases from the W3C recommendation, and random
- * bytes. */
+/* The header traceparent of a request and of its answer: cases from the W3C recommendation, and
+ * random bytes. */
 #include "tests/seed.h"
 #include "tests/unit/fixture.h"
 
@@ -27,7 +27,7 @@ static bool is_lower_hexadecimal(const char *text, size_t length)
            strspn(text, "0") != length;
 }
 
-/* The answer is well formed, whatever was sent. */
+/* Requires that the traceparent of the answer is well formed, whatever the request had. */
 static void check_answer(const srv_trace *trace, char flag)
 {
     char expected[SRV_TRACEPARENT + 1];
@@ -39,7 +39,7 @@ static void check_answer(const srv_trace *trace, char flag)
 
 typedef struct trace_case {
     const char *value;
-    char flag; /* of the answer; 0: malformed */
+    char flag; /* of the answer; 0: the request's header is malformed */
 } trace_case;
 
 static const trace_case cases[] = {
@@ -134,15 +134,15 @@ static void no_id_is_given_twice(void **state)
     }
 }
 
-/* Returns a number below `end`, by Knuth's generator MMIX. */
+/* Returns a pseudo-random number below `end`, by Knuth's generator MMIX. */
 static unsigned below(uint64_t *random, unsigned end)
 {
     *random = *random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
     return (unsigned)((*random >> 33) % end);
 }
 
-/* A well-formed value with some bytes replaced. The parser must accept exactly what a plain reading
- * of the grammar accepts. */
+/* Some bytes of a well-formed value are replaced at random. The parser must accept exactly what a
+ * plain reading of the grammar accepts. */
 static void random_values_are_read_as_the_grammar_says(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Waits for durability: each ends once, in the order of positions, as durable, lost or stopped. */
+/* Waits for durability: each must end once, in the order of positions, as durable, lost or
+ * stopped. */
 #include "tests/slow_journal.h"
 #include "tests/unit/fixture.h"
 #include "tests/writing.h"
@@ -15,7 +16,7 @@ static st_journal journal;
 static st_waits *waits;
 static st_wait all[MANY];
 static size_t resumed;
-static uint64_t last; /* position resumed last */
+static uint64_t last; /* the position of the wait that was resumed last */
 static bool in_order;
 
 static void moved(void *context, uint64_t position)
@@ -58,7 +59,7 @@ static void count(st_wait *wait)
     wait->resume = NULL; /* a second call would crash */
 }
 
-/* Returns false if the wait is over already. */
+/* Adds a wait; returns false if it has ended already. */
 static bool add(st_wait *wait, uint64_t position, uint64_t incarnation)
 {
     uint64_t since = incarnation == 0 ? 0 : position - 1;
@@ -83,7 +84,7 @@ static void one_notice_releases_a_thousand(void **state)
         early += all[i].resume == NULL;
     }
     assert_int_equal(resumed, early);
-    /* Waits added in between get their place in the order. */
+    /* A wait that is added later must get its place in the order of positions. */
     st_wait late, past;
     assert_true(add(&late, 251, 7));
     assert_false(add(&past, 250, 7));
@@ -96,7 +97,8 @@ static void one_notice_releases_a_thousand(void **state)
     }
 }
 
-/* Both ends of a lost interval are lost, only for the mesh that is named. */
+/* A position within a lost interval, including both its ends, must count as lost, but only for the
+ * mesh that lost it. */
 static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
 {
     (void)state;
@@ -126,13 +128,14 @@ static void a_lost_position_ends_as_lost_whenever_it_is_added(void **state)
             assert_false(add(&all[i], rows[i].position, rows[i].incarnation));
         }
     }
-    /* A list that was begun after the loss does not show it. */
+    /* An answer that was begun after the loss does not show what was lost, so it counts as
+     * durable. */
     const st_shown later = {.position = 7, .since = 6};
     assert_true(st_waits_is_durable(waits, &later));
 }
 
-/* The list was begun after the journal had reported records that their writers had not noted
- * yet. */
+/* The list was begun after the journal reported records as durable, but before the threads that had
+ * written them noted their positions. */
 static void a_list_of_nothing_new_is_not_lost(void **state)
 {
     (void)state;
@@ -179,8 +182,8 @@ static void a_stop_ends_what_is_not_known(void **state)
     assert_int_equal(all[0].end, ST_WAIT_DURABLE);
 }
 
-/* Everything that one request does is one group of records, so that a crash leaves all of it or
- * nothing. */
+/* All changes that one request makes must be one group of records, so that a crash leaves all of
+ * them or none. */
 static void a_request_is_one_group_of_records(void **state)
 {
     (void)state;

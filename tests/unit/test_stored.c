@@ -1,6 +1,6 @@
-/* Meshes and edits as bytes (core/stored): what was written reads back bit for bit, and damaged
- * bytes are refused with a reason and a place. test_op_table.c passes every operation through its
- * bytes.
+/* Meshes and edits as bytes (core/stored): what was written must be read back bit for bit, and
+ * damaged bytes be refused with a reason and a place. test_op_table.c converts every operation to
+ * bytes and back.
  *
  * `test_stored --write FOLDER` writes the golden files for a new version of the format; those of a
  * released version never change. They are also the seeds of fuzz_stored. */
@@ -21,7 +21,7 @@ enum { ENTRIES = 60, GOLDEN_MOST = 65536 };
 
 /* --- logs --- */
 
-/* Encodes each edit of a log while replaying it. */
+/* Encodes each edit of a log while the log is replayed. */
 static void code_log(const edit_log *log, stored_bytes *coded)
 {
     he_mesh *m = copy_of(log->entries[0].after);
@@ -41,10 +41,9 @@ static void code_log(const edit_log *log, stored_bytes *coded)
     he_mesh_free(m);
 }
 
-/* Applies entry i as the start of a store does, from bytes alone. The record of an undo also has
- * the numbers of ids after it: a delta that is read as a replacement does not know the rows that
- * were issued before.
- */
+/* Applies entry i of the log as the start of a store does, from bytes alone. The record of an undo
+ * also has the number of ids issued after it: a delta that is read as a replacement does not know
+ * the rows that were issued before. */
 static he_status apply_coded(const edit_log *log, size_t i, const stored_bytes *coded,
                              he_delta **deltas, he_mesh *m)
 {
@@ -124,7 +123,7 @@ static void test_without_memory_nothing_is_read_and_nothing_changes(void **state
         }
         failed = allocation_failed();
         fail_allocation(0);
-        /* A block that cannot be shrunk stays as it is. */
+        /* If shrinking a block fails, the block stays as it is, so reading may succeed. */
         assert_true(status == HE_OK || (failed && status == HE_NO_MEMORY));
         assert_true(m != NULL || i == 0);
         if (m != NULL && status == HE_OK) {
@@ -164,7 +163,8 @@ static he_column *labelled_column(const he_mesh *m)
     return column;
 }
 
-/* Adds a column, writes a value in it, issues rows, and removes it; another column stays. */
+/* Adds a column, writes a value to it, issues rows, and removes the column again; another column
+ * stays. */
 static void change_columns(he_mesh *m)
 {
     const uint32_t value = 2;
@@ -186,7 +186,8 @@ static void drop_columns(he_mesh *m)
     }
 }
 
-/* Rows are added, changed twice and removed; a slot in the middle stays free. */
+/* Adds rows to the table of materials, changes them twice and removes some; a slot in the middle
+ * becomes free. */
 static void change_materials(he_mesh *m)
 {
     script_prepare(m, "material_set name=red base_color=1,0,0,0.5 metallic=0.25 roughness=0.5 "
@@ -208,8 +209,8 @@ typedef struct specimen {
     const char *name;
     const char *operation;
     void (*change)(he_mesh *m);
-    bool columns;   /* the mesh has those of script_add_columns */
-    bool materials; /* and a table, with a free slot in it */
+    bool columns;   /* the mesh has the columns of script_add_columns */
+    bool materials; /* the mesh has a table of materials with a free slot in it */
 } specimen;
 
 static const specimen specimens[] = {
@@ -279,8 +280,8 @@ static void test_columns_and_contents_come_back(void **state)
     }
 }
 
-/* A golden file: the length of the content, the content; the numbers of ids after the edit, the
- * edit. */
+/* Writes a golden file: the length of the content, the content, the number of ids issued after the
+ * edit, the edit. */
 static size_t golden_of(const specimen *s, unsigned char *to)
 {
     specimen_run run = run_of(s);
@@ -296,8 +297,8 @@ static size_t golden_of(const specimen *s, unsigned char *to)
     return size;
 }
 
-/* Independent of the operations: the files can be read, and their contents encode to the same
- * bytes. */
+/* The golden files must stay readable, and their contents must be encoded to the same bytes. This
+ * does not depend on the operations. */
 static void test_golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
@@ -371,16 +372,16 @@ static void expect_named(he_status status, const he_error *err, size_t size)
     assert_true(err->text[0] != '\0');
 }
 
-/* Reads damaged bytes: either they are refused and the mesh is unchanged, or the mesh changes and
- * undo restores it. A flipped bit of a value makes another valid edit, which the checksum of its
- * record detects. */
+/* Reads damaged bytes: they must be refused and leave the mesh unchanged, or change it so that undo
+ * restores it. A flipped bit of a value makes another valid edit; only the checksum of its record
+ * can detect that. */
 static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *seen)
 {
     he_mesh *m = copy_of(run->before);
     he_delta *delta = NULL;
     he_error err = {.status = HE_OK};
     unsigned char *exact = malloc(damaged.size + 1);
-    memcpy(exact + 1, damaged.bytes, damaged.size); /* the bytes end where the block ends */
+    memcpy(exact + 1, damaged.bytes, damaged.size); /* the bytes fill the block to its end */
     he_status status =
         he_stored_edit_forward(exact + 1, damaged.size, run->issued, m, &delta, &err);
     if (status != HE_OK) {
@@ -479,7 +480,7 @@ static void test_a_newer_version_is_refused_with_both(void **state)
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 0, "the edit has version 2, this release reads 1");
-    run.content.bytes[5 + 4] = 7; /* after the part's coding and length */
+    run.content.bytes[5 + 4] = 7; /* the first byte after the part's coding and length */
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_UNSUPPORTED);
     expect_text(&err, HE_UNSUPPORTED, 4, "the mesh has version 7, this release reads 1");
@@ -500,7 +501,8 @@ static void test_an_edit_names_the_change_that_does_not_fit(void **state)
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.after, &delta, &err),
         HE_CORRUPT);
-    /* version, count, then the run's head before its first change */
+    /* The change is refused at offset 2, where its run of changes begins: the version and the
+     * number of runs come before. */
     expect_text(&err, HE_CORRUPT, 2, "change 0 was made on another value than the mesh holds");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
@@ -510,14 +512,14 @@ static void test_an_edit_names_the_change_that_does_not_fit(void **state)
     run_clear(&run);
 }
 
-/* Counts in a few bytes that would need gigabytes: no memory is allocated for them. */
+/* A few bytes declare counts that would need gigabytes: no memory must be allocated for them. */
 static void test_a_small_content_gets_no_large_memory(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
     he_mesh *m = NULL;
     he_error err;
-    memset(run.content.bytes + 5 + 16, 0x3f, 12); /* vertices, edges, faces issued */
+    memset(run.content.bytes + 5 + 16, 0x3f, 12); /* numbers of vertices, edges and faces */
     fixture_fail_at(0);
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_CORRUPT);
@@ -529,7 +531,7 @@ static void test_a_small_content_gets_no_large_memory(void **state)
 
 /* --- parts --- */
 
-/* A mesh of many parts, whose labels alone take more than one part. */
+/* Makes a mesh of many parts, whose labels alone take more than one part. */
 static he_mesh *large_mesh(void)
 {
     he_mesh *m = script_mesh("012,023,034,045", NULL);
@@ -543,12 +545,12 @@ static he_mesh *large_mesh(void)
         (void)snprintf(text, sizeof text, "label %u", i);
         assert_int_equal(he_labels_add(column->labels, text, strlen(text), &index, NULL), HE_OK);
     }
-    memset(he_column_row(column, 7), 0, column->row_bytes); /* the face that is dead */
+    memset(he_column_row(column, 7), 0, column->row_bytes); /* the deleted face */
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     return m;
 }
 
-/* Reads all parts but the last `less`. */
+/* Reads all parts of a content except the last `less`. */
 static he_status read_parts(const he_mesh *m, uint64_t less, he_mesh **out, he_error *err)
 {
     unsigned char *part = malloc(HE_STORED_PART_ROOM);

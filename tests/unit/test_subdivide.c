@@ -1,7 +1,8 @@
-/* Subdivision compared with what the papers prove: counts in closed form, limit positions, curves
- * that are cubic B-splines, creases, darts and corners; also attributes, ids, undo and cancelling.
+/* Subdivision is compared with what the papers prove: counts in closed form, limit positions,
+ * curves that are cubic B-splines, creases, darts and corners; also attributes, ids, undo and
+ * cancelling.
  *
- * A limit position is a weighted sum of a vertex and its ring that no step changes, so it is
+ * A limit position is a weighted sum of a vertex and its neighbours that no step changes, so it is
  * computed before a step and after it. */
 #include "edit_script.h"
 
@@ -65,7 +66,7 @@ static he_vec3 at(const he_mesh *m, uint32_t v)
     return he_position(m, (he_vertex){v});
 }
 
-/* A vertex 0 in the middle of n faces of three or four corners, not planar. */
+/* Makes a vertex 0 in the middle of n faces of three or four corners, which are not planar. */
 static he_mesh *wheel(unsigned n, bool quads)
 {
     he_soup soup;
@@ -88,7 +89,8 @@ static he_mesh *wheel(unsigned n, bool quads)
     return m;
 }
 
-/* The sum over the neighbours of v, or over the opposite corners of its quads. */
+/* Returns the sum of the positions of the neighbours of v or, if `across`, of the opposite corners
+ * of its quads. */
 static he_vec3 ring(const he_mesh *m, uint32_t v, bool across)
 {
     he_vec3 sum = {0, 0, 0};
@@ -150,8 +152,8 @@ static void steps_keep_limit_positions(void **state)
     }
 }
 
-/* The limit of a regular vertex of loop has weight one half for itself, and a twelfth for each
- * neighbour. */
+/* By the paper, the limit of a regular vertex in the scheme `loop` has weight one half for the
+ * vertex itself, and a twelfth for each neighbour. */
 static void a_regular_vertex_has_the_known_limit(void **state)
 {
     (void)state;
@@ -162,9 +164,9 @@ static void a_regular_vertex_has_the_known_limit(void **state)
     he_mesh_free(m);
 }
 
-/* (9 v + 4 e + f) / 24 for a corner at (s, s, s), whose neighbours and diagonals sum up to s and
- * -s.
- */
+/* The limit of a vertex with three quads is (9 v + 4 e + f) / 24, where e and f are the sums of
+ * neighbours and opposite corners: for the corner (s, s, s) of a cube these sums are (s, s, s) and
+ * (-s, -s, -s). */
 static void the_corner_of_a_cube_comes_to_half_its_place(void **state)
 {
     (void)state;
@@ -197,7 +199,7 @@ static void counts_follow_their_formulas(void **state)
     }
     assert_counts(m, c[3].vertices, c[3].edges, c[3].faces);
     he_mesh_free(m);
-    /* A grid of k by k quads, whose border has 4 k edges. */
+    /* A grid of k by k quads has 4 k edges on its boundary. */
     for (unsigned s = 1; s < 3; s++) {
         m = script_mesh("0143,1254,3476,4587", NULL);
         assert_int_equal(he_subdivide(m, schemes[s], 3, c, NULL), HE_OK);
@@ -209,7 +211,7 @@ static void counts_follow_their_formulas(void **state)
         assert_int_equal(he_mesh_boundary_halfedges(m), 4 * 16);
         he_mesh_free(m);
     }
-    /* Two steps of sqrt3 divide a triangle's sides by three and make nine triangles. */
+    /* Two steps of sqrt3 divide the sides of a triangle by three and make nine triangles of it. */
     m = script_mesh("012", NULL);
     assert_int_equal(he_subdivide(m, HE_SQRT3, 2, c, NULL), HE_OK);
     assert_int_equal(c[1].faces, 9);
@@ -258,13 +260,15 @@ static void a_flat_grid_stays_flat_and_regular(void **state)
             he_vec3 q = at(m, v);
             assert_true(q.z == 0 && q.x >= 0 && q.x <= 2 && q.y >= 0 && q.y <= 2);
         }
-        /* Its corners, which have one or two faces, and its centre stay. */
+        /* The centre of the grid must stay, and so must its corners, which have one or two
+         * faces. */
         assert_near(at(m, 4), p[4], 1e-15);
         he_mesh_free(m);
     }
 }
 
-/* (1 4 1) / 6 for a vertex between two others of a curve. */
+/* Returns (before + 4 v + after) / 6: the limit position of a vertex on a curve between its two
+ * neighbours. */
 static he_vec3 spline(const he_mesh *m, uint32_t before, uint32_t v, uint32_t after)
 {
     he_vec3 sum = plus(plus(at(m, before), 4, at(m, v)), 1, at(m, after));
@@ -318,7 +322,7 @@ static uint32_t features(const he_mesh *m)
     return count;
 }
 
-/* The vertex next to 0 along the feature that led to `rim`. */
+/* Returns the vertex next to 0 along the feature edge that led to `rim` before the step. */
 static uint32_t along(const he_mesh *m, uint32_t rim)
 {
     const he_column *column = he_mark_find(m, HE_EDGE, "feature");
@@ -358,7 +362,8 @@ static void creases_are_curves_darts_smooth_and_corners_stay(void **state)
         he_mesh_free(a);
         he_mesh_free(b);
     }
-    /* A dart vertex moves as without features, and the middle of its edge stays on the edge. */
+    /* At the end of a single feature edge (a dart) the vertex must move as without features, and
+     * the middle of the edge must stay on the edge. */
     he_mesh *a, *b, *smooth = wheel(6, false);
     subdivide_marked("mark feature edge=0-1", HE_LOOP, 1, &a, &b);
     subdivide(smooth, HE_LOOP, 1);
@@ -434,7 +439,8 @@ static void values_linear_in_the_position_remain_so(void **state)
     }
 }
 
-/* New edges have the default of `feature`, but they are no curves. */
+/* New edges inside faces get the default of the attribute `feature`, but they must not become
+ * curves. */
 static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
 {
     (void)state;
@@ -453,7 +459,8 @@ static void what_comes_inside_faces_is_smooth_in_all_steps(void **state)
     }
 }
 
-/* Without a smoothing rule, a corner's value stays equal to its vertex's position. */
+/* A column without a smoothing rule holds positions at the corners of faces: after a step each must
+ * equal the position of its vertex. */
 static void corners_are_refined_within_their_face(void **state)
 {
     (void)state;
@@ -465,7 +472,7 @@ static void corners_are_refined_within_their_face(void **state)
         for (uint32_t h = 0; h < 2 * he_mesh_edges(m); h++) {
             if (!he_is_boundary_halfedge(m, (he_halfedge){h})) {
                 he_vec3 p = at(m, he_origin(m, (he_halfedge){h}).i);
-                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* a seam at every edge */
+                p.x += 100 * he_face_of(m, (he_halfedge){h}).i; /* makes every edge a seam */
                 memcpy(he_column_row(column, h), &p, sizeof p);
             }
         }
@@ -490,7 +497,8 @@ static void corners_are_refined_within_their_face(void **state)
     }
 }
 
-/* After sqrt3 every corner has the value of its original face. */
+/* After sqrt3, which flips edges, every corner must have the value of the face that it came
+ * from. */
 static void corners_of_flipped_triangles_are_of_their_face(void **state)
 {
     (void)state;
@@ -657,7 +665,7 @@ static void coordinates_as_large_as_doubles_get_stay_finite(void **state)
             he_vec3 p = {v % 2 ? 1.797e308 : -1.797e308, 1.797e308, v};
             he_set_position(m, (he_vertex){v}, p);
         }
-        subdivide(m, schemes[s], 3); /* I11 */
+        subdivide(m, schemes[s], 3); /* checks the invariant I11, too */
         assert_true(at(m, 0).y > 1.79e308);
         he_mesh_free(m);
     }

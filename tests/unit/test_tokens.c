@@ -1,5 +1,4 @@
-/* Tokens: their file, what they may do, and replacing one file by another.
- */
+/* Tokens: the file that lists them, what they allow, and replacing one file by another. */
 #include "unit/fixture.h"
 
 #include "api/token/tickets.h"
@@ -43,7 +42,7 @@ static void a_line_says_whose_a_token_is_and_what_it_may_do(void **state)
     assert_string_equal(b->prefixes[1], "shared.");
     assert_true(b->expires == 1798806605.0);
     unsigned char hash[API_TOKEN_HASH];
-    api_token_hash("test", 4, hash); /* the value in FIPS 180-4 */
+    api_token_hash("test", 4, hash); /* FIPS 180-4 has the expected value */
     assert_true(api_token_matches(a, hash));
     assert_false(api_token_matches(b, hash));
     hash[31] ^= 1;
@@ -157,7 +156,7 @@ static void a_file_has_its_limits(void **state)
     free(large);
 }
 
-/* Rows: the role of a token; columns: the required role. */
+/* The rows are the role of a token, the columns the role that a request requires. */
 static void roles_include_each_other_as_documented(void **state)
 {
     (void)state;
@@ -238,7 +237,7 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     assert_true(load(tokens, "# moved\n\na read " HASH " expires=1970-01-02"));
     assert_int_equal(api_tokens_count(tokens), 1);
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
-    assert_ptr_equal(again, a); /* the other line changed, this one did not */
+    assert_ptr_equal(again, a); /* the line of this token did not change */
     api_token_release(again);
     assert_int_equal(first.told, 0);
 
@@ -249,11 +248,11 @@ static void a_file_takes_the_place_of_another_whole_or_not_at_all(void **state)
     again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_not_equal(again, a);
     api_token_release(again);
-    api_tokens_watch(tokens, &third.watch); /* too late */
+    api_tokens_watch(tokens, &third.watch); /* comes too late to be told */
     assert_int_equal(third.told, 1);
     assert_true(load(tokens, "b read " OTHER));
     assert_int_equal(first.told, 1);
-    assert_string_equal(a->name, "a"); /* as long as it is held */
+    assert_string_equal(a->name, "a"); /* the token lives as long as it is held */
     api_tokens_unwatch(tokens, &first.watch);
     api_token_release(a);
     api_tokens_free(tokens);
@@ -275,10 +274,10 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 10 << 20);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESH_BYTES), UINT64_C(2) << 30);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 4);
-    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* no limit */
+    assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 0); /* 0: no limit */
     assert_int_equal(api_token_limit(NULL, API_LIMIT_REQUESTS), 0);
 
-    /* Other limits make no new token: its running requests continue, with the new limits. */
+    /* New limits must not make it a new token: running requests continue with the new limits. */
     listener watcher = {.watch = {.token = a, .gone = tell}};
     api_tokens_watch(tokens, &watcher.watch);
     assert_false(load(tokens, "a read " HASH " prefix=x requests=1 requests=2"));
@@ -286,12 +285,13 @@ static void a_line_may_set_limits_of_its_own(void **state)
     api_token *again = api_tokens_find(tokens, "test", 4, 0);
     assert_ptr_equal(again, a);
     assert_int_equal(watcher.told, 0);
-    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the option's limit again */
+    assert_int_equal(api_token_limit(a, API_LIMIT_REQUESTS), 7); /* the daemon's option again */
     assert_int_equal(api_token_limit(a, API_LIMIT_BYTES), 5);
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
 
-    /* A token with the same name uses the same bucket; one with another name does not. */
+    /* A token with the same name must use the same bucket of requests; one with another name must
+     * not. */
     api_token_list list;
     assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
     assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);
@@ -358,7 +358,7 @@ static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
     assert_true(api_tickets_make(tickets, NULL, "/x", 60, another, &expires));
     assert_true(api_tickets_take(tickets, another, "/x", 60, &got));
     assert_null(got);
-    assert_true(api_tickets_make(tickets, b, "/x", 60, another, &expires)); /* freed with it */
+    assert_true(api_tickets_make(tickets, b, "/x", 60, another, &expires)); /* freed at the end */
     api_tickets_free(tickets);
     assert_int_equal(b->uses, 1);
     api_token_list_clear(&list);
@@ -386,7 +386,7 @@ static void a_new_token_is_in_its_line(void **state)
     api_tokens_free(tokens);
 }
 
-/* Returns processor time, which other programs do not affect. */
+/* Returns processor time, so that other programs do not matter. */
 static double seconds(void)
 {
     struct timespec now;
@@ -423,7 +423,7 @@ static void a_check_costs_about_a_microsecond(void **state)
     double wrong = microseconds_a_check(tokens, token);
     printf("note: a token is checked in %.2f us among %d, a wrong one in %.2f us\n", good,
            API_TOKENS, wrong);
-    assert_true(good < 20 && wrong < 20); /* also with sanitizers on a slow machine */
+    assert_true(good < 20 && wrong < 20); /* generous, for sanitizers on slow machines */
     free(others);
     free(text);
     api_tokens_free(tokens);

@@ -1,4 +1,5 @@
-/* Long polygons of any shape: valid triangles, none turned over, in bounded work. */
+/* Triangulation of long polygons of any shape: the triangles must be valid, none of them turned
+ * over, and the work limited. */
 #include "unit/fixture.h"
 
 #include "geometry/corner_tree.h"
@@ -27,8 +28,8 @@ static double doubled_area(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
     return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
 }
 
-/* Each triangle cuts its middle corner off the rest: so there are n - 2 triangles, every diagonal
- * belongs to two of them and every side to one. */
+/* Requires that each triangle cuts its middle corner off the rest: then there are n - 2 triangles,
+ * every diagonal belongs to two of them, and every side to one. */
 static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
 {
     uint32_t n = f->n, *next = calloc(n, sizeof *next);
@@ -50,7 +51,8 @@ static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
     free(next);
 }
 
-/* Triangles that all turn left and whose areas add up to the polygon's area cover it once. */
+/* Requires that all triangles turn left and that their areas add up to the polygon's area: then
+ * they cover it once. */
 static void assert_covers(const he_flat *f, const uint32_t *corners)
 {
     double whole = 0, sum = 0;
@@ -106,7 +108,7 @@ static void every_shape_is_covered(void **state)
     }
 }
 
-/* Counted in steps, not seconds: at most a few times n log n for any polygon. */
+/* The work is counted in steps and not in seconds: at most a few times n log n for any polygon. */
 static void work_grows_as_n_log_n(void **state)
 {
     (void)state;
@@ -135,7 +137,7 @@ static void work_grows_as_n_log_n(void **state)
 
 /* --- random simple polygons, checked by an obvious test --- */
 
-/* xorshift64 (Marsaglia 2003) */
+/* Returns a pseudo-random number: xorshift64 (Marsaglia 2003). */
 static uint64_t random_bits(uint64_t *state)
 {
     *state ^= *state << 13;
@@ -158,8 +160,9 @@ static bool meet(const he_flat *f, uint32_t a, uint32_t b, uint32_t c, uint32_t 
            on_segment(f, c, d, b);
 }
 
-/* Reverses pieces until no two sides cross; returns false if that takes too long, or if points lie
- * on sides. There are few points, on a grid, so that three are often collinear. */
+/* Reverses pieces of a random polygon until no two sides cross; returns false if that takes too
+ * long, or if a point lies on a side. There are few points, on a grid, so that three are often
+ * collinear. */
 static bool untangle(he_flat *f)
 {
     uint32_t n = f->n;
@@ -184,7 +187,8 @@ static bool untangle(he_flat *f)
             for (uint32_t i = 0; i < n; i++) {
                 uint32_t k = (i + 1) % n, l = (i + 2) % n;
                 area += f->x[i] * f->y[k] - f->x[k] * f->y[i];
-                /* A side that runs back along the one before it meets it in more than a corner. */
+                /* A side that runs back along the side before it would meet it in more than a
+                 * corner. */
                 if (on_segment(f, i, k, l) || on_segment(f, k, l, i)) {
                     return false;
                 }
@@ -202,7 +206,7 @@ static bool untangle(he_flat *f)
     return false;
 }
 
-/* No diagonal meets a side except at its ends. */
+/* Requires that no diagonal meets a side except at its ends. */
 static void assert_inside(const he_flat *f, const uint32_t *corners)
 {
     for (uint32_t k = 0; k + 3 < f->n; k++) {
@@ -284,8 +288,8 @@ static void what_meets_itself_is_not_swept(void **state)
 
 /* --- edges, memory, watches --- */
 
-/* An export uses triangles computed without regard to edges if none of their diagonals is an
- * edge. */
+/* An export uses triangles that were computed without regard to existing edges, if none of their
+ * diagonals is such an edge. */
 static void avoiding_edges_changes_nothing_where_there_are_none(void **state)
 {
     (void)state;
@@ -359,7 +363,8 @@ static void a_long_loop_is_given_up(void **state)
         assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
                          HE_CANCELLED);
         assert_int_equal(told, 1);
-        /* Soon after the first time: one corner, or one sweep, later. */
+        /* The work must end soon after it was cancelled: after at most one more corner or one more
+         * sweep. */
         assert_true(work.steps < 40 * 40000);
         he_mesh_free(m);
     }
@@ -386,7 +391,8 @@ static uint64_t steps_of(const he_mesh *m, unsigned flags, uint32_t *first)
     return steps;
 }
 
-/* The tree of boxes, the arrays of a renderer and formats of triangles triangulate a face once. */
+/* The tree of boxes, the arrays of a renderer and the writers of triangle formats must share one
+ * triangulation of a long face. */
 static void a_long_face_is_cut_once_for_all(void **state)
 {
     (void)state;
@@ -467,8 +473,9 @@ static void keeping_fails_cleanly(void **state)
     he_replay_free(replay);
 }
 
-/* A hundred corners, alone and together with three hundred that are far from all triangles: a
- * hundred alone are kept as a list. */
+/* The search among a hundred corners, which are kept as a list, must find what the search among
+ * four hundred finds, which are kept as a tree; the other three hundred are far from all triangles
+ * that are tried. */
 static void a_list_of_corners_finds_what_a_tree_finds(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Progress never decreases and has enough steps to be visible; cancelled work leaves nothing
- * behind. */
+/* Progress of long work must never decrease and have enough steps to be visible; cancelled work
+ * must leave nothing behind. */
 #include "tests/unit/fixture.h"
 
 #include "algo/shape.h"
@@ -42,7 +42,7 @@ static const he_mem_hook counting = {count_blocks, NULL};
 /* --- a listener --- */
 
 typedef struct listener {
-    long told, give_up_at; /* 0: never */
+    long told, give_up_at; /* the call that cancels; 0: none */
     size_t distinct;
     double last;
     bool fell;
@@ -59,7 +59,7 @@ static bool hear(void *context, const char *phase, double done)
     return l->told != l->give_up_at;
 }
 
-enum { SIDE = 130 }; /* cells of a grid: enough work that each phase polls more than once */
+enum { SIDE = 130 }; /* cells of a grid: enough work for more than one call in each phase */
 
 static he_status make(he_watch *watch, he_mesh **out)
 {
@@ -146,7 +146,7 @@ typedef struct file {
     size_t length;
 } file;
 
-/* A grid of quads with an attribute of faces, which is in extras. */
+/* Makes a GLB file of a grid of quads with an attribute of faces, which is stored in the extras. */
 static file grid_glb(void)
 {
     he_mesh *mesh = NULL;
@@ -166,7 +166,7 @@ static file grid_glb(void)
     return f;
 }
 
-/* Triangles at the origin, in base64. */
+/* Makes a glTF file of triangles at the origin, in base64. */
 static file zeros_gltf(void)
 {
     enum { VERTICES = 30000, TEXT = VERTICES * 16 };
@@ -284,7 +284,8 @@ static he_status find_vertex_normals(const he_mesh *m, he_watch *watch)
     return status;
 }
 
-/* Quads whose corners have texture coordinates of their own. */
+/* The mesh has quads whose corners have texture coordinates of their own. The work on it before an
+ * answer must be cancellable at each call. */
 static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **state)
 {
     (void)state;
@@ -477,7 +478,7 @@ static void an_operation_is_given_up_and_the_mesh_is_as_it_was(void **state)
         blocks = 0;
         assert_int_equal(he_mesh_copy(mesh, &copy, NULL), HE_OK);
         size_t before = blocks;
-        /* Cancelled work is tried again on the same mesh, which is unchanged. */
+        /* Cancelled work must leave the mesh unchanged, so it is tried again on the same mesh. */
         for (long n = 1; status != HE_OK; n += n < 20 ? 1 : 23) {
             listener l = {.give_up_at = n};
             status = run_recorded(operations[i], copy, &l);
@@ -528,7 +529,7 @@ static void a_cancelled_edit_of_an_expendable_mesh_is_left_half_done(void **stat
 
 enum { WORDS = 5000, WRITES = 400000 };
 
-/* Writes to `words` at places all over, recorded. */
+/* Writes to places all over `words` while changes are recorded; returns the delta. */
 static he_delta *write_words(uint32_t *words)
 {
     he_delta *delta = he_delta_new();

@@ -82,7 +82,7 @@ void st_folder_above(const char *path, char out[PATH_MAX])
     out[length == 0 ? 1 : length] = '\0';
 }
 
-/* Syncs the folder above the store, which makes a new folder durable. */
+/* A new folder is durable when the folder above it is synced. */
 static bool sync_above(const char *path)
 {
     char above[PATH_MAX];
@@ -123,8 +123,7 @@ void st_folder_close(st_folder *folder)
 
 const char *st_folder_doubt(const st_folder *folder)
 {
-    /* These are magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p and fs/smb of the
-     * kernel. */
+    /* Magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p, fs/smb of the kernel. */
     enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
     const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
     struct statfs system;
@@ -175,7 +174,7 @@ bool st_folder_sync(st_folder *folder)
 
 /* --- the mark --- */
 
-/* The layout of a slot of the mark: store, commits, position, 4 zeros, CRC-32C of all before. */
+/* A slot: store, commits, position, 4 zeros, CRC-32C of all before. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 
 bool st_mark_open(st_folder *folder)
@@ -250,8 +249,8 @@ bool st_ballast_make(st_folder *folder)
     return made;
 }
 
-/* Returns true if the file system reports free blocks and they can be allocated. Only allocation
- * shows whether a quota is exhausted. */
+/* Does the file system report free blocks, and can they be allocated? Only allocation shows a
+ * quota. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;
