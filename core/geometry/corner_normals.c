@@ -3,7 +3,7 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* One corner around a vertex. */
+/* One corner around a vertex, with the normal of its face and the group it belongs to. */
 typedef struct corner {
     uint32_t halfedge;
     uint32_t group; /* HE_NONE on a boundary half-edge */
@@ -42,7 +42,8 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* `normals` are those of all faces, or NULL. */
+/* Lists the corners around a vertex. `normals` are those of all faces, or NULL if they must be
+ * computed. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -76,8 +77,9 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     return HE_OK;
 }
 
-/* Numbers the groups. A boundary half-edge comes before the corners of its fan, and a vertex on the
- * boundary stores one, so only a closed fan continues from its last corner to the first. */
+/* Groups the corners around a vertex whose faces are smooth with each other, and returns the number
+ * of groups. A boundary half-edge comes before the corners of its fan, and a vertex on the boundary
+ * stores one, so only a closed fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
     const corner *last = NULL,
@@ -130,8 +132,8 @@ static void sum_groups(fan *f, const he_mesh *m)
 he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease, he_vec3 *out,
                            he_error *err)
 {
-    /* Starts from the half-edge that the vertex stores, so the sums equal those of the whole
-     * mesh. */
+    /* The walk starts from the half-edge that the vertex stores, so the sums equal those that
+     * he_corner_normals computes for the whole mesh. */
     fan f = {.crease = crease};
     he_status status = gather(&f, m, m->c.vertex_halfedge[m->c.origin[h.i]], NULL, err);
     if (status == HE_OK) {
@@ -166,7 +168,8 @@ static he_status clear_range(void *context, uint32_t part, size_t from, size_t t
     return HE_OK;
 }
 
-/* Each vertex writes its own corners and no others. */
+/* Computes the normals of the corners of some vertices. Each vertex writes its own corners and no
+ * others, so threads do not interfere. */
 static he_status vertex_range(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const corners *all = context;

@@ -13,7 +13,7 @@ typedef struct keyed {
     uint32_t corner;
 } keyed;
 
-/* Moves bit i of the lower half to bit 2i. */
+/* Spreads bits for the Z curve: moves bit i of the lower half to bit 2i. */
 static uint64_t spread(uint64_t x)
 {
     x = (x | x << 16) & 0x0000FFFF0000FFFFu;
@@ -23,15 +23,17 @@ static uint64_t spread(uint64_t x)
     return (x | x << 1) & 0x5555555555555555u;
 }
 
-/* Coordinates are within [-2, 2], see flat.h; slightly larger ones do no harm. */
+/* Converts a coordinate to its bits on the Z curve. Coordinates are within [-2, 2], see flat.h;
+ * slightly larger ones do no harm. */
 static uint64_t on_curve(double x)
 {
     double scaled = (x + 2) * ((uint64_t)1 << 30);
     return scaled <= 0 ? 0 : scaled >= UINT32_MAX ? UINT32_MAX : (uint64_t)scaled;
 }
 
-/* A stable radix sort. Corners of equal keys stay in the order of the loop, which keeps neighbours
- * together. Returns the one of the two arrays that holds the result. */
+/* Sorts corners by their keys with a stable radix sort. Corners of equal keys stay in the order of
+ * the loop, which keeps neighbours together. Returns the one of the two arrays that holds the
+ * result. */
 static keyed *sort(keyed *from, keyed *to, uint32_t count)
 {
     for (unsigned shift = 0; shift < 64; shift += 8) {
@@ -60,7 +62,7 @@ static uint64_t key_of(const he_flat *f, uint32_t corner)
     return spread(on_curve(f->x[corner])) | spread(on_curve(f->y[corner])) << 1;
 }
 
-/* How many corners of a list are compared with a box at once, by vector instructions. */
+/* The number of corners of a list that are compared with a box at once, by vector instructions. */
 enum { BATCH = 8 };
 
 static uint32_t batched(uint32_t count)
@@ -197,7 +199,7 @@ he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const ui
     return HE_OK;
 }
 
-/* Returns the leaf of an index in `order`: the inverse of leaf_start. */
+/* Returns the leaf to which an index in `order` belongs: the inverse of leaf_start. */
 static uint32_t leaf_of(const he_corner_tree *t, uint32_t place)
 {
     return (uint32_t)((((uint64_t)place + 1) * t->leaves - 1) / t->count);
@@ -229,10 +231,12 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 /* --- searching --- */
 
 /* The area that he_flat_turns_left takes for rounding, relative to the squared size of the
- * triangle, with a margin for points beside it and for the rounding of a determinant. */
+ * triangle. It has a margin for points beside the triangle and for the rounding of a
+ * determinant. */
 static const double ABOUT = 4e-12;
 
-/* The side from `at` to `at` + `along`, and the corner of a box that lies furthest to its left. */
+/* A side of the triangle, from `at` to `at` + `along`, and the corner of a box that lies furthest
+ * to its left. */
 typedef struct side {
     double at[2], along[2];
     bool high[2]; /* is the furthest corner at the box's maximum? */
@@ -292,7 +296,8 @@ static double left_of(const side *s, double x, double y)
     return s->along[0] * (y - s->at[1]) - s->along[1] * (x - s->at[0]);
 }
 
-/* Returns false only if the box has no point of the triangle. */
+/* Returns true if the triangle may have a point in the box. Returns false only if it certainly has
+ * none. */
 static inline bool touches(const triangle *t, const he_corner_box *box)
 {
     if (box->min[0] > t->box.max[0] || box->max[0] < t->box.min[0] || box->min[1] > t->box.max[1] ||
@@ -311,7 +316,7 @@ static inline bool touches(const triangle *t, const he_corner_box *box)
     return true;
 }
 
-/* Two numbers that the processor compares with one instruction. */
+/* Two numbers that the processor handles with one vector instruction. */
 typedef double pair __attribute__((vector_size(2 * sizeof(double))));
 typedef int64_t pair_mask __attribute__((vector_size(2 * sizeof(int64_t))));
 
@@ -322,7 +327,7 @@ static inline pair pair_at(const double *from)
     return p;
 }
 
-/* Is a corner of the batch in the box? */
+/* Returns true if a corner of the batch is in the box. */
 static inline bool is_any_in_box(const he_corner_box *box, const double *x, const double *y)
 {
     const double left = box->min[0], right = box->max[0], low = box->min[1], high = box->max[1];
@@ -334,7 +339,7 @@ static inline bool is_any_in_box(const he_corner_box *box, const double *x, cons
     return (any[0] | any[1]) != 0;
 }
 
-/* Is corner p of the tree in the triangle? */
+/* Returns true if corner p of the tree is in the triangle. */
 static inline bool holds(const triangle *t, const he_flat *f, uint32_t p)
 {
     double x = f->x[p], y = f->y[p];
@@ -371,14 +376,15 @@ static inline uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, c
     return HE_NONE;
 }
 
-/* Is corner a before b along the curve? */
+/* Returns true if corner a is before corner b along the Z curve. */
 static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
 {
     uint64_t of_a = key_of(f, a), of_b = key_of(f, b);
     return of_a != of_b ? of_a < of_b : a < b;
 }
 
-/* Returns `found` or, if it is in the triangle and first along the curve, corner p of the list. */
+/* Returns corner p of the list if it is in the triangle and comes before `found` along the curve;
+ * otherwise `found`. */
 static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uint32_t p,
                               uint32_t found)
 {
@@ -389,8 +395,8 @@ static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uin
     return found == HE_NONE || is_before(f, p, found) ? p : found;
 }
 
-/* Returns the first corner along the curve, which a tree would find. A list that was short when it
- * was made returns the first of the list. */
+/* Finds a corner of a plain list in the triangle: the first along the curve, which a tree would
+ * find. In a list that was short when it was made, it finds the first of the list. */
 static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
@@ -403,7 +409,7 @@ static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b,
         if (!is_any_in_box(&box, tree->x + i, tree->y + i)) {
             continue;
         }
-        /* If no corner is in the triangle's box, the sides are not needed. */
+        /* If no corner is in the box around the triangle, its sides are not needed. */
         if (!has_sides) {
             t = triangle_of(tree->flat, a, b, c, &box);
             has_sides = true;
@@ -420,7 +426,7 @@ static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b,
 
 static uint32_t find_in_tree(const he_corner_tree *tree, const triangle *t, uint64_t *steps)
 {
-    /* One node of each level waits on the stack, and two of the last. */
+    /* The stack holds one waiting node for each level, and two of the last level. */
     uint32_t stack[34], depth = 0;
     stack[depth++] = 1;
     while (depth > 0) {

@@ -1,4 +1,5 @@
-/* corner_tree.h - a tree of boxes over the corners of a flat loop: is a corner inside a triangle?
+/* corner_tree.h - a tree of boxes over the corners of a flat loop, which tells whether a corner is
+ * inside a triangle.
  *
  * The corners are sorted along the Z curve (G. M. Morton, 1966) and cut into leaves of
  * HE_CORNER_LEAF. The tree is complete, so it is one array without links:
@@ -27,7 +28,7 @@ enum {
     HE_CORNER_UNSORTED = 16 /* a list made of up to this many is not ordered */
 };
 
-/* Empty if the minimum is larger than the maximum. */
+/* The box around corners of a subtree. It is empty if the minimum is larger than the maximum. */
 typedef struct he_corner_box {
     double min[2], max[2];
 } he_corner_box;
@@ -39,8 +40,8 @@ typedef struct he_corner_tree {
     he_corner_box *boxes; /* only in a tree */
     double *x, *y; /* only in a list, in its order: coordinates, and infinity up to a whole batch */
     uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
-    /* the corners along the curve, HE_NONE for each that was removed; in a list, unordered and
-     * without gaps */
+    /* The corners along the curve, HE_NONE for each that was removed; or, in a plain list, the
+     * corners in any order and without gaps. */
     uint32_t *order;
     uint32_t count;  /* entries of `order` */
     uint32_t made;   /* corners that the tree was made of */
@@ -59,14 +60,14 @@ static inline bool he_corner_tree_has(const he_corner_tree *tree, uint32_t corne
     return tree->count > 0 && tree->place[corner] != HE_NONE;
 }
 
-/* The corner must be in the tree. */
+/* Removes a corner, which must be in the tree. */
 void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 
-/* Returns a corner in the closed triangle a, b, c, which turns left, or HE_NONE. A corner is in it
- * unless it is to the right of a side by more than rounding (flat.h), so corners on a straight side
- * count as inside. Corners at the position of a, b or c do not count. Adds the boxes and corners
- * visited to `steps`; HE_CORNER_LEAF corners of a list, which cost about as much as a box, count as
- * one. */
+/* Returns a corner of the tree inside the closed triangle a, b, c, which must turn left; HE_NONE if
+ * there is none. A corner is in it unless it is to the right of a side by more than rounding
+ * (flat.h), so corners on a straight side count as inside. Corners at the position of a, b or c do
+ * not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners of a list, which
+ * cost about as much as a box, count as one. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

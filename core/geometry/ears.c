@@ -44,8 +44,8 @@ typedef struct ears {
     bool avoid; /* avoid diagonals that exist as edges */
     ring loop;  /* the loop that is left, without a node of its own */
     ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; they begin at n + state */
-    /* lists of PIERCED corners by the corner in their triangle; each begins at n + that corner, and
-     * one at 2n has those whose corner is no longer there */
+    /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at n
+     * plus that corner; one at 2n has those whose corner is no longer in the tree. */
     ring watch;
     uint8_t *state;
     he_corner_tree tree; /* corners that have never turned left */
@@ -66,7 +66,7 @@ static uint32_t list_of(const ears *e, state s)
     return e->f->n + (uint32_t)s;
 }
 
-/* The corner is no longer inside any triangle. */
+/* Removes a corner from the tree: it is no longer inside any triangle. */
 static void leave_tree(ears *e, uint32_t corner)
 {
     uint32_t list = e->f->n + corner, waiting = 2 * e->f->n, i;
@@ -92,7 +92,8 @@ static void look_at(ears *e, uint32_t i, uint32_t before)
     insert_after(e->kinds, convex ? before : e->kinds.prev[list_of(e, FLAT)], i);
 }
 
-/* Searching for edges does not count, so the flag does not change which ears are found. */
+/* Returns true if the steps allowed for cutting ears are used up. Searching for edges does not
+ * count, so the flag HE_AVOID_EDGES does not change which ears are found. */
 static bool is_exhausted(const ears *e)
 {
     return e->work->steps - e->work->searched >= e->most;
@@ -122,7 +123,7 @@ static bool is_ear(ears *e, uint32_t i)
     return true;
 }
 
-/* Returns HE_NONE if there is none, or only ears in state TAKEN. */
+/* Finds an ear. Returns HE_NONE if there is none, or if all ears are in state TAKEN. */
 static uint32_t find_ear(ears *e)
 {
     uint32_t list = list_of(e, CANDIDATE), waiting = 2 * e->f->n, i;
@@ -186,7 +187,8 @@ static void cut_off(ears *e, uint32_t i, uint32_t *corners)
         insert_after(e->kinds, list_of(e, CANDIDATE), i);
     }
     e->left--;
-    /* a and c take the place of i in the list. */
+    /* The corners a and c, on both sides of the corner i that was cut off, take the place of i in
+     * the list. */
     look_at(e, c, i);
     take_out(e->kinds, a);
     look_at(e, a, e->kinds.prev[i]);
@@ -260,7 +262,8 @@ static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
     return he_corner_tree_make(&e->tree, e->f, room, flat, err);
 }
 
-/* This many steps for each corner are enough for ordinary polygons of any size. */
+/* Returns how many steps may be taken for n corners, which is enough for ordinary polygons of any
+ * size. */
 static uint64_t most_steps(uint32_t n)
 {
     uint64_t steps = 0;

@@ -1,4 +1,4 @@
-/* ears.h - ear clipping (G. H. Meisters, "Polygons have ears", 1975).
+/* ears.h - triangulates a loop by ear clipping (G. H. Meisters, "Polygons have ears", 1975).
  *
  * An EAR is a corner that turns left and whose triangle, with the corners before and after it,
  * contains no other corner of the loop. Cutting it off leaves a loop of one corner less:
@@ -27,7 +27,8 @@ enum {
     HE_EAR_STEPS = 8
 };
 
-/* Fills triangulation->corners and `degenerate` from triangulation->flat, unless it gets `stuck`.
+/* Fills triangulation->corners and `degenerate` from triangulation->flat, unless cutting gets
+ * `stuck`.
  * Returns HE_DOUBLED_EDGE with HE_AVOID_EDGES in `flags` if every ear that is left, or every
  * corner, has a diagonal that is an edge.
  * Returns HE_NO_MEMORY if memory is out.

@@ -25,7 +25,7 @@ static double largest(double size, he_vec3 p)
     return z > size ? z : size;
 }
 
-/* A power of two as two factors, since the power itself may exceed a double. */
+/* A power of two as the product of two factors, since the power itself may exceed a double. */
 typedef struct power {
     double one, other;
 } power;
@@ -35,7 +35,7 @@ static he_vec3 scaled(he_vec3 p, power by)
     return (he_vec3){p.x * by.one * by.other, p.y * by.one * by.other, p.z * by.one * by.other};
 }
 
-/* Returns the power that brings `size` into [0.5, 1). */
+/* Returns the power of two that brings `size` into [0.5, 1). */
 static power power_for(double size)
 {
     int exponent = 0;
@@ -43,8 +43,8 @@ static power power_for(double size)
     return (power){ldexp(1, -exponent / 2), ldexp(1, -exponent - -exponent / 2)};
 }
 
-/* Puts the corners into `at`, relative to corner 0 and scaled: first so that differences are
- * finite, then so that the loop fills the unit cube. */
+/* Writes the positions of the corners into `at`, relative to corner 0 and scaled: first so that
+ * differences are finite, then so that the loop fills the unit cube. */
 static void place(const he_mesh *m, const he_flat *flat, he_vec3 *at)
 {
     double size = 0;
@@ -81,7 +81,7 @@ static void project(he_flat *flat, const he_vec3 *at, he_vec3 normal)
 {
     double length = sqrt(dot(normal, normal));
     normal = (he_vec3){normal.x / length, normal.y / length, normal.z / length};
-    /* Any direction far from the normal gives the first axis. */
+    /* The first axis of the plane comes from any direction far from the normal. */
     he_vec3 away = fabs(normal.x) < 0.6 ? (he_vec3){1, 0, 0} : (he_vec3){0, 1, 0};
     he_vec3 v = cross(normal, away);
     length = sqrt(dot(v, v));

@@ -18,17 +18,18 @@ typedef struct he_flat {
     void *memory;    /* one block that contains the arrays */
 } he_flat;
 
-/* Projects the loop of `first`. he_flat_clear frees.
+/* Projects the loop of half-edge `first` into its plane. he_flat_clear frees the result.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_flat_init(he_flat *flat, const he_mesh *m, he_halfedge first,
                                     he_error *err);
 void he_flat_clear(he_flat *flat);
 
-/* A triangle or loop whose doubled area, relative to its squared sides, is below this has no
- * area. */
+/* A triangle or loop has no area if its doubled area, relative to its squared sides, is below
+ * this. */
 #define HE_FLAT_THIN 1e-12
 
-/* Does the triangle of corners a, b, c turn counter-clockwise, by more than rounding? */
+/* Returns true if the triangle of corners a, b, c turns counter-clockwise, by more than
+ * rounding. */
 static inline bool he_flat_turns_left(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
 {
     double abx = f->x[b] - f->x[a], aby = f->y[b] - f->y[a];

@@ -47,7 +47,7 @@ HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, doub
  * length. */
 double he_corner_angle(const he_mesh *m, he_halfedge h);
 
-/* The results of one walk around a face. */
+/* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
     he_vec3 normal;   /* unit, or zero if degenerate */
     he_vec3 centroid; /* mean of the corners, where face_poke puts its vertex */
@@ -57,20 +57,21 @@ typedef struct he_face_shape {
 } he_face_shape;
 
 he_face_shape he_face_measure(const he_mesh *m, he_face f);
-/* Find one of these. he_face_normal returns false, with zero, for a degenerate face. */
+/* These functions find one of them each. he_face_normal returns false, with zero, for a degenerate
+ * face. */
 bool he_face_normal(const he_mesh *m, he_face f, he_vec3 *out);
 double he_face_area(const he_mesh *m, he_face f);
 he_vec3 he_face_centroid(const he_mesh *m, he_face f);
 
-/* How the faces around a vertex are weighted in its normal. */
+/* How the faces around a vertex are weighted in the vertex's normal. */
 typedef enum he_weight {
     HE_WEIGHT_AREA,   /* by the face's area */
     HE_WEIGHT_ANGLE,  /* by the corner's angle (Thuermer and Wuethrich 1998) */
     HE_WEIGHT_UNIFORM /* all alike */
 } he_weight;
 
-/* Finds a unit normal. Returns false, with zero, if the vertex is isolated, all its faces are
- * degenerate, or their normals cancel out. */
+/* Finds the unit normal of a vertex. Returns false, with zero, if the vertex is isolated, if all
+ * its faces are degenerate, or if their normals cancel out. */
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* Find the normals of the whole mesh, into an array of one entry for each issued row, in linear

@@ -11,7 +11,7 @@ void he_joins_clear(he_joins *joins)
     *joins = (he_joins){.rank = NULL};
 }
 
-/* Gives ranks to the vertices of large degree, and returns their number. */
+/* Numbers the vertices of large degree in `rank`, and returns how many there are. */
 static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
 {
     uint32_t count = 0;
@@ -26,14 +26,16 @@ static uint32_t rank_vertices(const he_mesh *m, uint32_t *rank)
     return count;
 }
 
-/* Does the half-edge lead to a vertex with a smaller id, both ends being of large degree? */
+/* Returns true if a half-edge is in a list: both its ends have a large degree, and its target has
+ * the smaller id. */
 static bool is_listed(const he_mesh *m, const uint32_t *rank, uint32_t h)
 {
     uint32_t from = m->c.origin[h], to = m->c.origin[h ^ 1u];
     return to < from && rank[from] != HE_NONE && rank[to] != HE_NONE;
 }
 
-/* The start of each list is stored one place further on; filling moves it back. */
+/* Computes where the list of each vertex of large degree begins. The start of each list is stored
+ * one place further on; filling the lists moves it back. */
 static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t count,
                               uint32_t *starts)
 {
@@ -89,13 +91,13 @@ he_status he_joins_make(const he_mesh *m, he_joins *out, he_error *err)
 
 /* --- pairs that were joined later --- */
 
-/* Never 0, since the larger id is not 0. */
+/* Returns the key of a pair of vertices. It is never 0, since the larger id is not 0. */
 static uint64_t key_of(he_vertex a, he_vertex b)
 {
     return a.i < b.i ? (uint64_t)b.i << 32 | a.i : (uint64_t)a.i << 32 | b.i;
 }
 
-/* Returns the slot of a key, or the free one where it belongs. */
+/* Returns the slot of the hash table that holds a key, or the free slot where it belongs. */
 static size_t slot_of(const he_joins *j, uint64_t key)
 {
     size_t mask = j->noted_slots - 1;

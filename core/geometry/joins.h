@@ -1,5 +1,5 @@
-/* joins.h - an index of edges: are two vertices joined? For many questions about a mesh that does
- * not change.
+/* joins.h - an index of the edges of a mesh that does not change, for many questions whether two
+ * vertices are joined by an edge.
  *
  * he_find_halfedge searches the ring of the vertex of smaller degree, which is long if two vertices
  * of large degree share very many faces. This index sorts, for every vertex of more than
@@ -22,17 +22,17 @@ typedef struct he_joins {
 } he_joins;
 
 /* Makes the index. Until he_joins_clear, which frees it, the mesh must not change except by edges
- * that are noted.
+ * that are reported to he_joins_note.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_joins_make(const he_mesh *m, he_joins *out, he_error *err);
 void he_joins_clear(he_joins *joins);
-/* Makes room to note `extra` edges; an empty index needs none.
+/* Makes room to add `extra` edges; an empty index needs none.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_joins_reserve(he_joins *joins, size_t extra, he_error *err);
-/* Notes an edge that was made between a and b; he_joins_reserve has made room. */
+/* Adds an edge that was made between a and b; he_joins_reserve must have made room. */
 void he_joins_note(he_joins *joins, he_vertex a, he_vertex b);
-/* Does an edge join a and b? Adds the cost to `*steps`. If `joins` is NULL or empty, searches the
- * rings. */
+/* Returns true if an edge joins a and b. Adds the cost of the search to `*steps`. If `joins` is
+ * NULL or empty, searches around the vertices. */
 bool he_joined(const he_mesh *m, const he_joins *joins, he_vertex a, he_vertex b, uint64_t *steps);
 
 #endif

@@ -15,7 +15,7 @@ static void extend(he_box *box, bool *any, he_vec3 p)
                          p.z > high.z ? p.z : high.z};
 }
 
-/* `isolated`: vertices without an edge count too. */
+/* Finds the box around vertices. With `isolated`, vertices without an edge count, too. */
 static bool find_box(const he_mesh *m, bool isolated, he_box *out)
 {
     he_box box = {{0, 0, 0}, {0, 0, 0}};
@@ -40,7 +40,7 @@ bool he_surface_box(const he_mesh *m, he_box *out)
     return find_box(m, false, out);
 }
 
-/* Neumaier's sum: the rounding errors are summed separately. */
+/* A sum by Neumaier's method: the rounding errors are summed separately. */
 typedef struct total {
     double sum, error;
 } total;
@@ -52,8 +52,9 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
-/* Sums terms of any size: terms whose exponents are in one window of WINDOW share a total. A
- * volume's exponent is at most three times that of a double. */
+/* Terms of any size are summed exactly enough in several totals: terms whose exponents are in one
+ * window of WINDOW share a total. The exponent of a volume is at most three times that of a
+ * double. */
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
@@ -73,7 +74,7 @@ static void add_scaled(sums *s, double x, int exponent)
     add(&s->of[window], ldexp(part, above - window * WINDOW));
 }
 
-/* Returns the sum divided by `divisor`, or the largest double if that is too large. */
+/* Returns the sum of all totals divided by `divisor`, or the largest double if it is too large. */
 static double sum_of(sums *s, const total *plain, double divisor)
 {
     add_scaled(s, plain->sum, 0);
@@ -112,7 +113,8 @@ static he_vec3 find_base(const he_mesh *m)
     return base;
 }
 
-/* `vector` is in a scale of its own: the true vector is it times 4^exponent. */
+/* Adds the volume between a face and the point `base`. `vector`, the area vector of the face, is in
+ * a scale of its own: the true vector is `vector` times 4^exponent. */
 static void add_cone(sums *volume, he_vec3 base, he_vec3 corner, he_vec3 vector, int exponent)
 {
     int halved = 0;

@@ -4,7 +4,7 @@
 
 /* --- tests in a plane --- */
 
-/* Drops one axis. Coordinates stay as they are, so nothing is rounded. */
+/* Projects a point by dropping one axis. Coordinates stay as they are, so nothing is rounded. */
 static he_vec2 flat(he_vec3 p, int axis)
 {
     return axis == 0 ? (he_vec2){p.y, p.z} : axis == 1 ? (he_vec2){p.z, p.x} : (he_vec2){p.x, p.y};
@@ -37,7 +37,7 @@ bool he_triangle_has_area(const he_vec3 t[3])
     return open_axis(t) >= 0;
 }
 
-/* Is p, which is on the line of a and b, between them? */
+/* Returns true if p, which is on the line of a and b, lies between them. */
 static bool between(he_vec2 a, he_vec2 b, he_vec2 p)
 {
     return fmin(a.x, b.x) <= p.x && p.x <= fmax(a.x, b.x) && fmin(a.y, b.y) <= p.y &&
@@ -65,7 +65,8 @@ static bool is_inside(he_vec2 p, const he_vec2 t[3])
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* Do a segment and a triangle in one plane intersect? Both are projected along an axis. */
+/* Returns true if a segment and a triangle in one plane intersect. Both are projected along an
+ * axis. */
 static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axis)
 {
     he_vec2 a = flat(p, axis), b = flat(q, axis);
@@ -74,8 +75,8 @@ static bool flat_segment_meets(he_vec3 p, he_vec3 q, const he_vec3 t[3], int axi
            segments_meet(a, b, c[1], c[2]) || segments_meet(a, b, c[2], c[0]);
 }
 
-/* Two triangles, projected along an axis along which a has area. So has b if it is in the same
- * plane. */
+/* Two triangles, projected along an axis along which triangle a has area. Triangle b then has area,
+ * too, if it is in the same plane. */
 typedef struct flat_pair {
     he_vec2 a[3], b[3];
 } flat_pair;
@@ -86,8 +87,8 @@ static flat_pair flatten(const he_vec3 a[3], const he_vec3 b[3], int axis)
                        {flat(b[0], axis), flat(b[1], axis), flat(b[2], axis)}};
 }
 
-/* Are all corners of u beyond the line of the side of t that begins at corner i? False if t has no
- * area. */
+/* Returns true if all corners of triangle u are beyond the line of the side of triangle t that
+ * begins at corner i; false if t has no area. */
 static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
 {
     he_vec2 p = t[i], q = t[(i + 1) % 3];
@@ -96,8 +97,9 @@ static bool is_beyond_side(const he_vec2 t[3], int i, const he_vec2 u[3])
            he_orient2(p, q, u[2]) == beyond;
 }
 
-/* Triangles in one plane are disjoint exactly if one lies beyond some side of the other: the
- * differences of their points fill a convex polygon, whose sides are parallel to theirs. */
+/* Returns true if two triangles in one plane intersect. They are disjoint exactly if one lies
+ * beyond some side of the other, because the differences of their points fill a convex polygon,
+ * whose sides are parallel to theirs. */
 static bool flat_meet(const flat_pair *f)
 {
     for (int i = 0; i < 3; i++) {
@@ -108,9 +110,9 @@ static bool flat_meet(const flat_pair *f)
     return true;
 }
 
-/* The sector of t at its corner `at` is on one side of the line through its ray to corner `to`. Is
- * the sector of u at its corner `of`, which is at one position with `at`, on the other side,
- * without touching that ray? */
+/* The sector of triangle t at its corner `at` is on one side of the line through its ray to corner
+ * `to`. Returns true if the sector of triangle u at its corner `of`, which is at the position of
+ * `at`, is on the other side, without touching that ray. */
 static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3], int of)
 {
     he_vec2 apex = t[at], ray = t[to];
@@ -125,8 +127,9 @@ static bool is_beyond_ray(const he_vec2 t[3], int at, int to, const he_vec2 u[3]
     return true;
 }
 
-/* Triangles in one plane with a common corner share other points exactly if their sectors at it
- * share a ray. If they share none, the line through one of their four rays separates them. */
+/* Returns true if two triangles in one plane with a common corner share other points. They do so
+ * exactly if their sectors at that corner share a ray. If they share none, the line through one of
+ * their four rays separates them. */
 static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
 {
     for (int k = 1; k < 3; k++) {
@@ -138,8 +141,8 @@ static bool flat_meet_beyond_corner(const flat_pair *f, int at_a, int at_b)
     return true;
 }
 
-/* Triangles in one plane that share the side opposite to corners i and k overlap if they are on the
- * same side of it. */
+/* Returns true if two triangles in one plane that share the side opposite to corners i and k
+ * overlap. They do so if they are on the same side of it. */
 static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 {
     he_vec2 p = f->a[(i + 1) % 3], q = f->a[(i + 2) % 3];
@@ -154,7 +157,8 @@ typedef struct meeting {
     int side[2][3]; /* for the corners of t[0], as seen from t[1], and the reverse */
 } meeting;
 
-/* Does the side that begins at corner i of one triangle intersect the other triangle? */
+/* Returns true if the side that begins at corner i of triangle `of` intersects the other
+ * triangle. */
 static bool side_meets(const meeting *m, int of, int i)
 {
     const he_vec3 *t = m->t[1 - of];
@@ -174,9 +178,9 @@ static bool side_meets(const meeting *m, int of, int i)
            (turns[0] <= 0 && turns[1] <= 0 && turns[2] <= 0);
 }
 
-/* Computes the sides of the plane of t[1 - of] on which the corners of t[of] are; those in the set
- * `shared` are in it. Returns true if the others are all on one side and none is in the plane, as
- * for nearly all neighbours. */
+/* Computes on which sides of the plane of t[1 - of] the corners of t[of] are; those in the set
+ * `shared` lie in the plane. Returns true if all others are on one side and none is in the plane,
+ * as for nearly all neighbours. */
 static bool is_beside(meeting *m, int of, unsigned shared)
 {
     const he_vec3 *plane = m->t[1 - of];
@@ -243,8 +247,8 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
          * it of one triangle, which then intersects the other one. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
-    /* Triangles whose projections are disjoint are disjoint; this test is cheaper than the
-     * following. */
+    /* If the projections of the triangles are disjoint, the triangles are disjoint, too; this test
+     * is cheaper than the ones that follow. */
     const flat_pair seen = flatten(a, b, likely_axis(a));
     if (!flat_meet(&seen)) {
         return false;

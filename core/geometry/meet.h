@@ -4,12 +4,13 @@
 
 #include "geometry/vec3.h"
 
-/* Exact, without rounding (orient.h). */
+/* Returns true if the triangle has area; exact, without rounding (orient.h). */
 bool he_triangle_has_area(const he_vec3 t[3]);
 
-/* Do the triangles share a point other than a common corner or a side between two common corners?
- * Corners are common if they are at one position. Triangles with three common corners intersect;
- * one without area intersects nothing. Exact, without rounding (orient.h). */
+/* Returns true if the triangles share a point other than a common corner or a side between two
+ * common corners. Corners are common if they are at one position. Triangles with three common
+ * corners intersect; one without area intersects nothing. The answer is exact, without rounding
+ * (orient.h). */
 bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3]);
 
 #endif

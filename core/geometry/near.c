@@ -1,7 +1,9 @@
-/* NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the division. For
- * coordinates so large that the margin is too small (2^43 cells from 0) both neighbours are
- * searched; where even the next double is out of reach (2^53 cells) each coordinate is a cell of
- * its own, as with tolerance 0. */
+/* near.c - finds points within a tolerance of another by a hash table of cells.
+ *
+ * The constant NEAR is the tolerance, a quarter of a cell, with a margin for the rounding of the
+ * division. For coordinates so large that the margin is too small (2^43 cells from 0), both
+ * neighbours of a cell are searched; where even the next double is out of reach (2^53 cells), each
+ * coordinate is a cell of its own, as with tolerance 0. */
 #include "geometry/near.h"
 
 #include "geometry/point_hash.h"
@@ -14,7 +16,8 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* How many slots are cleared between two steps of the watch: writing to fresh memory is slow. */
+/* The number of slots that are cleared between two steps of the watch, because writing to fresh
+ * memory is slow. */
 enum { STRETCH = 16 * HE_WATCH_STRIDE };
 
 he_status he_near_make(he_near *out, const he_vec3 *points, size_t most, double tolerance,

@@ -36,7 +36,8 @@ HE_NODISCARD he_status he_near_make(he_near *out, const he_vec3 *points, size_t 
                                     double tolerance, uint64_t seed, he_watch *watch,
                                     he_error *err);
 void he_near_clear(he_near *near);
-/* *home is passed on to he_near_keep. */
+/* Finds the kept point of lowest number within the tolerance of p; HE_NONE if there is none. *home
+ * must then be passed on to he_near_keep. */
 uint32_t he_near_find(const he_near *near, he_vec3 p, uint32_t *home);
 void he_near_keep(he_near *near, uint32_t home, uint32_t number);
 

@@ -5,8 +5,9 @@
 
 #include <stdlib.h>
 
-/* Limits the weights: areas around a vertex differ beyond the range of a double only in meshes
- * nobody draws, and the limit keeps their faces from vanishing if there are no larger ones. */
+/* Returns the weight of a face by its area. Weights have a lower limit: areas around a vertex
+ * differ beyond the range of a double only in meshes nobody draws, and the limit keeps their faces
+ * from vanishing if there are no larger ones. */
 static double area_weight(const he_ring *r, int exponent, int unit)
 {
     return fmax(ldexp(0.5 * he_vec3_length(r->vector), 2 * exponent - unit), DBL_MIN);
@@ -75,15 +76,17 @@ typedef struct triangle {
     double square;    /* squared length of `vector` */
 } triangle;
 
-/* Is it neither degenerate nor of coordinates whose products would overflow or underflow? */
+/* Returns true if a triangle is neither degenerate nor has coordinates whose products would
+ * overflow or underflow. */
 static inline bool is_plain(double square, double reach)
 {
     return (reach > HE_LEAST_PRODUCT) & (reach < HE_MOST_PRODUCT) &
            (square > HE_RING_NOISE * 3 * reach);
 }
 
-/* Returns false if the face has not three corners, is degenerate, has coordinates whose products
- * would overflow or underflow, or if links are broken: the general function handles those. */
+/* Computes a triangle quickly. Returns false if the face has not three corners, is degenerate, has
+ * coordinates whose products would overflow or underflow, or if links are broken: the general
+ * function handles these cases. */
 static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
 {
     const uint32_t end = 2u * m->c.edges.issued, vertices = m->c.vertices.issued;
@@ -95,7 +98,8 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     if (j >= end || m->c.next[j] != h) {
         return false;
     }
-    /* Targets share a cache line with the origins; only the third half-edge is read in addition. */
+    /* The origin of a twin shares a cache line with the origin of its half-edge, so targets are
+     * read as origins of twins; only the third half-edge is read in addition. */
     triangle t = {.a = m->c.origin[h], .b = m->c.origin[h ^ 1u], .c = m->c.origin[i ^ 1u]};
     if (t.a >= vertices || t.b >= vertices || t.c >= vertices) {
         return false;
@@ -110,9 +114,9 @@ static inline bool plain_triangle(const he_mesh *m, uint32_t h, triangle *out)
     return is_plain(t.square, reach);
 }
 
-/* Prefetches for triangles some way ahead: their links first, and for nearer ones the rows that
- * those name. Where ids are in no spatial order every access misses the caches, and this overlaps
- * the misses. */
+/* Prefetches for triangles that come later in the loop: their links first, and for nearer ones the
+ * rows to which the links lead. Where ids are in no spatial order every access misses the caches,
+ * and this overlaps the misses. */
 static inline void look_ahead(const he_mesh *m, uint32_t f)
 {
     enum { LINKS = 24, CORNERS = 12 };
@@ -146,7 +150,8 @@ typedef struct faces {
     he_vec3 *out;
 } faces;
 
-/* Every face has at least three corners (I7), so all are triangles if the mean is three. */
+/* Returns true if all faces are triangles. Every face has at least three corners (I7), so they are
+ * if the mean is three. */
 static bool are_triangles(const he_content *c)
 {
     return 2 * (uint64_t)c->edges.live - c->boundary_halfedges == 3 * (uint64_t)c->faces.live;
@@ -170,7 +175,8 @@ static inline triple find_triple(const he_content *c, uint32_t f, bool triangles
             return none;
         }
     }
-    /* Targets share a cache line with the origins, so the third half-edge is not read. */
+    /* The origin of a twin shares a cache line with the origin of its half-edge, so targets are
+     * read there, and the third half-edge is not read. */
     triple t = {c->origin[h], c->origin[h ^ 1u], c->origin[i ^ 1u]};
     return t.a < vertices && t.b < vertices && t.c < vertices ? t : none;
 }
@@ -298,7 +304,8 @@ static bool share_triangle(const triangle *t, he_weight weight, double half, he_
     return true;
 }
 
-/* Returns the exponent of the area of a square around the origin that contains the mesh. */
+/* Returns the exponent of the area of a square around the origin of coordinates that contains the
+ * mesh. */
 static int area_unit_of_all(const he_mesh *m)
 {
     he_box box;

@@ -36,7 +36,7 @@ static pair exact_product(double a, double b)
     return (pair){fma(a, b, -x), x};
 }
 
-/* Adds one number, going through the components from the smallest. */
+/* Adds one number to an expansion, going through its components from the smallest. */
 static void grow(expansion *e, double b)
 {
     size_t kept = 0;
@@ -53,8 +53,8 @@ static void grow(expansion *e, double b)
     e->count = kept;
 }
 
-/* Adds a product of three differences, each given as two numbers. Most differences are exact, and
- * then seven of the eight terms are zero. */
+/* Adds to an expansion the product of three differences, each given as two numbers. Most
+ * differences are exact, and then seven of the eight terms are zero. */
 static void add_product(expansion *e, pair a, pair b, pair c, double sign_of)
 {
     const double as[2] = {a.low, a.high}, bs[2] = {b.low, b.high}, cs[2] = {c.low, c.high};
@@ -111,7 +111,8 @@ static pair minor_of(pair a, pair b, pair c, pair d)
 
 /* --- determinants --- */
 
-/* `size` is the sum of the terms' absolute values. */
+/* Returns the exact sign of the determinant of he_orient3. `size` is the sum of the absolute values
+ * of its terms. */
 static int exact3(he_vec3 a, he_vec3 b, he_vec3 c, he_vec3 d, double size)
 {
     pair ax = difference(a.x, d.x), ay = difference(a.y, d.y), az = difference(a.z, d.z);

@@ -50,8 +50,9 @@ static double largest_coordinate(const he_mesh *m, uint32_t first)
     return largest;
 }
 
-/* Walks a ring whose links are known to close, in a scale where its largest difference is near 1:
- * coordinates may be tiny or huge, or their differences small beside the distance to the origin. */
+/* Walks around a face whose links are known to close, in a scale where its largest difference of
+ * coordinates is near 1: coordinates may be tiny or huge, or their differences small beside the
+ * distance to the origin. */
 static he_ring walk_apart(const he_mesh *m, uint32_t first, uint32_t degree, int *exponent)
 {
     he_vec3 o = m->c.position[m->c.origin[first]], u = {0, 0, 0};
@@ -116,7 +117,8 @@ double he_ring_area(const he_ring *r, int exponent)
     return exponent == 0 ? scaled : he_saturated(ldexp(scaled, 2 * exponent));
 }
 
-/* The sum of far corners can overflow even if the differences between them are ordinary. */
+/* Returns the centroid of a face. The sum of far corners can overflow even if the differences
+ * between them are ordinary; then they are summed again in a smaller scale. */
 he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found, int exponent)
 {
     he_ring r = *found;

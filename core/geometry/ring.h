@@ -4,7 +4,7 @@
 
 #include "geometry/scale.h"
 
-/* The sums over one walk; coordinates are multiplied by a scale. */
+/* The sums over one walk around a face; coordinates are multiplied by a scale. */
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
     he_vec3 sum;    /* sum of the corners */
@@ -19,17 +19,19 @@ typedef struct he_ring {
 
 /* Returns how many half-edges a walk over the whole mesh may visit. */
 uint32_t he_ring_budget(const he_mesh *m);
-/* Walks the loop of `first`. `budget` is the number of half-edges that may still be visited. */
+/* Walks around the loop of half-edge `first`. `budget` is the number of half-edges that may still
+ * be visited. */
 he_ring he_ring_walk(const he_mesh *m, uint32_t first, double scale, uint32_t *budget);
-/* he_ring_walk in a scale in which nothing overflows or underflows: true lengths are those of the
- * ring times 2^exponent. */
+/* Walks like he_ring_walk, in a scale in which nothing overflows or underflows: true lengths are
+ * those of the ring times 2^exponent. */
 he_ring he_ring_measure(const he_mesh *m, uint32_t first, uint32_t *budget, int *exponent);
 he_ring he_ring_of_face(const he_mesh *m, he_face f, int *exponent);
 
-/* Finds the unit normal. Returns false, and zero, if the face is degenerate. */
+/* Finds the unit normal of a face from its sums. Returns false, and zero, if the face is
+ * degenerate. */
 bool he_ring_normal(const he_ring *r, he_vec3 *out);
 double he_ring_area(const he_ring *r, int exponent);
-/* Returns the centroid of the ring that was found from `first`. */
+/* Returns the centroid of the face whose sums were found by walking from `first`. */
 he_vec3 he_ring_centroid(const he_mesh *m, uint32_t first, const he_ring *found, int exponent);
 
 /* Returns HE_CORRUPT, saying that the links of the face do not close. */

@@ -9,7 +9,7 @@
 
 #define HE_PI 3.14159265358979323846
 
-/* Between these, products of four lengths neither overflow nor lose their digits. */
+/* Between these two bounds, products of four lengths neither overflow nor lose their digits. */
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 
@@ -34,7 +34,7 @@ static inline double he_clamped(double x)
     return fmax(fmin(x, DBL_MAX), -DBL_MAX);
 }
 
-/* Finds the unit vector of `a`, whatever its size. Returns false, and zero, if it is zero. */
+/* Finds the unit vector of `a`, whatever its length. Returns false, and zero, if `a` is zero. */
 static inline bool he_vec3_normalise(he_vec3 a, he_vec3 *out)
 {
     double square = he_vec3_dot(a, a);

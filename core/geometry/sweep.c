@@ -18,7 +18,8 @@ typedef struct interval {
 typedef struct sweep {
     const he_flat *f;
     uint32_t *rank; /* for each corner, its place in the order of visits */
-    /* The interval that each side bounds; HE_NONE while the line is not on it. */
+    /* The interval that each side of the loop bounds; HE_NONE while the sweep line does not cross
+     * the side. */
     uint32_t *within;
     interval *intervals;
     link *links;
@@ -43,14 +44,15 @@ static int orientation(const sweep *s, uint32_t a, uint32_t b, uint32_t c)
     return he_orient2((he_vec2){x[a], y[a]}, (he_vec2){x[b], y[b]}, (he_vec2){x[c], y[c]});
 }
 
-/* --- the order of corners --- */
+/* --- the order in which corners are visited --- */
 
 static bool is_earlier(const he_flat *f, uint32_t a, uint32_t b)
 {
     return f->x[a] != f->x[b] ? f->x[a] < f->x[b] : f->y[a] != f->y[b] ? f->y[a] < f->y[b] : a < b;
 }
 
-/* Merges runs of 1, 2, 4... Returns the one of the two arrays that holds the result. */
+/* Sorts the corners by merging runs of 1, 2, 4 and so on. Returns the one of the two arrays that
+ * holds the result. */
 static uint32_t *sort(const he_flat *f, uint32_t *from, uint32_t *to)
 {
     for (size_t run = 1; run < f->n; run *= 2) {
@@ -89,7 +91,7 @@ static int side_of(const sweep *s, uint32_t child)
     return s->intervals[s->intervals[child].parent].child[1] == child;
 }
 
-/* Rotates a node above its parent. */
+/* Rotates a node of the splay tree above its parent. */
 static void rotate(sweep *s, uint32_t i)
 {
     interval *of = s->intervals;
@@ -124,14 +126,15 @@ static uint32_t find_below(sweep *s, uint32_t corner)
         deepest = i;
         i = s->intervals[i].child[above];
     }
-    /* Splaying the last node of the way down pays for its length. */
+    /* Splaying the last node on the way down makes the whole search take logarithmic time on
+     * average. */
     if (deepest != HE_NONE) {
         splay(s, deepest);
     }
     return found;
 }
 
-/* Inserts an interval just above `below`, or below all if that is HE_NONE. */
+/* Inserts an interval just above the interval `below`, or below all others if that is HE_NONE. */
 static uint32_t add_interval(sweep *s, uint32_t below)
 {
     interval *of = s->intervals;
@@ -195,7 +198,8 @@ static bool cut(sweep *s, uint32_t corner, uint32_t upper, uint32_t lower)
     return true;
 }
 
-/* Adds the new top of the chain: a corner on the upper side, or at its end. */
+/* Adds a corner as the new top of an interval's chain: a corner on the upper side, or at its
+ * end. */
 static void add_top(sweep *s, interval *of, uint32_t corner)
 {
     uint32_t top = of->top;
@@ -216,7 +220,7 @@ static void add_bottom(sweep *s, interval *of, uint32_t corner)
     join_links(s, of->bottom, bottom);
 }
 
-/* --- events; each returns false if it cannot be one of a simple polygon --- */
+/* --- events at corners; each returns false if it cannot occur in a simple polygon --- */
 
 static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
 {
@@ -225,7 +229,7 @@ static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
     s->within[lower] = s->within[upper] = which;
 }
 
-/* Both sides begin at the corner, with the inside between them. */
+/* Handles a corner at which both sides begin, with the inside of the loop between them. */
 static bool start(sweep *s, uint32_t corner)
 {
     uint32_t made = add_interval(s, find_below(s, corner));
@@ -235,7 +239,7 @@ static bool start(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Both sides begin at the corner, with the outside between them. */
+/* Handles a corner at which both sides begin, with the outside of the loop between them. */
 static bool split(sweep *s, uint32_t corner)
 {
     uint32_t below = find_below(s, corner);
@@ -247,7 +251,7 @@ static bool split(sweep *s, uint32_t corner)
     link *last = &s->links[low->last];
     bound(s, above, corner, low->upper);
     bound(s, below, low->lower, before(s, corner));
-    /* The corner visited last is in both chains. */
+    /* The corner that was visited last belongs to both chains. */
     high->bottom = new_link(s, last->corner);
     high->top = high->bottom;
     if (last->up != HE_NONE) {
@@ -261,7 +265,7 @@ static bool split(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Both sides end at the corner, with the outside between them. */
+/* Handles a corner at which both sides end, with the outside of the loop between them. */
 static bool merge(sweep *s, uint32_t corner)
 {
     uint32_t below = s->within[corner], above = s->within[before(s, corner)];
@@ -271,7 +275,7 @@ static bool merge(sweep *s, uint32_t corner)
     interval *low = &s->intervals[below], *high = &s->intervals[above];
     add_top(s, low, corner);
     add_bottom(s, high, corner);
-    /* The corner is the end of both chains, so one of its two links is dropped. */
+    /* The corner ends both chains, so one of its two links is dropped. */
     join_links(s, low->top, s->links[high->bottom].up);
     low->last = low->top;
     low->top = high->top;
@@ -280,7 +284,7 @@ static bool merge(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Both sides end at the corner, with the inside between them. */
+/* Handles a corner at which both sides end, with the inside of the loop between them. */
 static bool end(sweep *s, uint32_t corner)
 {
     uint32_t which = s->within[corner];
@@ -297,7 +301,7 @@ static bool meet(sweep *s, uint32_t corner)
 {
     uint32_t b = before(s, corner), a = after(s, corner);
     bool onward = s->rank[a] > s->rank[corner], back = s->rank[b] > s->rank[corner];
-    /* Sides that end here must have begun, and must be the bounds of their intervals. */
+    /* Sides that end at this corner must have begun, and must be the bounds of their intervals. */
     if ((!onward && s->within[corner] == HE_NONE) || (!back && s->within[b] == HE_NONE)) {
         return false;
     }
@@ -340,9 +344,9 @@ static uint32_t span_of(const uint32_t t[3])
     return high - low;
 }
 
-/* A triangle spans a range of corners, in which lie the triangles that cut off what is between
- * them; so triangles of small spans come first. Returns false if they are no triangulation. `room`
- * has n + 2 words. */
+/* Sorts the triangles so that each cuts a corner off. A triangle spans a range of corners, in which
+ * lie the triangles that cut off what is between them; so triangles of small spans come first.
+ * Returns false if they are no triangulation. `room` has n + 2 words. */
 static bool put_in_order(const he_flat *f, const uint32_t *from, uint32_t *to, uint32_t *room)
 {
     uint32_t n = f->n, *next = room;
@@ -397,7 +401,7 @@ he_status he_sweep_cut(const he_flat *f, uint32_t *corners, bool *done, uint64_t
     he_status status = HE_NO_MEMORY;
     sweep s = {.f = f, .root = HE_NONE, .steps = steps};
     uint32_t *words = he_mem_array(NULL, n + 1, 7 * sizeof *words);
-    /* Each corner begins one interval at most, and has three links at most. */
+    /* Each corner begins at most one interval, and has at most three links. */
     s.intervals = he_mem_array(NULL, n, sizeof *s.intervals);
     s.links = he_mem_array(NULL, n, 3 * sizeof *s.links);
     if (words == NULL || s.intervals == NULL || s.links == NULL) {

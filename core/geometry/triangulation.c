@@ -7,12 +7,13 @@
 #include <float.h>
 #include <string.h>
 
-/* --- state shared by loops --- */
+/* --- state that several loops share --- */
 
-/* How many steps are taken between two steps of the watch: less than a millisecond. */
+/* The number of steps between two steps of the watch, which take less than a millisecond. */
 enum { STEPS_UNTOLD = 1 << 15 };
 
-/* Edges are searched around their ends until that has cost about as much as making the index. */
+/* Edges are searched around their ends until this many steps, or as many as making the index of
+ * edges takes, have been spent; then the index is made. */
 enum { SEARCHED_AT_LEAST = 4096 };
 
 bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
@@ -68,8 +69,8 @@ he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *e
 static const double BAD = 4096;
 
 typedef struct table {
-    /* cost of the best triangulation of sub-loop i..k, under i, k and under k, i; DBL_MAX if there
-     * is none */
+    /* The cost of the best triangulation of sub-loop i..k, stored under i, k and under k, i;
+     * DBL_MAX if there is none. */
     double *cost;
     uint8_t *middle; /* the middle corner of its triangle on the side i, k */
     he_triangulation_work *work;
@@ -81,7 +82,7 @@ static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
     return (x * x + y * y) / 12;
 }
 
-/* Returns the cost of the sub-loop i..k, including `side`. */
+/* Computes the cost of the sub-loop i..k, including `side`, the cost of its diagonal. */
 static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, table *t)
 {
     uint32_t n = f->n;
@@ -89,7 +90,8 @@ static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, t
     double best = DBL_MAX;
     for (uint32_t j = i + 1; j < k; j++) {
         double cost = side + from_i[j] + to_k[j];
-        /* Most triangles cost more even if they turn left, so that is not tested for them. */
+        /* Most triangles cost more than the best one even if they turn left, so for them it is not
+         * tested whether they do. */
         if (cost < best) {
             cost += he_flat_turns_left(f, i, j, k) ? 0 : BAD;
             if (cost < best) {
@@ -125,7 +127,8 @@ static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, tabl
 }
 
 /* Lists the triangles innermost first, so that each cuts off its middle corner when its turn comes.
- * The stack holds sub-loops; preorder written backwards is children before parents. */
+ * The stack holds sub-loops. They are visited in preorder and written backwards, which puts
+ * children before parents. */
 static void read_table(const he_flat *f, const table *t, uint32_t *corners)
 {
     uint32_t stack[2 * HE_EXACT_CORNERS], depth = 0, n = f->n, left = n - 2;
@@ -160,7 +163,8 @@ static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work 
     status = fill_table(m, f, avoid, &t, err);
     double cost = t.cost[whole];
     if (status == HE_OK && avoid && cost >= BAD) {
-        /* Find out whether avoiding edges caused the flipped triangles. */
+        /* The table is filled again without avoiding edges, to find out whether avoiding them
+         * caused the flipped triangles. */
         status = fill_table(m, f, false, &t, err);
         if (status == HE_OK && cost >= t.cost[whole] + BAD / 2) {
             status = he_diagonals_refuse(m, f, err);
@@ -189,12 +193,12 @@ void he_triangulation_clear(he_triangulation *triangulation)
     *triangulation = (he_triangulation){.corners = NULL};
 }
 
-/* Is a side of the triangles that is no side of the loop an edge of the mesh? */
+/* Returns true if a side of a triangle that is no side of the loop is an edge of the mesh. */
 static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
                          he_triangulation_work *work)
 {
-    /* The third side of a triangle is the diagonal by which it is cut off; the last triangle has
-     * none. */
+    /* The third side of a triangle is the diagonal by which it is cut off; the last triangle has no
+     * diagonal of its own. */
     for (uint32_t k = 0; k + 3 < plan->flat.n; k++) {
         const uint32_t *corners = plan->corners + 3 * (size_t)k;
         if (he_diagonal_exists(m, &plan->flat, corners[0], corners[2], work)) {
@@ -204,7 +208,7 @@ static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
     return false;
 }
 
-/* Triangulates by the sweep if ear clipping got stuck. */
+/* Triangulates by the sweep line, because ear clipping got stuck. */
 static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                             he_triangulation *plan, bool *done, he_error *err)
 {
@@ -261,8 +265,8 @@ static he_status plan_loop(const he_mesh *m, unsigned flags, he_triangulation_wo
     return plan_exact(m, (flags & HE_AVOID_EDGES) != 0, work, plan, err);
 }
 
-/* Takes the triangulation from the mesh's cache. `found` is false if it is not there, or doubles an
- * edge. */
+/* Takes the triangulation from the mesh's cache. `found` is set to false if it is not there, or if
+ * it would double an edge. */
 static he_status take_kept(const he_mesh *m, he_halfedge first, unsigned flags,
                            he_triangulation_work *work, he_triangulation *plan, bool *found,
                            he_error *err)

@@ -49,15 +49,16 @@ typedef struct he_triangulation_work {
     const he_joins *joins; /* index of edges; NULL: edges are searched around their ends */
     he_joins own;          /* the index, once it is worth making, with the caller's diagonals */
     uint64_t sorted;       /* value of `searched` when the index was made */
-    /* Gets the progress from time to time: `done` of `of`, which the caller counts. */
+    /* The watch that gets the progress from time to time: `done` of `of`, which the caller
+     * counts. */
     he_watch *watch;
     uint64_t done, of, told;
 } he_triangulation_work;
 
 enum { HE_AVOID_EDGES = 1, HE_ANY_DIAGONALS = 2 };
 
-/* Triangulates the loop of `first`. `work` may be NULL for a single loop. he_triangulation_clear
- * frees.
+/* Triangulates the loop of half-edge `first`. `work` may be NULL for a single loop.
+ * he_triangulation_clear frees the result.
  * Returns HE_DOUBLED_EDGE if no triangulation was found that avoids the existing edges.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
@@ -69,10 +70,10 @@ void he_triangulation_work_clear(he_triangulation_work *work);
 
 /* --- functions for ears.c --- */
 
-/* Does an edge join corners i and k? Counts the steps. */
+/* Returns true if an edge of the mesh joins corners i and k. Counts the steps of the search. */
 bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
-/* To be called between two cuts.
+/* Reports progress; must be called between two cuts.
  * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_NO_MEMORY if memory for the index of edges is out. */
 HE_NODISCARD he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work,

@@ -7,7 +7,7 @@
 
 /* Continues a checksum: `before` is the checksum of the bytes before these, 0 if there are none. */
 uint32_t st_crc32c(uint32_t before, const void *bytes, size_t size);
-/* st_crc32c on processors without an instruction for it. */
+/* Does what st_crc32c does, on processors without an instruction for it. */
 uint32_t st_crc32c_by_table(uint32_t before, const void *bytes, size_t size);
 
 #endif

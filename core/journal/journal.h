@@ -54,8 +54,8 @@ typedef enum st_status {
  * 10^9, and a thread that loads the mesh holds it as one block. */
 enum { ST_MOST_BODY = 900000000 };
 
-/* Memory for one group of records, and a place in the queue. Each journal appends fields of its
- * own. */
+/* A room: memory for one group of records, and its place in the journal's queue. Each journal
+ * appends fields of its own. */
 typedef struct st_room {
     unsigned char *bytes; /* for bodies, which the caller writes before it appends the group */
     size_t size;
@@ -78,8 +78,9 @@ typedef struct st_loss {
     const char *reason;   /* a literal, such as "the disk refused a write" */
 } st_loss;
 
-/* Called from the journal's own thread, without a lock that `reserve` or `append` takes. `lost`
- * takes the locks of meshes, so a thread that holds one must not wait for the journal. */
+/* The listener of a journal. It is called from the journal's own thread, without a lock that
+ * `reserve` or `append` takes. `lost` takes the locks of meshes, so a thread that holds one must
+ * not wait for the journal. */
 typedef struct st_journal_listener {
     void *context;
     /* Every record up to `position`, which never falls, is durable or was reported as lost
@@ -88,15 +89,17 @@ typedef struct st_journal_listener {
     void (*lost)(void *context, const st_loss *loss);
 } st_journal_listener;
 
-/* Receives a key, which is borrowed for the call. Returns false if memory is out. */
+/* A function that receives a stored key (the Idempotency-Key of a request), which is borrowed for
+ * the call. Returns false if memory is out. */
 typedef bool st_take_key(void *context, const st_kept_key *key);
 
-/* Receives the holder of a mesh, and the bytes on its card. Returns false if memory is out. */
+/* A function that receives the holder of a mesh, and the bytes on its card. Returns false if memory
+ * is out. */
 typedef bool st_take_holding(void *context, const char *holder, uint64_t bytes);
 
 enum { ST_HEALTH_TEXT = 200 };
 
-/* Tells whether changes are accepted. */
+/* The state of the journal: whether changes are accepted. */
 typedef struct st_health {
     st_status status;            /* ST_OK; ST_FULL or ST_FAILED if they are not */
     uint64_t fulls;              /* how often the disk was full since the start */
@@ -104,17 +107,18 @@ typedef struct st_health {
     char reason[ST_HEALTH_TEXT]; /* with ST_FAILED: the system's message, "" if there was none */
 } st_health;
 
-/* Receives a job, which is borrowed for the call. Returns false if memory is out. */
+/* A function that receives a stored job, which is borrowed for the call. Returns false if memory is
+ * out. */
 typedef bool st_take_job(void *context, const st_job *job);
 
-/* One of the three is set, borrowed for the call. */
+/* What is stored beside records. One of the three members is set, borrowed for the call. */
 typedef struct st_note {
     const st_job *job;       /* the state of a job */
     const char *forgotten;   /* a job to be removed */
     const st_kept_key *kept; /* the key of a request that changed nothing */
 } st_note;
 
-/* Measurements since the start, and the present state. */
+/* Measurements since the journal was opened, and its present state. */
 typedef struct st_journal_measures {
     st_distribution commits;      /* microseconds to commit a group, with its sync */
     st_distribution syncs;        /* microseconds to write the log and sync it, for each group */
@@ -128,7 +132,7 @@ typedef struct st_journal_measures {
 
 typedef struct st_journal {
     void *self;
-    /* Does the journal store what is appended beyond memory? If not, a room is NULL, so that
+    /* True if the journal stores what is appended beyond memory. If not, a room is NULL, so that
      * nothing is coded, and the functions from `note` to `begun` are NULL. */
     bool keeps;
     /* Two random words, stored with the meshes: hashes of requests are keyed with them. */
@@ -152,15 +156,15 @@ typedef struct st_journal {
      * Returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY as `reserve` does. */
     st_status (*note)(void *self, const st_note *note, uint64_t *position);
 
-    /* Writes a large content to the disk before it is published. Waits, so only threads that may
-     * wait can call it, without a lock. No other thread may change the content: it is private or a
-     * snapshot's.
+    /* Writes a large content to the disk before it is published; the result is called a stage. It
+     * waits, so only threads that may wait can call it, without a lock. No other thread may change
+     * the content: it is private or a snapshot's.
      * Returns ST_FULL, ST_FAILED, ST_BEHIND or ST_NO_MEMORY if it cannot be written. */
     st_status (*stage)(void *self, const he_mesh *content, st_stage **out);
     /* Stages a coded edit, in parts that are written one by one like those of a content, so that
      * other commits wait for a part and not for the whole. The stage cannot become a base. */
     st_status (*stage_edit)(void *self, const unsigned char *bytes, size_t size, st_stage **out);
-    /* Deletes a stage that was not published. Does not wait. */
+    /* Deletes a stage (a content written in advance) that was not published. Does not wait. */
     void (*unstage)(void *self, st_stage *stage);
     /* Makes the staged content, which it takes, a base: it is the mesh after the record `facts`,
      * and the mesh can be loaded from it. Older bases are deleted with the records before them,
@@ -174,7 +178,7 @@ typedef struct st_journal {
      * Returns ST_DAMAGED with the card filled in if the card is damaged or says that the mesh is.
      * Returns ST_FAILED or ST_NO_MEMORY if it cannot be read. */
     st_status (*open)(void *self, const char *id, st_card *card, st_reader **reader);
-    /* Reads the next piece. `why` of the piece says what is wrong with it.
+    /* Reads the next piece of a mesh. The member `why` of the piece says what is wrong with it.
      * Returns ST_DAMAGED if a checksum or the chain is wrong.
      * Returns ST_NEWER if a newer release wrote it.
      * Returns ST_FAILED or ST_NO_MEMORY if it cannot be read. */
@@ -207,14 +211,14 @@ typedef struct st_journal {
     /* Copies the measurements. Never waits. NULL in a journal that measures nothing. */
     void (*measure)(void *self, st_journal_measures *out);
 
-    /* Ends the start: what it put into a new store is now durable, and the next start will find an
-     * existing store. Waits. */
+    /* Ends the start of the daemon: what it put into a new store is now durable, and the next start
+     * will find an existing store. Waits. */
     void (*begun)(void *self);
 
     /* Sets the one listener, and calls it at once if the journal is beyond position 0. NULL removes
      * it; when the call returns, no call of the listener is under way. */
     void (*listen)(void *self, const st_journal_listener *listener);
-    /* Commits what is queued and closes. No room or reader may be left. */
+    /* Commits what is queued and closes the journal. No room or reader may be left. */
     void (*close)(void *self);
 } st_journal;
 

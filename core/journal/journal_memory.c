@@ -4,7 +4,8 @@
 
 #include <stdatomic.h>
 
-/* Positions are shared by all memory journals of the process; different journals need no order. */
+/* The newest position. It is shared by all memory journals of the process, because different
+ * journals need no order. */
 static _Atomic uint64_t newest;
 
 static st_status reserve(void *self, const st_room_need *need, st_room **out)

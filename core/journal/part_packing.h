@@ -11,7 +11,7 @@
 typedef struct st_packer st_packer;
 typedef struct st_unpacker st_unpacker;
 
-/* Returns NULL if memory is out: parts may stay uncompressed. */
+/* Makes a compressor. Returns NULL if memory is out: parts may then stay uncompressed. */
 st_packer *st_packer_new(void);
 void st_packer_free(st_packer *packer); /* takes NULL */
 /* Compresses a part of `size` bytes, at most HE_STORED_PART_ROOM, in place; adds HE_CODING_PACKED
@@ -19,10 +19,11 @@ void st_packer_free(st_packer *packer); /* takes NULL */
  * every part if `packer` is NULL or memory is out. */
 size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding);
 
-/* Returns NULL if memory is out. */
+/* Makes a decompressor. Returns NULL if memory is out. */
 st_unpacker *st_unpacker_new(void);
 void st_unpacker_free(st_unpacker *unpacker); /* takes NULL */
-/* Decompresses a part. *out is valid until the next one; *out_size is at most HE_STORED_PART_ROOM.
+/* Decompresses a part. *out is valid until the next part is decompressed; *out_size is at most
+ * HE_STORED_PART_ROOM.
  * Returns ST_NO_MEMORY if memory is out.
  * Returns ST_DAMAGED if the part is not valid; *why, a literal, says what is wrong. */
 st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,

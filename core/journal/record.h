@@ -22,7 +22,7 @@ enum {
     ST_HOLDER = 64 /* most bytes of a holder's name */
 };
 
-/* What a revision did; the history shows it. */
+/* What a revision did, as the history shows it. */
 typedef enum st_action { ST_EDIT, ST_UNDO, ST_REDO, ST_REPLACE } st_action;
 
 /* How many elements a revision created, deleted and modified: vertices, edges, faces. */
@@ -54,13 +54,13 @@ typedef struct st_record_key {
     uint64_t digest[2]; /* hash of the request, keyed with the store's secret */
     double time;        /* when the request came, seconds since 1970 */
     bool of_store;      /* the key belongs to the store: the change made the mesh */
-    /* the client that sent it: equal keys of different clients are different keys. "" or NULL:
-     * clients without a name */
+    /* The client that sent the key: equal keys of different clients are different keys. "" or NULL
+     * stands for clients without a name. */
     const char *holder;
 } st_record_key;
 
-/* How long a key is kept, and how many keys of a mesh or of the store: the oldest are deleted
- * first. */
+/* How many seconds a key is kept, and how many keys of a mesh or of the store are kept: the oldest
+ * are deleted first. */
 enum { ST_KEPT_SECONDS = 24 * 3600, ST_KEPT_KEYS = 16384 };
 
 /* A stored key, and the state that the answer to its request had. */
@@ -68,7 +68,8 @@ typedef struct st_kept_key {
     st_record_key key;
     const char *id; /* the mesh that the answer shows */
     uint64_t incarnation, revision, metadata;
-    /* the row is damaged: only `text` and `holder` may be used, and even they may be wrong */
+    /* Whether the stored row is damaged: then only `text` and `holder` may be used, and even they
+     * may be wrong. */
     bool is_damaged;
 } st_kept_key;
 
@@ -105,12 +106,12 @@ typedef struct st_counts {
     uint32_t vertices, edges, faces, boundary;
 } st_counts;
 
-/* One change. Texts and pointers are borrowed for the call. */
+/* One change of a mesh. Texts and pointers are borrowed for the call. */
 typedef struct st_record {
     st_record_kind kind;
-    /* The history ends with it: nothing before can be undone, or read as a revision. Set for every
-     * ST_RECORD_CONTENT, and for an edit that changes the meaning of ids or is larger than the undo
-     * budget. */
+    /* Whether the history ends with this record: nothing before it can be undone, or read as a
+     * revision. It is set for every ST_RECORD_CONTENT, and for an edit that changes the meaning of
+     * ids or is larger than the undo budget. */
     bool barrier;
     const char *id, *name; /* id of the mesh; its name after the change */
     const char *holder;    /* holder of the mesh; "" or NULL: none */
@@ -118,11 +119,11 @@ typedef struct st_record {
     uint64_t number;       /* counts the records of this incarnation, from 1 */
     uint64_t revision;     /* revision after the change, from 1 */
     uint64_t metadata;     /* counts changes of the name, from 1; after the change */
-    /* the revision that an undo or redo inverts; for a base, the earlier revision with an equal
-     * content, if there is one; else 0 */
+    /* The revision that an undo or redo inverts; for a base, the earlier revision with an equal
+     * content, if there is one; else 0. */
     uint64_t inverts;
-    /* revisions up to this one are dropped from the history after the change, to stay within the
-     * undo budget */
+    /* The revisions up to this one are dropped from the history after the change, to stay within
+     * the undo budget. */
     uint64_t reach;
     double created, time; /* when the mesh was made, and changed; seconds since 1970 UTC */
     const char *ops;      /* operations of an edit, for the history; never NULL */
@@ -167,8 +168,8 @@ typedef struct st_piece {
     st_piece_kind kind;
     st_record record; /* for BASE and RECORD */
     uint64_t parts;   /* for BASE, and for RECORD with a stage: how many parts follow */
-    /* for PART, as he_stored_reader_part takes it: parts are decompressed already. Parts of a coded
-     * edit are HE_CODING_PLAIN */
+    /* The coding of a PART, as he_stored_reader_part takes it. Parts are decompressed already;
+     * those of a coded edit are HE_CODING_PLAIN. */
     unsigned coding;
     const unsigned char *bytes;
     size_t size;

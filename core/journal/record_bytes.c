@@ -217,7 +217,7 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
                                 "the record is of version %u, this release reads version %d", *c.at,
                                 ST_FRAME_VERSION);
     }
-    /* Decoded into a local first, so that a failure leaves *out as it was. */
+    /* The frame is decoded into a local variable first, so that a failure leaves *out as it was. */
     st_frame frame = {.record = {.ops = ""}};
     unsigned flags = 0;
     he_status status = read_head(&c, &frame, &flags, err);

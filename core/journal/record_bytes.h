@@ -1,4 +1,4 @@
-/* record_bytes.h - records as bytes that every later release can read.
+/* record_bytes.h - writes records (changes of meshes) as bytes that every later release can read.
  *
  * FRAME, version 1, little-endian; varints as in stored.h:
  *     4          CRC-32C of all that follows
@@ -32,11 +32,11 @@
 enum {
     ST_FRAME_VERSION = 1,
     ST_FRAME_OPS = 255, /* most bytes of `ops`; a longer text is cut */
-    /* Most bytes of a frame without its body. */
+    /* The most bytes of a frame, a coded record, without its body. */
     ST_FRAME_HEAD = 40 + 4 * 10 + 7 * 5 + (2 + ST_FRAME_OPS) + (2 + ST_MESH_NAME) + 9 * 5
 };
 
-/* The decoded frame. Texts of the record point into this struct, its body into the bytes; id,
+/* A decoded frame. Texts of the record point into this struct, its body into the frame's bytes; id,
  * incarnation, created and key are not part of a frame. */
 typedef struct st_frame {
     st_record record; /* `stage` is NULL */
@@ -47,14 +47,15 @@ typedef struct st_frame {
 
 /* Writes the record to `to`, which has room for ST_FRAME_HEAD bytes and the body; chain and
  * checksum are left out. With a stage the flag PARTS is set, and EDIT as the record says. Returns
- * the bytes. */
+ * the number of bytes written. */
 size_t st_frame_write(const st_record *record, unsigned char *to);
-/* Writes the chain and the checksum into a frame. Returns the chain of the next record. */
+/* Writes the chain (a hash that connects a record to all before it) and the checksum into a frame.
+ * Returns the chain of the next record. */
 uint64_t st_frame_seal(unsigned char *frame, size_t size, uint64_t chain);
 
-/* Returns the chain of the first record. */
+/* Returns the chain of the first record of a mesh, which begins with the mesh's `origin`. */
 uint64_t st_chain_of_origin(uint64_t origin);
-/* Returns the chain of the record after this one. */
+/* Returns the chain of the record after the one in this frame. */
 uint64_t st_frame_next_chain(const unsigned char *frame, size_t size);
 
 /* Decodes a frame.

@@ -1,4 +1,4 @@
-/* The functions of write.h that set the attributes of a row from those of others. */
+/* carry.c - the functions of write.h that set the attributes of a row from those of other rows. */
 #include "mesh/marks.h"
 #include "mesh/write.h"
 
@@ -14,9 +14,9 @@ bool he_has_columns(const he_mesh *m, he_kind kind)
     return false;
 }
 
-/* Writes the weighted sum of n rows, or their mean without weights, in the column's own type.
- * Integers and booleans round to nearest; the sum stays within the type's range despite rounding
- * errors. */
+/* Writes the weighted sum of n rows of a column, or their mean without weights, in the column's own
+ * type. Integers and booleans are rounded to nearest; the sum stays within the type's range despite
+ * rounding errors. */
 static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
                   unsigned char *out)
 {
@@ -86,7 +86,7 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
     }
 }
 
-/* Sets row `to` of every column in a domain to what its rule makes of n rows. */
+/* Sets row `to` of every column in a domain to the value that the column's rule makes of n rows. */
 static void carry(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *rows,
                   const double *weights, size_t n, uint32_t nearest)
 {

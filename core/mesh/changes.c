@@ -1,4 +1,4 @@
-/* he_changes of delta.h: the net effect of deltas on elements. */
+/* changes.c - finds the net effect of deltas on elements: he_changes of delta.h. */
 #include "mesh/delta.h"
 
 #include "mesh/column.h"
@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* A record of one word with a key by which records of one word sort together, in the order of
- * writing. */
+/* A record that changed one word, with a key by which all records of a word sort together, in the
+ * order in which they were written. */
 typedef struct word_record {
     uint64_t key; /* column, word and row */
     uint32_t before, after;
@@ -18,8 +18,8 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->column << 40 | (uint64_t)r->word << 32 | r->row;
 }
 
-/* Stable sort by key: insertion for the few records of a local edit, else by radix, skipping bytes
- * that all keys share. */
+/* Sorts records by key and keeps the order of equal keys: by insertion for the few records of a
+ * local edit, else by radix, skipping bytes that all keys share. */
 static void sort_few(word_record *records, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
@@ -170,7 +170,7 @@ static bool is_word(const he_record *r)
     return r->column <= HE_COL_POSITION || r->column >= HE_COL_ATTRIBUTE;
 }
 
-/* The first column that a slot of attributes had. */
+/* The column that a slot of attributes had before the first change. */
 typedef struct attribute_slot {
     const he_column *before; /* the column at first; NULL if there was none */
     bool has_changed;        /* a column was added or dropped */
@@ -186,7 +186,8 @@ static const char *label_of(const he_column *column, const unsigned char *row, u
     return index < he_labels_count(column->labels) ? he_labels_get(column->labels, index) : "";
 }
 
-/* Do rows have equal labels? If one column is NULL, all its rows have the default of the other. */
+/* Returns true if row `row` of two columns has equal labels. If one column is NULL, all its rows
+ * have the default of the other. */
 static bool same_labels(const he_column *a, const he_column *b, size_t row)
 {
     const he_column *x = a != NULL ? a : b, *y = b != NULL ? b : a;
@@ -199,8 +200,8 @@ static bool same_labels(const he_column *a, const he_column *b, size_t row)
     return same;
 }
 
-/* The word records of all parts, sorted by key and, for one key, in the order in which they took
- * effect. */
+/* The records that changed words, of all parts. They are sorted by key and, for one key, in the
+ * order in which they took effect. */
 typedef struct words {
     word_record *records;
     size_t count;
@@ -224,8 +225,8 @@ static void note_slot(words *w, const he_change_part *part, const he_record *r)
     slot->has_changed = true;
 }
 
-/* Has the slot's column changed already? Words written to it afterwards need no record: the column
- * now in the mesh has them, and is compared with the first as a whole. */
+/* Returns true if the slot's column was changed already. Words written to it afterwards need no
+ * record: the column now in the mesh has them, and is compared with the first column as a whole. */
 static bool is_written_later(const words *w, uint32_t slot)
 {
     return slot < w->slot_count && w->slots[slot].has_changed;
@@ -303,7 +304,7 @@ static const he_column *attribute_of(const he_mesh *mesh, const words *w, uint32
     return slot->before != NULL && slot->before->labels != NULL ? slot->before : NULL;
 }
 
-/* Notes the rows whose label differs when a column was added, dropped or replaced by one of its
+/* Records the rows whose label differs when a column was added, dropped or replaced by one of its
  * name. */
 static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_column *before,
                              const he_column *after, he_error *err)
@@ -379,7 +380,7 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
     return status;
 }
 
-/* An element is modified only if it lives both before and after. */
+/* Keeps in `modified` only elements that live both before and after the changes. */
 static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
 {
     he_ids *list = &out->modified[kind];

@@ -33,7 +33,7 @@ static void broken(checker *c, int rule, he_kind kind, uint32_t id, const char *
     c->total++;
 }
 
-/* Stop at the first problem when the caller wants only one. */
+/* Returns true if the check must stop: at the first problem, if the caller wants only one. */
 static bool enough(const checker *c)
 {
     return c->capacity == 1 && c->total > 0;
@@ -71,8 +71,8 @@ static void check_edge_links(checker *c, uint32_t e)
     }
 }
 
-/* I1, with the stored half-edges of vertices and faces: later passes cannot follow a link that
- * fails here. */
+/* Checks invariant I1, and the stored half-edges of vertices and faces. Later passes cannot follow
+ * a link that fails here. */
 static void check_links(checker *c)
 {
     const he_content *k = &c->m->c;
@@ -299,8 +299,8 @@ he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, s
 he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
                            size_t capacity, size_t *total, he_error *err)
 {
-    /* In order: the later passes follow links, so they run only if the first finds all links
-     * valid. */
+    /* The passes run in this order. The later passes follow links, so they run only if the first
+     * finds all links valid. */
     static void (*const passes[])(checker * c) = {check_links,    check_halfedges, check_faces,
                                                   check_vertices, check_rows,      check_materials};
     enum { PASSES = sizeof passes / sizeof *passes };

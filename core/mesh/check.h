@@ -1,4 +1,4 @@
-/* check.h - validation: does a mesh satisfy the invariants of mesh.h?
+/* check.h - validation: decides whether a mesh satisfies the invariants of mesh.h.
  *
  * Tests I1 to I13 on any content, corrupt links included, in time linear in the mesh. If a link
  * names no live element, only the links are reported: the other tests would have to follow them. */
@@ -22,7 +22,7 @@ typedef struct he_problem {
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);
-/* he_check with a watch, which is stepped between the passes.
+/* Checks like he_check, with a watch that is stepped between the passes.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
                                         size_t capacity, size_t *total, he_error *err);

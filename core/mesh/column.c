@@ -180,7 +180,7 @@ bool he_is_normal_column(const he_column *column)
 void he_normal_negate(const he_column *column, unsigned char *row)
 {
     size_t size = he_type_bytes(column->type);
-    /* The sign is the top bit of the last byte: values are little-endian. */
+    /* Values are little-endian, so the sign is the top bit of the last byte. */
     for (size_t k = 1; k <= 3; k++) {
         row[k * size - 1] ^= 0x80;
     }

@@ -24,7 +24,7 @@ enum { HE_COLUMN_NAME = 64, HE_COLUMN_COMPONENTS = 16, HE_COLUMN_ROW_BYTES = 128
 /* The name of the face attribute whose labels are names of materials (material.h). */
 #define HE_MATERIAL_ATTRIBUTE "material"
 
-/* Strings of a categorical column, shared by reference count between copies of a mesh. */
+/* The strings of a categorical column, shared by reference count between copies of a mesh. */
 typedef struct he_labels he_labels;
 
 struct he_column {
@@ -75,34 +75,37 @@ static inline unsigned char *he_column_row(const he_column *column, size_t row)
     return column->data + row * column->row_bytes;
 }
 size_t he_column_bytes(const he_column *column);
-/* Returns the bytes of the rows alone, without spare capacity. */
+/* Returns the bytes of the rows of a column alone, without spare capacity. */
 size_t he_column_rows_bytes(const he_column *column);
 bool he_column_same_kind(
     const he_column *a,
     const he_column *b); /* equal name, domain, type, rule, default and labels? */
-/* Can a row of one be copied to the other as it is: equal type, components and labels? */
+/* Returns true if a row of one column can be copied to the other as it is: they have equal types,
+ * components and labels. */
 bool he_column_same_values(const he_column *a, const he_column *b);
-/* Can it be the material attribute: uint32, one component, with labels? */
+/* Returns true if the column can be the material attribute: uint32, one component, with labels. */
 bool he_is_material_column(const he_column *column);
-/* Is it the attribute "normal", of three floats or doubles? */
+/* Returns true if the column is the attribute "normal", of three floats or doubles. */
 bool he_is_normal_column(const he_column *column);
 /* Reverses the direction of the normal in a row of a normal column. */
 void he_normal_negate(const he_column *column, unsigned char *row);
-/* Makes a half-edge column called `name`, otherwise of the kind of `column`, with `rows` rows. */
+/* Makes a half-edge column called `name`, with `rows` rows, that otherwise equals `column`: type,
+ * components, rule and labels. */
 HE_NODISCARD he_status he_column_for_corners(const he_column *column, const char *name, size_t rows,
                                              he_column **out, he_error *err);
-/* Writes NAME for number 1, else NAME_2 and so on; a name that is too long is cut. */
+/* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on; a name that is too long
+ * is cut. */
 void he_column_number_name(const char *name, unsigned number, char out[HE_COLUMN_NAME]);
 
 he_labels *he_labels_new(void); /* one reference; NULL if memory is out */
 he_labels *he_labels_retain(he_labels *labels);
 void he_labels_release(he_labels *labels);
 size_t he_labels_count(const he_labels *labels);
-/* Returns the bytes that freeing this reference would free: 0 while others share the labels, and
- * for NULL. */
+/* Returns the bytes that freeing this reference to labels would free: 0 while others share the
+ * labels, and 0 for NULL. */
 size_t he_labels_own_bytes(const he_labels *labels);
 const char *he_labels_get(const he_labels *labels, size_t i);
-/* Returns whether both hold equal strings in one order. NULL equals NULL alone. */
+/* Returns true if both have equal strings in the same order. NULL equals only NULL. */
 bool he_labels_equal(const he_labels *a, const he_labels *b);
 /* Finds the index of a string. Returns false if the labels do not contain it. */
 bool he_labels_find(const he_labels *labels, const char *text, size_t length, uint32_t *out);

@@ -11,9 +11,9 @@ void he_maps_clear(he_maps *maps)
     *maps = (he_maps){0};
 }
 
-/* Sixty-four rows of a table: a bit for each that lives, and how many live before them. The new id
- * of a row is a count of bits. Tables of new ids would be read from memory at random; these are an
- * eighth as long and stay in the cache. */
+/* Sixty-four rows of a table: a bit for each row that is live, and the number of live rows before
+ * them, so that the new id of a row is a count of bits. Tables of new ids would be read from memory
+ * at random; these blocks take an eighth of the space and stay in the cache. */
 typedef struct block {
     uint64_t rows;
     uint32_t before;
@@ -48,7 +48,8 @@ static block *rank_rows(const uint32_t *links, size_t stride, uint32_t issued)
     return blocks;
 }
 
-/* Counts the bits that are set, in parallel in fields of 2, 4 and 8; the product adds those up. */
+/* Counts the bits that are set: in parallel in fields of 2, 4 and 8 bits; a multiplication adds up
+ * the fields. */
 static uint32_t count_bits(uint64_t bits)
 {
     bits -= bits >> 1 & 0x5555555555555555u;
@@ -159,7 +160,8 @@ static void move_row(const he_column *from, size_t row, he_column *to, size_t fr
     }
 }
 
-/* Moves the live rows; the column has `per` rows for each of the table. */
+/* Moves the values of live rows to a new column. The column has `per` rows for each row of the
+ * table. */
 static void move_rows(const he_column *from, const block *blocks, uint32_t issued, uint32_t per,
                       he_column *to)
 {
@@ -249,7 +251,7 @@ static he_status make_room(const he_content *from, he_content *to, he_error *err
     return status;
 }
 
-/* Returns NULL if memory is out. */
+/* Lists the new id of each row. Returns NULL if memory is out. */
 static uint32_t *map_rows(const block *blocks, uint32_t issued)
 {
     uint32_t *map = he_mem_array(NULL, issued, sizeof *map);

@@ -1,4 +1,4 @@
-/* compact.h - the one operation that renumbers. */
+/* compact.h - the operation that renumbers elements, which no other operation does. */
 #ifndef HE_MESH_COMPACT_H
 #define HE_MESH_COMPACT_H
 

@@ -8,7 +8,7 @@ static he_status no_memory(const char *what, size_t rows, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", rows, what);
 }
 
-/* Resizes one column; on failure the old block and the old capacity remain. */
+/* Resizes one column; on failure the old block remains with its capacity. */
 static bool resize(void *column, size_t rows, size_t size)
 {
     void *block;
@@ -21,8 +21,8 @@ static bool resize(void *column, size_t rows, size_t size)
     return true;
 }
 
-/* The first allocation is exact, later ones grow by he_rows_grown: a mesh just built has no
- * slack. */
+/* Returns the capacity to which a table grows. The first allocation is exact, later ones grow by
+ * he_rows_grown, so a mesh that was just built has no spare memory. */
 static size_t grown(const he_rows *table, size_t rows)
 {
     size_t capacity = table->issued == 0 ? rows : he_rows_grown(table->capacity, rows);
@@ -89,10 +89,11 @@ void he_content_clear(he_content *c)
     *c = (he_content){0};
 }
 
-/* A copy can be cancelled between two blocks of this many bytes, so it is small. */
+/* The number of bytes that are copied between two steps of the watch. It is small, so that a copy
+ * can be cancelled quickly. */
 enum { COPY_BLOCK = 1 << 20 };
 
-/* Progress of copying columns one after another. */
+/* The progress of copying columns one after another. */
 typedef struct copying {
     he_watch *watch;
     size_t done, bytes; /* bytes of all columns together */

@@ -5,11 +5,11 @@
 #include "mesh/layout.h"
 
 void he_content_clear(he_content *content); /* frees everything in it */
-/* Fills *out on success only. `watch` may be NULL. */
+/* Makes a copy of a content. Fills *out on success only. `watch` may be NULL. */
 HE_NODISCARD he_status he_content_copy(const he_content *content, he_watch *watch, he_content *out,
                                        he_error *err);
 size_t he_content_bytes(const he_content *content);
-/* Returns the bytes of the issued rows alone, without spare capacity. */
+/* Returns the bytes of the issued rows of a content alone, without spare capacity. */
 size_t he_content_rows_bytes(const he_content *content);
 
 /* Makes room in the link and position columns (not in the attributes) for this many rows in all. */
@@ -21,8 +21,9 @@ HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_e
  * they have two rows for each row of the edges. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
-/* Applies the records `from`..`to` of a delta, forwards or (`undo`) backwards. Columns and contents
- * are exchanged with `objects`, indexed as the delta's own; NULL if it has none. */
+/* Applies the records `from`..`to` of a delta to a content: forwards, or backwards with `undo`.
+ * Columns and contents that the records replace are exchanged with `objects`, which is indexed like
+ * the delta's own list; NULL if the delta has none. */
 void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, bool undo,
                       void **objects);
 /* Applies a whole delta forwards to a content that may not have issued the delta's rows yet;
@@ -38,8 +39,8 @@ HE_NODISCARD he_status he_content_forward(he_content *c, const he_delta *delta, 
  * Returns HE_NO_MEMORY if memory is out; some of the rows may then be issued. */
 HE_NODISCARD he_status he_content_issue(he_content *c, const uint32_t issued[HE_KIND_COUNT],
                                         he_error *err);
-/* Takes back the rows above the marks. The rows must be dead, or belong to an edit that is rolled
- * back. */
+/* Takes back the rows above the high-water marks. These rows must be dead, or belong to an edit
+ * that is rolled back. */
 void he_content_withdraw(he_content *c, const uint32_t issued[HE_KIND_COUNT]);
 
 #endif

@@ -1,4 +1,5 @@
-/* Applies the records of a delta: he_content_apply, _issue and _withdraw of content.h. */
+/* content_apply.c - applies the records of a delta: he_content_apply, _issue and _withdraw of
+ * content.h. */
 #include "mesh/content.h"
 
 #include "mesh/write.h"
@@ -6,7 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* The live count changes with each word that turns from dead to alive or back. */
+/* Updates the number of live rows when a word turns from dead to alive or back. */
 static void put_liveness(he_rows *table, uint32_t before, uint32_t after)
 {
     table->live += (uint32_t)(before == HE_DEAD) - (uint32_t)(after == HE_DEAD);

@@ -1,12 +1,12 @@
-/* he_content_forward of content.h: a delta is applied to a content that has not issued its rows
- * yet. */
+/* content_forward.c - applies a delta to a content that has not issued the delta's rows yet:
+ * he_content_forward of content.h. */
 #include "mesh/content.h"
 #include "mesh/delta.h"
 
 #include <string.h>
 
-/* The records from..to, all written to one content; a replacement of the content separates two
- * spans. */
+/* The records from..to of a delta, which were all written to one content. A replacement of the
+ * whole content separates two spans. */
 typedef struct span {
     size_t from, to;
 } span;
@@ -53,7 +53,7 @@ static he_status refuse(size_t i, size_t *refused, const char *what, he_error *e
     return he_fail_plain(err, HE_CORRUPT, "change %zu %s", i, what);
 }
 
-/* Makes a slot after the last, for a column to come. */
+/* Makes a slot after the last one, for a column that will be added. */
 static he_status add_slot(he_content *c, he_error *err)
 {
     if (c->column_count == c->column_capacity) {
@@ -69,7 +69,7 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* Makes a slot for the column that record i adds, and in that column the issued rows. */
+/* Makes a slot for the column that record i adds, and issues rows in that column. */
 static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
                               size_t *refused, he_error *err)
 {
@@ -122,7 +122,7 @@ static he_status ready_slots(he_content *c, const he_delta *delta, span s, void 
     return status;
 }
 
-/* Allocates all memory that applying the delta takes. */
+/* Allocates all memory that applying the delta will take. */
 static he_status ready(he_content *c, const he_delta *delta, void **objects,
                        const uint32_t issued[HE_KIND_COUNT], size_t *refused, he_error *err)
 {
@@ -170,7 +170,8 @@ static bool attribute_is(const he_content *c, const he_record *r)
            word_is(he_column_value(column, r->row), column->row_bytes, r);
 }
 
-/* Is the slot free, and no column of the domain called like the one to be added? */
+/* Returns true if the slot is free, and no column of the domain has the name of the one to be
+ * added. */
 static bool is_free(const he_content *c, size_t slot, const he_column *column)
 {
     for (size_t i = 0; i < c->column_count; i++) {
@@ -183,8 +184,8 @@ static bool is_free(const he_content *c, size_t slot, const he_column *column)
     return c->columns[slot] == NULL;
 }
 
-/* Does the slot hold the material that record r replaces, and has no other row the new one's
- * name? */
+/* Returns true if the slot holds the material that record r replaces, and no other row has the new
+ * material's name. */
 static bool material_is(const he_content *c, const he_record *r, const he_material *comes)
 {
     const he_material *row = c->materials.rows[r->row];
@@ -193,7 +194,7 @@ static bool material_is(const he_content *c, const he_record *r, const he_materi
     return (row == NULL ? 0 : row->mark) == r->after && (slot == SIZE_MAX || slot == r->row);
 }
 
-/* Does the content hold the `before` of the record? */
+/* Returns true if the content holds the value that the record changed, its `before`. */
 static bool holds(const he_content *c, void **objects, const he_record *r)
 {
     size_t halfedges = 2 * (size_t)c->edges.issued;

@@ -36,11 +36,13 @@ size_t he_object_bytes(uint32_t column, const void *object)
     if (column == HE_COL_MATERIAL) {
         return he_material_bytes(object);
     }
-    /* Labels count too: an edit that adds or renames a label leaves the old labels to its delta. */
+    /* The labels count, too, because an edit that adds or renames a label leaves the old labels to
+     * its delta. */
     return he_column_bytes(object) + he_labels_own_bytes(((const he_column *)object)->labels);
 }
 
-/* Frees the objects from `from` on, which the mesh does not hold at this moment. */
+/* Frees the objects of a delta from index `from` on, which the mesh does not hold at this
+ * moment. */
 static void free_objects(he_delta *d, size_t from)
 {
     for (size_t i = 0; i < d->count; i++) {
@@ -102,10 +104,12 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* How many records are folded between two steps of the watch; each takes a few cache misses. */
+/* The number of records that are folded between two steps of the watch; each takes a few cache
+ * misses. */
 enum { FOLD_STRIDE = 16 * HE_WATCH_STRIDE };
 
-/* Open addressing; a slot holds one more than the index of a record, 0 if it is free. */
+/* Folds records by a hash table with open addressing. A slot holds one more than the index of a
+ * record; it is 0 if it is free. */
 he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err)
 {
     uint32_t bits = 4;

@@ -1,4 +1,4 @@
-/* delta.h - what an edit wrote, in the order it wrote it.
+/* delta.h - a delta records what an edit wrote to a mesh, in the order in which it was written.
  *
  * A delta is a list of records of 16 bytes. Most say that one 32-bit word of one row of one column
  * changed from `before` to `after`: every column, links and doubles alike, is seen as rows of
@@ -28,7 +28,7 @@ typedef enum he_col {
     HE_COL_VERTEX_HALFEDGE,
     HE_COL_FACE_HALFEDGE,
     HE_COL_POSITION,
-    /* from here to HE_COL_REPLACED: records that are not about words of a column */
+    /* Records from here to HE_COL_REPLACED are not about words of a column. */
     HE_COL_PARENT,       /* row = child, before = parent, word = kind */
     HE_COL_MERGED,       /* row = the deleted one, before = the one it merged into, word = kind */
     HE_COL_COLUMN_ADDED, /* row = slot, before = object */
@@ -46,7 +46,8 @@ typedef struct he_record {
     uint32_t before, after;
 } he_record;
 
-/* Anyone may read the fields; only write.h, delta.c and core/stored write them. */
+/* The records of an edit. All code may read the fields; only write.h, delta.c and core/stored write
+ * them. */
 struct he_delta {
     he_record *records;
     size_t count, capacity;
@@ -55,7 +56,7 @@ struct he_delta {
     size_t object_count, object_capacity;
 };
 
-/* Does the record name an object of its delta? */
+/* Returns true if the record names an object of its delta: a column, a material or a content. */
 static inline bool he_has_object(const he_record *r)
 {
     return r->column >= HE_COL_COLUMN_ADDED && r->column < HE_COL_ATTRIBUTE;
@@ -68,16 +69,16 @@ typedef struct he_savepoint {
 } he_savepoint;
 
 he_delta *he_delta_new(void); /* empty; NULL if memory is out */
-/* Makes room for this many more records and objects. */
+/* Makes room in a delta for this many more records and objects. */
 HE_NODISCARD he_status he_delta_reserve(he_delta *delta, size_t records, size_t objects,
                                         he_error *err);
 void he_delta_free(he_delta *delta);
-/* Removes the records but keeps the memory. */
+/* Removes the records of a delta but keeps the memory. */
 void he_delta_empty(he_delta *delta);
 /* Returns the memory of a delta: the capacity of its records, but only the rows (not the capacity)
  * of its columns and contents, so that a delta read back from storage counts as much as before. */
 size_t he_delta_bytes(const he_delta *delta);
-/* Frees the capacity beyond the records; if memory is out, the capacity stays. */
+/* Frees the capacity of a delta beyond its records; if memory is out, the capacity stays. */
 void he_delta_trim(he_delta *delta);
 
 /* Folds the records from `from` on into one for each word, from its value before the first to its
@@ -117,7 +118,7 @@ HE_NODISCARD he_status he_delta_ready(he_delta *delta, const he_mesh *mesh, he_e
 
 /* Frees an object of a record of this column; NULL is allowed. Only core/mesh calls this. */
 void he_object_free(uint32_t column, void *object);
-/* Returns the memory of such an object. */
+/* Returns the memory of an object that a record of this column names. */
 size_t he_object_bytes(uint32_t column, const void *object);
 
 /* Issues dead rows up to the high-water marks, indexed by kind; marks below the present ones change
@@ -163,7 +164,7 @@ typedef struct he_change_part {
 HE_NODISCARD he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts,
                                       size_t count, he_changes *out, he_error *err);
 void he_changes_clear(he_changes *changes);
-/* Is nothing changed at all? The store then makes no revision. */
+/* Returns true if nothing is changed. The store then makes no revision. */
 bool he_changes_none(const he_changes *changes);
 
 #endif

@@ -77,7 +77,7 @@ bool he_labels_equal(const he_labels *a, const he_labels *b)
             (a->text_length == 0 || memcmp(a->text, b->text, a->text_length) == 0));
 }
 
-/* Returns the slot that holds the string, or the free one where it belongs. */
+/* Returns the slot of the hash table that holds the string, or the free slot where it belongs. */
 static size_t slot_of(const he_labels *labels, const char *text, size_t length)
 {
     size_t mask = labels->slot_count - 1;

@@ -13,8 +13,9 @@ typedef struct he_rows {
     uint32_t issued, live, capacity;
 } he_rows;
 
-/* Parallel arrays make traversal 1.5 to 2.8 times faster than records. A half-edge's links are in
- * four arrays, indexed by half-edge: 2 * edges.capacity entries each. */
+/* The content of a mesh. Its parallel arrays make traversal 1.5 to 2.8 times faster than an array
+ * of records would. The links of half-edges are in four arrays, indexed by half-edge: 2 *
+ * edges.capacity entries each. */
 typedef struct he_content {
     he_rows vertices, edges, faces;
     uint32_t boundary_halfedges;

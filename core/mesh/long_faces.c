@@ -4,7 +4,8 @@
 
 #include <stdatomic.h>
 
-/* The pointer is set once, by the first thread that has made the triangulations. */
+/* The cache of a mesh. Its pointer is set once, by the first thread that has made the
+ * triangulations. */
 struct he_kept {
     _Atomic(he_long_faces *) long_faces;
 };

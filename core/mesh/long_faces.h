@@ -38,7 +38,7 @@ typedef struct he_long_faces {
 
 /* Accepts NULL. */
 void he_long_faces_free(he_long_faces *all);
-/* Is the cache allowed and still empty? */
+/* Returns true if the cache is allowed and still empty. */
 bool he_long_faces_are_wanted(const he_mesh *mesh);
 /* Fills the cache with `all`, which it takes. If another thread was first, that one's cache stays
  * and `all` is freed. The cache must be allowed. */

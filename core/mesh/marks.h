@@ -1,4 +1,4 @@
-/* marks.h - attributes that edits respect.
+/* marks.h - marks: attributes that edits respect.
  *
  * A mark is a bool attribute of one component under one of these names. An attribute of another
  * type or number of components is no mark.
@@ -45,7 +45,7 @@ typedef struct he_marks {
     const he_column *locked[HE_KIND_COUNT]; /* indexed by HE_VERTEX, HE_EDGE, HE_FACE */
 } he_marks;
 
-/* Is it a bool column of one component with that name? */
+/* Returns true if it is a bool column of one component with that name. */
 bool he_is_mark(const he_column *column, const char *name);
 /* Finds the mark of that domain and name. Returns NULL if the mesh has none. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);
@@ -73,8 +73,8 @@ static inline bool he_is_locked(const he_marks *marks, he_kind kind, uint32_t id
 /* Returns HE_LOCKED_ELEMENT if the element is locked. An id of HE_NONE is never locked. */
 HE_NODISCARD he_status he_require_unlocked(const he_marks *marks, he_kind kind, uint32_t id,
                                            he_error *err);
-/* he_require_unlocked for each edge and face around the origin of a half-edge, counter-clockwise
- * from it. */
+/* Does what he_require_unlocked does, for each edge and face around the origin of a half-edge,
+ * counter-clockwise from it. */
 HE_NODISCARD he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks,
                                                  he_halfedge first, he_error *err);
 

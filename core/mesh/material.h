@@ -37,7 +37,7 @@ typedef struct he_look {
 /* The default look: white, neither metallic nor shiny, no emission, one-sided. */
 extern const he_look he_plain_look;
 
-/* Anyone may read the fields; they never change. */
+/* A material. All code may read the fields, which never change. */
 typedef struct he_material {
     atomic_uint references; /* private */
     uint32_t mark;          /* FNV-1a of the name and the numbers, little-endian: never 0 */
@@ -56,10 +56,11 @@ HE_NODISCARD he_status he_material_new(const char *name, size_t length, const he
 he_material *he_material_retain(he_material *material); /* NULL gives NULL */
 void he_material_release(he_material *material);
 size_t he_material_bytes(const he_material *material); /* 0 for NULL */
-/* Are the names and numbers equal? NULL equals NULL alone. */
+/* Returns true if the names and numbers of two materials are equal. NULL equals only NULL. */
 bool he_material_equal(const he_material *a, const he_material *b);
 bool he_look_equal(const he_look *a, const he_look *b);
-/* Writes NAME for number 1, else NAME_2 and so on; a name that is too long is cut. */
+/* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on; a name that is too long
+ * is cut. */
 void he_material_number_name(const char *name, unsigned number, char out[HE_MATERIAL_NAME + 1]);
 /* Brings every number of the look into its range: one that is not finite becomes that of
  * he_plain_look, one out of range the nearer end of the range. Returns whether a number changed. */
@@ -72,11 +73,11 @@ typedef struct he_materials {
 } he_materials;
 
 void he_materials_clear(he_materials *materials);
-/* Copies the rows with their slots. Fills *out on success only.
+/* Copies the rows of a table with their slots. Fills *out on success only.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_copy(const he_materials *materials, he_materials *out,
                                          he_error *err);
-/* Copies the rows without the free slots between them. */
+/* Copies the rows of a table without the free slots between them. */
 HE_NODISCARD he_status he_materials_pack(const he_materials *materials, he_materials *out,
                                          he_error *err);
 size_t he_materials_count(const he_materials *materials); /* rows, without free slots */
@@ -87,12 +88,12 @@ bool he_materials_equal(const he_materials *a,
 size_t he_materials_find(const he_materials *materials, const char *name, size_t length);
 /* Returns the first free slot, or the slot after the last. */
 size_t he_materials_free_slot(const he_materials *materials);
-/* Makes room for this many slots.
+/* Makes room in a table for this many slots.
  * Returns HE_LIMIT if that is more than HE_MATERIALS.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_materials_reserve(he_materials *materials, size_t slots, he_error *err);
-/* Adds a row in the first free slot; no row of the table may have its name. On success the table
- * owns it. Fails as he_materials_reserve does. */
+/* Adds a material to a table, in the first free slot; no row of the table may have its name. On
+ * success the table owns it. Returns the errors of he_materials_reserve, too. */
 HE_NODISCARD he_status he_materials_add(he_materials *materials, he_material *takes, he_error *err);
 
 #endif

@@ -179,7 +179,8 @@ const he_materials *he_mesh_materials(const he_mesh *mesh)
     return &mesh->c.materials;
 }
 
-/* Columns are equal if every row is, including default rows that only one of them stores. */
+/* Returns true if two columns are equal in every row, including default rows that only one of them
+ * stores. */
 static bool columns_equal(const he_column *a, const he_column *b)
 {
     if (a == NULL || b == NULL) {

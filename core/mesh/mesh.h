@@ -61,7 +61,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Typed handles: the compiler refuses one kind where another is expected. */
+/* Ids of elements as types of their own: the compiler refuses one kind of element where another is
+ * expected. */
 typedef struct he_vertex {
     uint32_t i;
 } he_vertex;
@@ -93,12 +94,15 @@ he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
 /* Makes an independent copy with equal ids, dead rows and attributes; it records nothing. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
-/* he_mesh_copy with a watch (which may be NULL), which afterwards belongs to the copy. */
+/* Copies a mesh like he_mesh_copy, with a watch (which may be NULL) that afterwards belongs to the
+ * copy. */
 HE_NODISCARD he_status he_mesh_copy_watched(const he_mesh *mesh, he_watch *watch, he_mesh **out,
                                             he_error *err);
-/* Are two meshes equal: every issued row of every column, and the high-water marks? */
+/* Returns true if two meshes are equal in every issued row of every column and in their high-water
+ * marks. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
-/* he_mesh_equal that ignores rows which only one of them has issued, if those are dead. */
+/* Compares like he_mesh_equal, but ignores rows that only one of the meshes has issued, if they are
+ * dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
 /* Steps `watch` during all long work with this mesh, which may then fail with HE_CANCELLED; NULL
@@ -129,10 +133,10 @@ uint32_t he_mesh_next_live(const he_mesh *mesh, he_kind kind, uint64_t from);
 HE_NODISCARD he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id,
                                        he_error *err);
 
-/* Attribute columns, in the order they were added. `find` returns NULL if none has that domain and
- * name. */
+/* These functions give access to the attribute columns, which are in the order in which they were
+ * added. he_mesh_find_column returns NULL if no column has that domain and name. */
 size_t he_mesh_columns(const he_mesh *mesh);
-/* Returns the column of slot i, NULL if that was dropped. */
+/* Returns the column in slot i, NULL if it was dropped. */
 const he_column *he_mesh_column(const he_mesh *mesh, size_t i);
 const he_column *he_mesh_find_column(const he_mesh *mesh, he_kind domain, const char *name);
 /* Returns the slot of a column of the mesh. */

@@ -101,7 +101,7 @@ static he_status copy_object(void *object, uint32_t of, void **out, he_error *er
     return he_content_copy(object, NULL, copy, err);
 }
 
-/* Makes room for copies of `count` objects. Returns NULL if memory is out. */
+/* Makes a list with room for copies of `count` objects. Returns NULL if memory is out. */
 static other_side *side_new(uint64_t key, size_t count)
 {
     other_side *side = he_mem_alloc(sizeof *side);
@@ -175,8 +175,9 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     return HE_OK;
 }
 
-/* Moves backwards. A content that comes back has the high-water marks of when it was taken out, so
- * rows are issued or taken back until they are those of the crossing. */
+/* Moves a content backwards across a delta. A content that comes back has the high-water marks of
+ * the moment when it was taken out, so rows are issued or taken back until they are those of the
+ * crossing. */
 static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
 {
     he_content_apply(c, crossing->delta, 0, crossing->delta->count, true, objects);

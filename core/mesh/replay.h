@@ -27,7 +27,8 @@ typedef struct he_crossing {
     const uint32_t *issued; /* the high-water marks after the crossing, indexed by kind */
 } he_crossing;
 
-/* Makes a copy of `mesh` as it is, with a cache of long faces (long_faces.h) until it moves on.
+/* Makes a copy of `mesh` as it is now. It has a cache of long faces (long_faces.h) until it moves
+ * on.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_replay_new(const he_mesh *mesh, he_replay **out, he_error *err);
 void he_replay_free(he_replay *replay);

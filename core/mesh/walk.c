@@ -44,8 +44,9 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     return fans == 0 ? 1 : fans;
 }
 
-/* A ring is walked in both directions at once, half of it each: when links come from memory one
- * after another that halves the waiting time. Returns whether the whole ring has been visited. */
+/* Walks around a vertex in both directions at once, half of the way each: when links come from
+ * memory one after another, that halves the waiting time. Returns true if the whole ring has been
+ * visited. */
 static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
 {
     if (up->i == down->i) {
@@ -59,8 +60,8 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-/* How many steps around the first vertex are made before the second vertex's ring is searched too,
- * which is as far away in memory and seldom needed. */
+/* The number of steps around the first vertex that are made before the second vertex's ring is
+ * searched, too. The second ring is as far away in memory, and seldom needed. */
 enum { ALONE = 8 };
 
 static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)

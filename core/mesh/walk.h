@@ -13,7 +13,7 @@ static inline he_edge he_edge_of(he_halfedge h)
 {
     return (he_edge){h.i >> 1};
 }
-/* Returns half-edge 2e (side 0) or 2e + 1 (side 1). */
+/* Returns a half-edge of edge e: 2e for side 0, or 2e + 1 for side 1. */
 static inline he_halfedge he_edge_halfedge(he_edge e, unsigned side)
 {
     return (he_halfedge){2u * e.i + side};
@@ -34,12 +34,12 @@ static inline he_vertex he_target(const he_mesh *m, he_halfedge h)
 {
     return (he_vertex){m->c.origin[h.i ^ 1u]};
 }
-/* Returns HE_NONE for a boundary half-edge. */
+/* Returns the face to the left of h; HE_NONE for a boundary half-edge. */
 static inline he_face he_face_of(const he_mesh *m, he_halfedge h)
 {
     return (he_face){m->c.face[h.i]};
 }
-/* Returns HE_NONE for an isolated vertex. */
+/* Returns the half-edge that v stores; HE_NONE for an isolated vertex. */
 static inline he_halfedge he_vertex_halfedge(const he_mesh *m, he_vertex v)
 {
     return (he_halfedge){m->c.vertex_halfedge[v.i]};
@@ -103,8 +103,8 @@ static inline void he_prefetch_ends(const he_mesh *m, he_edge e)
     }
 }
 
-/* Prefetches for a loop over edges that knows which come next: `next` directly after the present
- * edit, `soon` after that one. Memory is then read during the edits before. */
+/* Prefetches for a loop over edges that knows which edges come next: `next` is edited directly
+ * after the present edge, `soon` after that. Memory is then read during the edits before. */
 static inline void he_prefetch_coming(const he_mesh *m, he_edge next, he_edge soon)
 {
     he_prefetch_links(m, he_edge_halfedge(soon, 0));
@@ -128,7 +128,7 @@ static inline bool he_is_isolated(const he_mesh *m, he_vertex v)
 {
     return m->c.vertex_halfedge[v.i] == HE_NONE;
 }
-/* An isolated vertex counts as boundary too. */
+/* Returns true if a vertex is on the boundary; an isolated vertex counts as such, too. */
 static inline bool he_is_boundary_vertex(const he_mesh *m, he_vertex v)
 {
     uint32_t h = m->c.vertex_halfedge[v.i];
@@ -147,26 +147,28 @@ static inline bool he_face_is_live(const he_mesh *m, he_face f)
     return f.i < m->c.faces.issued && m->c.face_halfedge[f.i] != HE_DEAD;
 }
 
-/* Is there a triangle to the left of h? */
+/* Returns true if the face to the left of h is a triangle. */
 static inline bool he_is_triangle(const he_mesh *m, he_halfedge h)
 {
     return !he_is_boundary_halfedge(m, h) && m->c.next[m->c.next[m->c.next[h.i]]] == h.i;
 }
 
-/* Returns the number of edges at a vertex, in time linear in it. */
+/* Returns the number of edges at a vertex, in time linear in that number. */
 uint32_t he_vertex_degree(const he_mesh *m, he_vertex v);
-/* Returns the number of corners of a face, in time linear in it. */
+/* Returns the number of corners of a face, in time linear in that number. */
 uint32_t he_face_degree(const he_mesh *m, he_face f);
-/* Returns the number of half-edges in the loop of h, of a face or a hole, in time linear in it. */
+/* Returns the number of half-edges in the loop of h, the border of a face or a hole, in time linear
+ * in that number. */
 uint32_t he_loop_length(const he_mesh *m, he_halfedge h);
 /* Returns the number of fans at a vertex: 0 if isolated, 1 if manifold, more at a bow-tie. */
 uint32_t he_vertex_fans(const he_mesh *m, he_vertex v);
-/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches the ring of a,
- * and if that is long the ring of b in turn with it, so it costs the smaller degree. */
+/* Finds the half-edge from a to b. Returns HE_NONE if no edge joins them. Searches around a and, if
+ * a has many edges, around b in turn with it, so it takes time linear in the smaller degree. */
 he_halfedge he_find_halfedge(const he_mesh *m, he_vertex a, he_vertex b);
-/* he_find_halfedge from the origin of a half-edge. */
+/* Finds a half-edge like he_find_halfedge, from the origin of the half-edge `leaving`. */
 he_halfedge he_find_halfedge_from(const he_mesh *m, he_halfedge leaving, he_vertex to);
-/* he_find_halfedge that adds its cost to `*steps`, for callers with a budget. */
+/* Finds a half-edge like he_find_halfedge and adds the cost of the search to `*steps`, for callers
+ * with a budget. */
 he_halfedge he_find_halfedge_counted(const he_mesh *m, he_vertex a, he_vertex b, uint64_t *steps);
 
 #endif

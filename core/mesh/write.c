@@ -2,7 +2,7 @@
 
 #include "mesh/content.h"
 
-/* Returns the 32-bit words of one row of a column; the last word may be short. */
+/* Returns the number of 32-bit words of a row of a column; the last word may be short. */
 static size_t row_words(const he_column *column)
 {
     return (column->row_bytes + 3u) / 4u;
@@ -117,7 +117,7 @@ he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err)
     return status;
 }
 
-/* Records the words of a row that differ. */
+/* Records the words in which a row differs from its new value. */
 static void record_row(he_mesh *m, uint32_t column, uint32_t row, const void *stored,
                        const void *value, size_t row_bytes)
 {
@@ -192,7 +192,7 @@ void he_delete_face(he_mesh *m, he_face f)
     m->c.faces.live--;
 }
 
-/* Returns the first free slot, or the slot after the last. */
+/* Returns the first free slot for an attribute column, or the slot after the last. */
 static size_t free_slot(const he_content *c)
 {
     size_t slot = 0;

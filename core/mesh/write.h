@@ -17,8 +17,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* The most that COMMIT will use. he_reserve adds the records of new rows itself: the links,
- * position and attributes of each. */
+/* The most memory that the COMMIT part of an edit will use. he_reserve adds the records of new rows
+ * itself: the links, position and attributes of each. */
 typedef struct he_need {
     uint32_t vertices, edges, faces;
     size_t deleted_vertices, deleted_edges, deleted_faces; /* rows that will die */
@@ -42,7 +42,7 @@ enum {
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err);
-/* Does the mesh have no attributes, and enough room already? */
+/* Returns true if the mesh has no attributes and has enough room already. */
 static inline bool he_has_room(const he_mesh *m, const he_need *need)
 {
     const he_content *c = &m->c;
@@ -62,9 +62,9 @@ static inline he_status he_reserve(he_mesh *m, he_need need, he_error *err)
     return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
 }
 
-/* Takes `count` records that the caller fills. Returns NULL while nothing is recorded. Writes that
- * belong together take theirs in one call, because separate calls would each wait for the count
- * that the call before has written. */
+/* Takes `count` records of the delta, which the caller fills. Returns NULL while nothing is
+ * recorded. Writes that belong together take their records in one call, because separate calls
+ * would each wait for the count that the call before has written. */
 static inline he_record *he_record_take(he_mesh *m, size_t count)
 {
     he_delta *d = m->delta;
@@ -100,7 +100,7 @@ static inline void he_set_prev(he_mesh *m, he_halfedge h, he_halfedge prev)
     he_record_word(m, HE_COL_PREV, 0, h.i, m->c.prev[h.i], prev.i);
     m->c.prev[h.i] = prev.i;
 }
-/* next(a) = b and prev(b) = a. */
+/* Links two half-edges: next(a) becomes b, and prev(b) becomes a. */
 static inline void he_link(he_mesh *m, he_halfedge a, he_halfedge b)
 {
     he_record *r = he_record_take(m, 2);
@@ -160,10 +160,10 @@ static inline void he_set_position(he_mesh *m, he_vertex v, he_vec3 position)
     }
     m->c.position[v.i] = position;
 }
-/* Copies row_bytes from `value` into a row of attribute slot i. */
+/* Writes a value (row_bytes bytes) to a row of the attribute in a slot. */
 void he_set_attribute(he_mesh *m, size_t slot, uint32_t row, const void *value);
 
-/* Writes the dead value to a row of a link table, as a row has when it is issued. */
+/* Writes the dead value to a row of a link table; a row has it when it is issued. */
 static inline void he_clear_vertex(he_content *c, uint32_t v)
 {
     c->position[v] = (he_vec3){0, 0, 0};
@@ -180,7 +180,8 @@ static inline void he_clear_face(he_content *c, uint32_t f)
     c->face_halfedge[f] = HE_DEAD;
 }
 
-/* Issues default rows in every attribute, as many as its domain has; he_reserve made room. */
+/* Issues rows with default values in every attribute, as many as its domain has; he_reserve must
+ * have made room. */
 void he_issue_values(he_mesh *m);
 static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
 {
@@ -193,8 +194,8 @@ static inline uint32_t he_issue(he_mesh *m, he_rows *rows)
     return row;
 }
 
-/* Issues a row: dead in every link column until the caller writes them, attributes at their
- * default. he_reserve has made room. */
+/* Issues a vertex: its row is dead in every link column until the caller writes the links, and its
+ * attributes have their defaults. he_reserve must have made room. */
 static inline he_vertex he_new_vertex(he_mesh *m)
 {
     uint32_t v = he_issue(m, &m->c.vertices);
@@ -213,13 +214,14 @@ static inline he_face he_new_face(he_mesh *m)
     he_clear_face(&m->c, f);
     return (he_face){f};
 }
-/* Writes the dead value everywhere in the row. No live element may still link to it. */
+/* Deletes a vertex: writes the dead value everywhere in its row. No live element may still link to
+ * it. */
 void he_delete_vertex(he_mesh *m, he_vertex v);
 void he_delete_edge(he_mesh *m, he_edge e);
 void he_delete_face(he_mesh *m, he_face f);
 
-/* Record which element a new one came from, and which one a deleted one was merged into. Without a
- * recording they do nothing. */
+/* Record in the delta which element a new one came from, and which element a deleted one was merged
+ * into. Without a recording they do nothing. */
 static inline void he_note_parent(he_mesh *m, he_kind kind, uint32_t child, uint32_t parent)
 {
     he_record_word(m, HE_COL_PARENT, (uint32_t)kind, child, parent, 0);
@@ -229,10 +231,10 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
     he_record_word(m, HE_COL_MERGED, (uint32_t)kind, gone, into, 0);
 }
 
-/* Set the attributes of a row in every column of a domain by the column's rule. Kinds: HE_VERTEX,
- * HE_HALFEDGE, HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or leaves the
- * default; `copy` copies unless the rule is default. Without such columns these do nothing, and in
- * a mesh without attributes they cost one test. */
+/* Set the attributes of an element's row in every column of its domain by the column's rule. Kinds:
+ * HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE. `between` interpolates, copies a (t < 1) or b, or
+ * leaves the default; `copy` copies unless the rule is default. Without such columns these do
+ * nothing, and in a mesh without attributes they cost one test. */
 void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
 static inline void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b,
                                     double t)
@@ -248,10 +250,11 @@ static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t
         he_values_copy(m, kind, to, from);
     }
 }
-/* Sets a row to the mean of n rows; copies the first if the rule is copy. */
+/* Sets the attributes of row `to` to the mean of n rows; copies the first row if the rule is
+ * copy. */
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
-/* Interpolated columns become linear from `other` (t = 0) to the value of `row` (t = 1); all other
- * columns keep the value of `row`. */
+/* Mixes attributes of two rows: interpolated columns become linear from `other` (t = 0) to the
+ * value of `row` (t = 1); all other columns keep the value of `row`. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
 static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
 {
@@ -275,21 +278,21 @@ static inline void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t
         he_values_move(m, kind, to, from);
     }
 }
-/* Are there columns in this domain? Lets a frequent edit skip the calls. */
+/* Returns true if there are columns in this domain. It lets a frequent edit skip the calls. */
 bool he_has_columns(const he_mesh *m, he_kind kind);
 
 /* Makes room for he_set_attribute on `rows` rows of one column.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_reserve_values(he_mesh *m, size_t slot, size_t rows, he_error *err);
 
-/* Adding and dropping columns, recorded. On success the mesh owns `takes`, which must have as many
+/* Add or drop a column, and record that. On success the mesh owns `takes`, which must have as many
  * rows as the domain has issued. It gets the first free slot: history is linear, so a record that
  * names a slot is only applied while its column is there. */
 HE_NODISCARD he_status he_mesh_add_column(he_mesh *m, he_column *takes, he_error *err);
 HE_NODISCARD he_status he_mesh_drop_column(he_mesh *m, size_t slot, he_error *err);
-/* Puts a material in a slot, replacing the one that is there; NULL only removes that. The slot may
- * be the first one after the last, which is then made. No other row may have the name. On success
- * the mesh owns `takes`.
+/* Puts a material into a slot of the mesh's table, replacing the one that is there; NULL only
+ * removes that. The slot may be the first one after the last, which is then made. No other row may
+ * have the name. On success the mesh owns `takes`.
  * Returns HE_LIMIT if there would be more than HE_MATERIALS slots.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mesh_put_material(he_mesh *m, size_t slot, he_material *takes,

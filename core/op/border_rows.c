@@ -49,7 +49,7 @@ static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *ou
     return status;
 }
 
-/* Strings in the order of he_keep. */
+/* The names of the values of he_keep, in their order. */
 static const char *const keeps[] = {"mean", "a", "b", NULL};
 
 const he_op he_border_rows[] = {

@@ -24,7 +24,8 @@ static he_status run_face_delete(he_mesh *m, const he_arg *args, he_results *out
                           args[1].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
 }
 
-/* Finds the half-edge that leaves a corner of f, given as a vertex or as that half-edge. */
+/* Finds the half-edge that leaves a corner of face f, which the client gave as a vertex or as that
+ * half-edge. */
 static he_status find_corner(const he_mesh *m, he_face f, const he_arg *vertex,
                              const he_arg *halfedge, he_halfedge *out, he_error *err)
 {
@@ -109,7 +110,7 @@ static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Strings in the order of he_fill. */
+/* The names of the values of he_fill, in their order. */
 static const char *const fill_methods[] = {"polygon", "fan", "triangulate", NULL};
 
 const he_op he_face_rows[] = {

@@ -78,7 +78,7 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
     return status;
 }
 
-/* The parameters of both plane_split and plane_cut. */
+/* The parameters that plane_split and plane_cut have in common. */
 #define PLANE                                                           \
     {.name = "point",                                                   \
      .type = HE_PARAM_POINT,                                            \
@@ -101,7 +101,7 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
         "faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."    \
     }
 
-/* Strings in the order of he_cut_side. */
+/* The names of the values of he_cut_side, in their order. */
 static const char *const cut_sides[] = {"above", "below", NULL};
 
 const he_op he_mesh_rows[] = {

@@ -127,7 +127,7 @@ void he_op_defaults(const he_op *op, he_arg args[HE_OP_PARAMS])
     }
 }
 
-/* Does an argument satisfy what the decoder must have checked? */
+/* Returns true if an argument satisfies what the decoder must have checked. */
 static bool is_sound(const he_param *param, const he_arg *arg)
 {
     if (!arg->given) {
@@ -167,8 +167,8 @@ static bool is_sound(const he_param *param, const he_arg *arg)
     return false;
 }
 
-/* Among the alternatives that share a letter with parameter i, is exactly one given if one is
- * required, and at most one otherwise? */
+/* Checks the alternatives that share a letter with parameter i: exactly one must be given if one is
+ * required, and at most one otherwise. */
 static bool is_group_sound(const he_op *op, const he_arg *args, size_t i)
 {
     size_t given = 0;

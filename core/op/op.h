@@ -40,9 +40,9 @@ enum {
     /* The operation also visits neighbours of the elements: all corners of the faces around a
      * vertex, all edges at the corners of a face or along a loop, both loops of an edge. */
     HE_REACHES = 64,
-    /* Each call walks around all of the elements given here: around the vertices and along the
-     * loops of faces and holes, and with HE_REACHES around all corners of their faces. A list of
-     * operations is charged for that, since it may name one vertex of large degree again and
+    /* Each call walks around all elements that this parameter names: around the vertices and along
+     * the loops of faces and holes, and with HE_REACHES around all corners of their faces. A list
+     * of operations is charged for that, since it may name one vertex of large degree again and
      * again. */
     HE_WALKS = 256,
     HE_OPACITY = 512 /* a colour may have an opacity as its fourth number */
@@ -63,7 +63,8 @@ typedef struct he_param {
     const char *doc;
 } he_param;
 
-/* A decoded argument, at its parameter's index. Lists are borrowed for the call. */
+/* A decoded argument of an operation, at the index of its parameter. Lists are borrowed for the
+ * call. */
 typedef struct he_arg {
     bool given;
     uint32_t id;         /* for ELEMENT; HE_NONE for null */
@@ -101,8 +102,8 @@ typedef struct he_result_row {
 
 enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
 
-/* The results, at the index of their row. he_op_run clears and fills them; in the end the caller
- * clears them. */
+/* The results of an operation, at the indices of their rows. he_op_run clears and fills them; in
+ * the end the caller clears them. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
     uint32_t id[HE_OP_RESULTS]; /* for a choice, its index */
@@ -110,10 +111,11 @@ typedef struct he_results {
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* local: costs what it touches. whole: costs the whole mesh, so it may run long. */
+/* How long an operation takes: HE_OP_LOCAL depends on what it touches; HE_OP_WHOLE on the whole
+ * mesh, so it may run long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
-/* A change of V, E or F that depends on the mesh. */
+/* Marks a change of V, E or F that depends on the mesh. */
 enum { HE_VARIES = -1000 };
 
 typedef struct he_op {
@@ -122,17 +124,18 @@ typedef struct he_op {
     he_op_size size;
     he_param params[HE_OP_PARAMS]; /* ends at the first one without a name */
     he_result_row results[HE_OP_RESULTS];
-    /* Every refusal it can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and, under a watch,
-     * HE_CANCELLED; ends in HE_OK. */
+    /* Every refusal that the operation can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and,
+     * under a watch, HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* change of V, E, F */
-    /* Its time relative to `transform`: for each element of the mesh if it costs the whole mesh,
-     * else for each element of its lists. Measured, and rounded up; 0 means 1. */
+    /* The time of the operation relative to `transform`: for each element of the mesh if it takes
+     * the whole mesh, else for each element of its lists. It was measured, and rounded up; 0 means
+     * 1. */
     unsigned pace;
-    /* Returns about how many times the mesh grows; NULL if it keeps its size. */
+    /* Returns the factor by which the mesh grows, approximately; NULL if it keeps its size. */
     double (*growth)(const he_arg *args);
-    /* Finds a refusal from the mesh's counts alone, before anything is begun; NULL if there is
-     * none. HE_OK is no promise. */
+    /* Finds a refusal from the mesh's counts alone, before the operation begins; NULL if no refusal
+     * can be found in this way. HE_OK is no promise of success. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
     /* Called by he_op_run only. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
@@ -144,16 +147,18 @@ size_t he_op_number(const he_op *op); /* the number of the operation for he_op_a
 const he_op *he_op_find(const char *name, size_t length); /* NULL if there is none of that name */
 size_t he_op_params(const he_op *op);
 size_t he_op_results(const he_op *op);
-/* Does it cost the whole mesh, with these arguments? */
+/* Returns true if the operation, with these arguments, takes time linear in the whole mesh. */
 bool he_op_is_whole(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Returns about how many times the mesh grows, 1 if it keeps its size. */
+/* Returns the factor by which the operation makes the mesh grow, approximately; 1 if it keeps its
+ * size. */
 double he_op_growth(const he_op *op, const he_arg args[HE_OP_PARAMS]);
-/* Returns its pace, at least 1. */
+/* Returns the operation's time relative to `transform`, at least 1. */
 unsigned he_op_pace(const he_op *op);
-/* Finds a refusal without looking at the elements. */
+/* Finds a refusal of the operation without looking at the elements it names. */
 HE_NODISCARD he_status he_op_foresee(const he_op *op, const he_mesh *mesh,
                                      const he_arg args[HE_OP_PARAMS], he_error *err);
-/* Is this a refusal the row declares (or a resource failure any row may have)? */
+/* Returns true if the row declares this refusal, or if it is a lack of resources, which any row may
+ * report. */
 bool he_op_declares(const he_op *op, he_status status);
 
 /* Fills in an argument for every parameter with its default and `given` false. */

@@ -23,7 +23,8 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     return status;
 }
 
-/* Each step makes four faces of one, or three. */
+/* Returns the factor by which subdivision makes the mesh grow: each step makes four faces of one,
+ * or three. */
 static double subdivide_growth(const he_arg *args)
 {
     return pow(args[0].choice == HE_SQRT3 ? 3 : 4, args[1].number);
@@ -34,7 +35,7 @@ static he_status foresee_subdivide(const he_mesh *m, const he_arg *args, he_erro
     return he_subdivide_fits(m, (he_scheme)args[0].choice, (unsigned)args[1].number, err);
 }
 
-/* Strings in the order of he_scheme. */
+/* The names of the values of he_scheme, in their order. */
 static const char *const schemes[] = {"loop", "catmull_clark", "linear", "sqrt3", NULL};
 
 const he_op he_refine_rows[] = {

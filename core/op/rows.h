@@ -1,4 +1,4 @@
-/* rows.h - the arrays of rows, for table.c and op.c, and the functions with which rows give
+/* rows.h - the arrays of rows, for table.c and op.c, and the functions with which rows fill in
  * results. */
 #ifndef HE_OP_ROWS_H
 #define HE_OP_ROWS_H
@@ -24,16 +24,16 @@ const he_op *he_table_row(size_t i);
 /* Returns the number of a row of the table. */
 size_t he_table_number(const he_op *op);
 
-/* Sets result i of a row to one element, which may be HE_NONE, or to one choice. */
+/* Sets result i of an operation to one element, which may be HE_NONE, or to one choice. */
 void he_give(he_results *out, size_t i, uint32_t id);
 void he_give_number(he_results *out, size_t i, double number);
-/* Makes room for result i, a list of at most `count` ids. To be called before the edit, which must
- * not fail afterwards.
+/* Makes room for result i, a list of at most `count` ids. It must be called before the edit,
+ * because nothing may fail after it.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err);
 /* Appends to list i. */
 void he_give_add(he_results *out, size_t i, uint32_t id);
-/* Makes the whole list result i; `takes` is empty afterwards. */
+/* Makes `takes` the whole list of result i; `takes` is empty afterwards. */
 void he_give_list(he_results *out, size_t i, he_ids *takes);
 
 #endif

@@ -1,10 +1,10 @@
-/* Finds which repairs a refused soup needs, by trying each on a copy of its faces. */
+/* advise.c - finds which repairs a refused soup needs, by trying each on a copy of its faces. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
 #include <string.h>
 
-/* Copies the faces; positions are borrowed. */
+/* Copies the faces of a soup; the positions are borrowed. */
 static he_status copy_faces(const he_soup *soup, he_soup *out, he_error *err)
 {
     *out = (he_soup){.limits = soup->limits,
@@ -44,7 +44,8 @@ static void count_runs(const he_soup *soup, const uint64_t *gone, const uint32_t
     }
 }
 
-/* Has the face an edge that is invalid before and valid after the duplicates are dropped? */
+/* Returns true if face f has an edge that is invalid now, and valid after the duplicates are
+ * dropped. */
 static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, const runs *before,
                        const runs *after)
 {
@@ -56,8 +57,8 @@ static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, c
     return mends;
 }
 
-/* Does each dropped duplicate mend an edge? The wall between two solids does not: both need it, and
- * the soup must be split. */
+/* Decides whether each dropped duplicate mends an edge. The wall between two solids does not: both
+ * solids need it, and the soup must be split instead. */
 static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
 {
     size_t edges = 0;
@@ -97,13 +98,13 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
     return status;
 }
 
-/* Are there duplicates, and does each that is dropped mend an edge? */
+/* Whether there are duplicates, and whether each that is dropped mends an edge. */
 typedef struct duplicates {
     bool some, mend;
 } duplicates;
 
-/* Finds what a soup of valid faces needs. If `dropped` is not NULL the duplicates are dropped
- * first; if there are none it says so, and nothing else is tested. */
+/* Finds which repairs a soup of valid faces needs. If `dropped` is not NULL the duplicates are
+ * dropped first; if there are none it says so, and nothing else is tested. */
 static he_status find_needs(const he_soup *soup, duplicates *dropped, unsigned *out, he_error *err)
 {
     he_soup copy;

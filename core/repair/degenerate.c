@@ -1,4 +1,5 @@
-/* drop_degenerate: a face that repeats a vertex keeps the parts that have area, or is dropped.
+/* degenerate.c - the repair drop_degenerate: a face that repeats a vertex keeps the parts that have
+ * area, or is dropped.
  *
  *     1 2 3 3  ->  1 2 3            the same vertex twice in a row
  *     1 2 3 4 3  ->  1 2 3          a spike, there and back
@@ -23,7 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The degenerate faces, in order, and the parts they keep. */
+/* The degenerate faces, in order, and the parts that they keep. */
 typedef struct mending {
     const he_mend *m;
     uint64_t *bad;   /* faces */
@@ -67,6 +68,7 @@ static void shorten_end(mending *g, size_t from)
 }
 
 /* Removes pairs of edges that run back on each other where the end of the loop meets its beginning.
+ * Returns where the loop begins after that.
  * Returns where the loop begins then. */
 static size_t shorten_both(mending *g, size_t from)
 {
@@ -109,7 +111,7 @@ static he_status add_loop(mending *g, uint32_t f, he_error *err)
     return HE_OK;
 }
 
-/* Ends a loop: the corners of `loops` after the last one. */
+/* Ends a loop, which consists of the corners of `loops` after the loop before. */
 static he_status end_loop(mending *g, uint32_t cut, he_error *err)
 {
     he_status status = he_ids_add(&g->ends, (uint32_t)g->loops.count, err);
@@ -124,8 +126,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Do loops of `degree` vertices, one after another in `list`, run along an edge twice in one
- * direction? */
+/* Decides whether loops of `degree` vertices, one after another in `list`, run along an edge twice
+ * in one direction. */
 static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
 {
     const uint32_t *list = g->list.ids;
@@ -166,7 +168,7 @@ static he_vec3 area_of(const mending *g, size_t from, size_t end)
     return sum;
 }
 
-/* Have the loops from `first` on all the orientation of the whole? */
+/* Returns true if all loops from `first` on have the orientation of the whole. */
 static bool agree(const mending *g, size_t from, size_t first)
 {
     he_vec3 sum = {0, 0, 0};
@@ -181,7 +183,7 @@ static bool agree(const mending *g, size_t from, size_t first)
     return good;
 }
 
-/* Ends a loop that is the corners from `at` of the stack on. */
+/* Ends a loop, which consists of the corners on the stack from index `at` on. */
 static he_status pop_loop(mending *g, size_t at, he_error *err)
 {
     for (size_t i = at; i < g->stack.count; i++) {
@@ -191,8 +193,8 @@ static he_status pop_loop(mending *g, size_t at, he_error *err)
     return end_loop(g, HE_NONE, err);
 }
 
-/* Divides the loop from `from` on where it passes a vertex again, if its parts can be separate
- * faces; else it stays. */
+/* Divides the loop that begins at `from` where it passes a vertex again, if its parts can be
+ * separate faces; otherwise it stays whole. */
 static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
 {
     const uint32_t *corners = g->m->soup->corners;
@@ -210,8 +212,8 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     g->stack.count = 0;
     for (size_t i = from; i < end && status == HE_OK; i++) {
         uint32_t c = g->loops.ids[i], at = g->place[corners[c]];
-        /* an index left there by another loop, or by corners that were removed, is not valid in
-         * this stack */
+        /* An index left there by another loop, or by corners that were removed, is not valid in
+         * this stack. */
         if (at < g->stack.count && corners[g->stack.ids[at]] == corners[c]) {
             status = pop_loop(g, at, err);
         }
@@ -237,7 +239,8 @@ static he_status take_apart(mending *g, size_t from, bool *apart, he_error *err)
     return HE_OK;
 }
 
-/* A loop that still passes a vertex twice must be cut, or nothing of it is kept. */
+/* Adds a loop that still passes a vertex twice: it must be cut into triangles, or nothing of it is
+ * kept. */
 static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -275,7 +278,7 @@ static he_status add_cut(mending *g, size_t from, uint32_t mark, he_error *err)
     return status == HE_OK ? end_loop(g, (uint32_t)g->flat.face_count - 1, err) : status;
 }
 
-/* Finds the faces that repeat a vertex or have too few, and the parts they keep. */
+/* Finds the faces that repeat a vertex or have too few vertices, and the parts that they keep. */
 static he_status find(mending *g, he_error *err)
 {
     const he_soup *soup = g->m->soup;
@@ -452,7 +455,8 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
         status = find(&g, err);
     }
     if (status == HE_OK && g.done.count > 0) {
-        /* not NULL even if no face is left: it says that the soup was repaired */
+        /* The list is allocated even if no face is left, because a list that is not NULL says that
+         * the soup was repaired. */
         status = he_ids_reserve(&g.face_from, 1, err);
         if (status == HE_OK && m->has_corner_values) {
             status = he_ids_reserve(&g.corner_from, 1, err);

@@ -1,4 +1,4 @@
-/* drop_duplicates: drops all but the first of equal faces. */
+/* drop.c - the repair drop_duplicates: drops all but the first of equal faces. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
@@ -8,7 +8,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
                          soup->face_count);
 }
 
-/* Removes the faces that have a bit, and moves the others up. */
+/* Removes the faces whose bit is set, and moves the others up. */
 static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
 {
     he_soup *soup = m->soup;
@@ -44,8 +44,8 @@ static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
     return HE_OK;
 }
 
-/* The canonical order of a face's corners, equal for all its duplicates: from its lowest vertex
- * towards the lower of that one's neighbours. */
+/* The canonical order of a face's corners, which is equal for all its duplicates: from its lowest
+ * vertex towards that vertex's lower neighbour. */
 typedef struct way {
     const uint32_t *corners;
     uint32_t count, first;
@@ -99,7 +99,8 @@ typedef struct slot {
     uint32_t hash, face; /* hash, and number of a face + 1; 0 in a free slot */
 } slot;
 
-/* Returns the earlier face that f repeats, or HE_NONE and adds it to the table. */
+/* Returns the earlier face that face f repeats. If there is none, adds f to the table and returns
+ * HE_NONE. */
 static uint32_t find(const he_soup *soup, slot *slots, size_t mask, uint32_t f)
 {
     way w = way_of(soup, f);

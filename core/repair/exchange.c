@@ -1,4 +1,5 @@
-/* Exchanges partners of mates where two pairs of them would double an edge.
+/* exchange.c - exchanges the partners of mates (corners of two faces that stay joined along an
+ * edge) where two pairs of them would double an edge.
  *
  * Corners x and y run along one edge, and both ends of their pairs are in the same fans, so x's and
  * y's pairs would be two edges between two vertices. If x gets y's mate, and y gets x's, the
@@ -18,7 +19,8 @@
 
 #include <assert.h>
 
-/* A settled corner of the present edge, and its fans at that time, which may have changed since. */
+/* A corner of the present edge that is settled, and its fans at the time when it was, which may
+ * have changed since. */
 typedef struct slot {
     uint32_t epoch; /* number of the edge + 1, else the slot is free */
     uint32_t corner, from, to;
@@ -27,7 +29,8 @@ typedef struct slot {
 typedef struct exchanging {
     he_splitting *s;
     uint32_t *edge_of; /* edge of each corner */
-    /* Where each edge's corners begin in `list`; only for edges with more than two. */
+    /* Where the corners of each edge begin in `list`, which only has edges with more than two
+     * corners. */
     uint32_t *begin;
     uint32_t *list;
     size_t edges;
@@ -45,7 +48,7 @@ static he_status no_memory(const exchanging *x, he_error *err)
                          x->s->soup->face_count);
 }
 
-/* --- settled corners by their fans --- */
+/* --- finding settled corners by their fans --- */
 
 static bool is_valid(const exchanging *x, const slot *at)
 {
@@ -54,7 +57,7 @@ static bool is_valid(const exchanging *x, const slot *at)
            s->to[he_corner_after(s, at->corner)] == at->to;
 }
 
-/* Returns the slot of a settled corner between two fans, or a free one. */
+/* Returns the slot of a settled corner of the present edge between two fans, or a free slot. */
 static size_t slot_of(const exchanging *x, uint32_t from, uint32_t to)
 {
     uint64_t sum = (uint64_t)(uintptr_t)x->slots * 0x94D049BB133111EB;
@@ -76,7 +79,8 @@ static void put(exchanging *x, uint32_t corner)
     x->slots[at] = (slot){x->edge + 1, corner, from, to};
 }
 
-/* Makes room for what a fan that falls in two may add: a few entries for each settled corner. */
+/* Makes room for what a fan that falls in two may add to the table: a few entries for each settled
+ * corner. */
 static he_status make_room(exchanging *x, size_t more, he_error *err)
 {
     if (x->slots != NULL && 2 * (x->used + more) <= x->mask) {
@@ -109,13 +113,14 @@ static he_status make_room(exchanging *x, size_t more, he_error *err)
 
 /* --- fans --- */
 
-/* Walks over the corners of a fan, from one on to its end, then from that one back. */
+/* A walk over the corners of a fan: from a corner to the fan's end, then from that corner
+ * backwards. */
 typedef struct walk {
     uint32_t start, at;
     bool back;
 } walk;
 
-/* Returns false when all were visited. */
+/* Takes one step of the walk. Returns false when all corners were visited. */
 static bool step(const he_splitting *s, walk *w)
 {
     if (!w->back) {
@@ -137,8 +142,8 @@ static bool is_settled(const exchanging *x, uint32_t c)
     return x->edge_of[c] == x->edge && he_bits_get(x->settled, c);
 }
 
-/* Corners a and b left one vertex in one fan, which fell in two: the smaller part gets a new
- * number. */
+/* Numbers the two parts of a fan that fell in two. Corners a and b left one vertex in that fan; the
+ * smaller part gets a new number. */
 static he_status number(exchanging *x, uint32_t a, uint32_t b, he_error *err)
 {
     const he_splitting *s = x->s;

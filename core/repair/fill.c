@@ -1,10 +1,10 @@
-/* fill: closes small holes of the mesh, each by a polygon. */
+/* fill.c - the repair fill: closes small holes of the mesh, each by one polygon. */
 #include "edit/border/hole.h"
 #include "mesh/walk.h"
 #include "repair/repair.h"
 
-/* Returns the length of the loop of boundary half-edge h, counted to `most` + 1, and whether all of
- * it is along one face. */
+/* Returns the length of the loop of boundary half-edge h, counted up to `most` + 1, and whether all
+ * of the loop is along one face. */
 static size_t length_of(const he_mesh *m, he_halfedge h, size_t most, bool *one_face)
 {
     size_t length = 0;
@@ -49,7 +49,8 @@ static he_status fill(he_mesh *m, he_halfedge h, size_t most, he_repair_account 
     return HE_OK;
 }
 
-/* Each loop is handled at its lowest half-edge; `seen` has the half-edges of loops before. */
+/* Fills the holes. Each loop is handled at its lowest half-edge; `seen` has the half-edges of the
+ * loops handled before. */
 static he_status fill_all(he_mesh *m, size_t most, uint64_t *seen, he_repair_account *account,
                           he_error *err)
 {

@@ -25,23 +25,26 @@ static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
 /* Returns a list 0, 1, 2... of `count`, with room for `room`. NULL if memory is out. */
 uint32_t *he_mend_same(size_t count, size_t room);
 bool he_mend_has_corner_values(const he_soup *soup);
-/* Makes m->corner_from, if it is needed. */
+/* Makes the list m->corner_from, which says from which corner of the input each corner comes, if it
+ * is needed. */
 HE_NODISCARD he_status he_mend_corners(he_mend *m, he_error *err);
-/* Does a corner name a vertex that does not exist? */
+/* Returns true if a corner names a vertex that does not exist. */
 bool he_mend_has_bad_index(const he_soup *soup);
 /* Sets face_of[c] to the face that has corner c. */
 void he_mend_faces(const he_soup *soup, uint32_t *face_of);
 
-/* The repairs. All but the first ones require valid faces, as he_soup_check_faces defines it. */
+/* Each of the following functions performs one repair. All but the first ones require valid faces,
+ * as he_soup_check_faces defines them. */
 HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
 HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
 HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);
-/* With `force`, a component that cannot be oriented is reversed as well as possible; without, it
- * fails. */
+/* Orients the faces. With `force`, a component that cannot be oriented is oriented as well as
+ * possible; without, it fails. */
 HE_NODISCARD he_status he_mend_orient(he_mend *m, bool force, he_error *err);
 HE_NODISCARD he_status he_mend_split(he_mend *m, he_error *err);
 
-/* Would he_build refuse the soup, whose faces are oriented already, unless it is split? */
+/* Decides whether he_build would refuse the soup, whose faces are oriented already, unless it is
+ * split. */
 HE_NODISCARD he_status he_mend_needs_split(const he_soup *soup, bool *out, he_error *err);
 
 #endif

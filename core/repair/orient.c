@@ -1,5 +1,5 @@
-/* orient: reverses faces until neighbours agree. Breadth-first over the edges of two faces, one
- * component after another. */
+/* orient.c - the repair orient: reverses faces until neighbours agree, by a breadth-first search
+ * over the edges of two faces, one component after another. */
 #include "build/pair.h"
 #include "repair/mend.h"
 
@@ -16,7 +16,7 @@ typedef struct orienting {
 
 #define NO_PAIR (HE_NONE - 1)
 
-/* Finds the mates: the corners of edges with two. */
+/* Finds for each corner along an edge of two faces the other corner along it, its mate. */
 static he_status find_mates(orienting *o, he_error *err)
 {
     const he_soup *soup = o->soup;
@@ -51,7 +51,7 @@ static he_status find_mates(orienting *o, he_error *err)
     return HE_OK;
 }
 
-/* Notes that a component cannot be oriented: face f, at its corner c, and the face beside it
+/* Records that a component cannot be oriented: face f, at its corner c, and the face beside it
  * clash. */
 static void note_clash(orienting *o, uint32_t f, uint32_t c)
 {
@@ -118,8 +118,8 @@ static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, boo
     return count;
 }
 
-/* A component that cannot be oriented: if reversing does not leave fewer clashes, no face is
- * reversed. */
+/* Decides about a component that cannot be oriented: if reversing faces does not leave fewer
+ * clashes, no face is reversed. */
 static void settle_clashing(orienting *o, uint32_t begin, uint32_t end)
 {
     if (clashes_of(o, begin, end, true) < clashes_of(o, begin, end, false)) {
@@ -147,7 +147,7 @@ static void settle(orienting *o, uint32_t begin, uint32_t end)
     o->out->accounts[HE_REPAIR_ORIENT].parts += turned > 0;
 }
 
-/* The first corner stays, the others are reversed. */
+/* Reverses a face: the first corner stays, the others are reversed. */
 static void turn(he_mend *m, uint32_t f)
 {
     uint32_t low = m->soup->starts[f] + 1, high = he_soup_end(m->soup, f) - 1;

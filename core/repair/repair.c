@@ -172,7 +172,8 @@ bool he_mend_has_bad_index(const he_soup *soup)
     return c < soup->corner_count;
 }
 
-/* Faces that he_build would refuse by themselves keep the later repairs from running. */
+/* Decides whether he_build would accept each face by itself. If not, the later repairs cannot
+ * run. */
 static he_status is_proper(const he_soup *soup, bool *out, he_error *err)
 {
     uint64_t total = 0;

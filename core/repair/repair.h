@@ -57,10 +57,10 @@ typedef enum he_repair {
     HE_REPAIR_COUNT
 } he_repair;
 
-/* Names of the repairs in this order; ends in NULL. */
+/* The names of the repairs, in the order in which they are applied; ends in NULL. */
 extern const char *const he_repair_names[];
 
-/* The bit of a repair in a set of repairs. */
+/* Returns the bit that stands for a repair in a set of repairs. */
 static inline unsigned he_repair_bit(he_repair repair)
 {
     return 1u << repair;
@@ -72,7 +72,7 @@ typedef struct he_repair_plan {
     size_t hole_edges; /* for fill */
 } he_repair_plan;
 
-/* How many elements of each repair are listed, the first ones. */
+/* The number of elements that are listed for each repair: the first ones. */
 enum { HE_REPAIR_NAMED = 100 };
 
 typedef struct he_repair_pair {
@@ -82,17 +82,18 @@ typedef struct he_repair_pair {
 /* The results of one repair. Deleted elements are named by their number in the input, others by
  * their id in the mesh. */
 typedef struct he_repair_account {
-    /* weld: vertices merged; drop_*: faces dropped; orient: faces reversed; split: vertices made;
-     * fill: faces made */
+    /* The number of things a repair did. weld: vertices merged; drop_*: faces dropped; orient:
+     * faces reversed; split: vertices made; fill: faces made. */
     uint64_t count;
-    /* drop_degenerate: faces that lost corners or were cut; orient: components with reversed faces;
-     * split: vertices that had several fans */
+    /* A second number. drop_degenerate: faces that lost corners or were cut; orient: components
+     * with reversed faces; split: vertices that had several fans. */
     uint64_t parts;
     uint64_t moved; /* weld: values of vertices that differed and moved to corners */
     uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
-    /* weld: the merged vertex, the one it was merged into; drop_degenerate: the face, and 0 or more
-     * faces made of it; drop_duplicates: the dropped face, the one kept; orient: the reversed face,
-     * HE_NONE; split: the new vertex, its parent; fill: the face, its corners */
+    /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
+     * drop_degenerate: the face, and 0 or more faces made of it; drop_duplicates: the dropped face,
+     * the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent; fill:
+     * the face, its corners. */
     he_repair_pair pairs[HE_REPAIR_NAMED];
     size_t named;
 } he_repair_account;
@@ -103,23 +104,25 @@ typedef struct he_repair_clash {
 } he_repair_clash;
 
 typedef struct he_repaired {
-    /* Numbers in the input, by number in the soup; NULL if all kept theirs. */
+    /* The number in the input of each vertex and face of the soup; NULL if all kept their
+     * numbers. */
     uint32_t *vertex_from, *face_from;
     size_t vertices, faces; /* entries of these arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
-    /* The clashes that orient found; there are accounts[HE_REPAIR_ORIENT].left. */
+    /* The first places at which orient found that a component cannot be oriented;
+     * accounts[HE_REPAIR_ORIENT].left is their number. */
     he_repair_clash clashes[HE_REPAIR_NAMED];
 } he_repaired;
 
 void he_repaired_clear(he_repaired *repaired);
-/* Did anything change that he_build reads? */
+/* Returns true if a repair changed anything that he_build reads. */
 bool he_repaired_soup(const he_repaired *repaired);
 /* Renames the elements of a report about the repaired soup to their names in the input. */
 void he_repaired_report(const he_repaired *repaired, he_report *report);
 
-/* Applies the planned repairs of a soup. If degenerate faces remain, or a corner names a vertex
- * that does not exist, the repairs that could not handle them are not begun, and he_build will
- * refuse the soup.
+/* Applies to the soup those repairs of the plan that work on soups. If degenerate faces remain, or
+ * a corner names a vertex that does not exist, the repairs that could not handle them are not
+ * begun, and he_build will refuse the soup.
  *
  * The soup stays the caller's; `out` must be {0} before, and the caller clears it in any case.
  * After HE_NOT_ORIENTABLE the vertices and faces are as the repairs before orient left them and no
@@ -133,7 +136,8 @@ void he_repaired_report(const he_repaired *repaired, he_report *report);
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
-/* Applies the planned repairs of the mesh that was built: fill. The mesh must not be recording.
+/* Applies to the mesh that was built those repairs of the plan that work on meshes: fill. The mesh
+ * must not be recording.
  * Returns HE_IDS_EXHAUSTED if no ids are left.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */

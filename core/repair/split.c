@@ -1,5 +1,6 @@
-/* split: gives each fan a vertex of its own. Corners of an edge are paired as mates, as many as
- * there are in both directions; pairs that would double an edge exchange partners (exchange.c). */
+/* split.c - the repair split: gives each fan a vertex of its own. Corners of an edge are paired as
+ * mates, as many as there are in both directions; pairs that would double an edge exchange partners
+ * (exchange.c). */
 #include "repair/split.h"
 
 #include <string.h>
@@ -9,8 +10,8 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to split %zu faces apart", soup->face_count);
 }
 
-/* Pairs the corners of every edge: each with the first unpaired one that runs the other way. All
- * unpaired corners of an edge run one way, so they are a queue, chained by `mate`. */
+/* Pairs the corners of every edge: each with the first unpaired corner that runs the other way. All
+ * unpaired corners of an edge run in one direction, so they are a queue, chained by `mate`. */
 static he_status pair(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
@@ -146,7 +147,7 @@ static void clear(he_splitting *s)
     he_mem_free(s->closed);
 }
 
-/* Allocates memory, and finds the mates. */
+/* Begins a split: allocates its memory, and finds the mates. */
 static he_status begin(he_splitting *s, he_error *err)
 {
     const he_soup *soup = s->soup;
@@ -180,7 +181,7 @@ static he_status plan(he_splitting *s, he_error *err)
     return status;
 }
 
-/* Nothing of the soup is written before all memory is allocated. */
+/* Writes the split to the soup. Nothing is written before all memory is allocated. */
 static he_status apply(he_mend *m, he_splitting *s, he_error *err)
 {
     he_soup *soup = m->soup;

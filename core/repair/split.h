@@ -1,4 +1,4 @@
-/* split.h - the fans of a soup while it is split, for split.c and exchange.c.
+/* split.h - the fans of a soup while its vertices are split, for split.c and exchange.c.
  *
  * Corners are mates if their faces stay joined along an edge. Around a vertex, corner c is followed
  * by the corner after its mate, and preceded by the mate of the corner before it:
@@ -40,8 +40,9 @@ static inline uint32_t he_corner_before(const he_splitting *s, uint32_t c)
     return (c > s->soup->starts[f] ? c : he_soup_end(s->soup, f)) - 1;
 }
 
-/* Exchanges partners of mates until no two edges would join the same two vertices. `to` has the
- * fans of the mates before; if *exchanged is true, the caller must find the fans again.
+/* Exchanges the partners of mates (corners of two faces that stay joined along an edge) until no
+ * two edges would join the same two vertices. `to` has the fans of the mates before; if *exchanged
+ * is true, the caller must find the fans again.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_splitting_exchange(he_splitting *s, bool *exchanged, he_error *err);

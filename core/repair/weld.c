@@ -1,10 +1,10 @@
-/* weld: merges vertices that are near one another. */
+/* weld.c - the repair weld: merges vertices that are near one another. */
 #include "build/keep.h"
 #include "geometry/near.h"
 #include "repair/mend.h"
 
-/* Moves the kept vertices down in the positions; into[v] is the new number of v, or of the vertex
- * it is merged into. */
+/* Finds the vertices that are kept and moves their positions down; into[v] is the new number of v,
+ * or of the vertex it is merged into. */
 static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *from,
                            uint32_t *kept, he_error *err)
 {

@@ -1,5 +1,5 @@
 /* attribute_code.h - the stored form (stored.h) of an attribute's head and labels, and of a
- * material. For core/stored only. */
+ * material. Only core/stored uses it. */
 #ifndef HE_STORED_ATTRIBUTE_CODE_H
 #define HE_STORED_ATTRIBUTE_CODE_H
 
@@ -7,7 +7,8 @@
 #include "mesh/material.h"
 #include "stored/bytes.h"
 
-/* Bytes of a material before its name: nine numbers, its sides, the length of the name. */
+/* The number of bytes of a material before its name: nine numbers, its sides, and the length of the
+ * name. */
 enum { HE_MATERIAL_FIXED = 9 * 8 + 1, HE_MATERIAL_HEAD = HE_MATERIAL_FIXED + 2 };
 enum { HE_HEAD_ROOM = 5 + HE_COLUMN_NAME + HE_COLUMN_ROW_BYTES };
 
@@ -17,7 +18,7 @@ size_t he_labels_bytes(const he_labels *labels); /* NULL has no labels */
 unsigned char *he_labels_put(unsigned char *to, const he_labels *labels);
 size_t he_varint_bytes(uint64_t value);
 size_t he_material_code_bytes(const he_material *material);
-/* Writes all but the characters of the name, which follow. */
+/* Writes all of a material except the characters of its name, which follow. */
 unsigned char *he_material_put_head(unsigned char *to, const he_material *material);
 
 /* Reads the head of a column and makes it, without rows.

@@ -1,5 +1,5 @@
-/* content_code.h - the constants of a coded content (stored.h) and its arrays, for core/stored
- * only. */
+/* content_code.h - the constants of a coded content (stored.h) and of its arrays. Only core/stored
+ * uses it. */
 #ifndef HE_STORED_CONTENT_CODE_H
 #define HE_STORED_CONTENT_CODE_H
 
@@ -22,7 +22,7 @@ enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };
  * before it in the array; the row if there is none in the part. */
 typedef enum he_links { HE_NO_LINKS, HE_LINKS_BY_ROW, HE_LINKS_BY_LAST } he_links;
 
-/* One of the arrays in their order; it has a row for each issued element. */
+/* One of the arrays of a content, in their stored order; it has a row for each issued element. */
 typedef struct he_content_array {
     unsigned char *bytes;
     size_t size;
@@ -45,7 +45,7 @@ static inline he_content_array he_content_array_at(he_content *c, size_t i)
     return arrays[i];
 }
 
-/* Returns the bytes of all arrays together. */
+/* Returns the number of bytes of all arrays of a content together. */
 static inline uint64_t he_content_array_bytes(const he_content *c)
 {
     return (uint64_t)c->vertices.issued * (sizeof(he_vec3) + sizeof(uint32_t)) +

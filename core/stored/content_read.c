@@ -1,5 +1,5 @@
-/* Reads a content part by part: he_stored_reader of stored.h. Bytes go directly to their place: to
- * the header first, and when that is complete to the arrays it announces. */
+/* content_read.c - reads a content part by part: he_stored_reader of stored.h. Bytes go directly to
+ * their place: to the header first, and when that is complete to the arrays that it announces. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
@@ -49,7 +49,7 @@ static he_status refuse(const he_stored_reader *r, he_error *err, const char *wh
     return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, r->at, "%s", what);
 }
 
-/* The first bytes say how long the header is. */
+/* Reads the first bytes of the header, which say how long the header is. */
 static he_status read_start(he_stored_reader *r, he_error *err)
 {
     he_cursor c = he_cursor_over(r->header, r->header_size);
@@ -72,7 +72,7 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     return HE_OK;
 }
 
-/* Reads one slot; memory for its rows is allocated when all slots are known. */
+/* Reads one slot of an attribute; memory for its rows is allocated when all slots are known. */
 static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size_t *rows,
                            he_error *err)
 {
@@ -120,8 +120,8 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     return HE_OK;
 }
 
-/* Reads the slots; sets the number of rows of each column, without memory for them, and adds up
- * their bytes. */
+/* Reads the slots of attributes. Sets the number of rows of each column, without memory for them,
+ * and adds up their bytes. */
 static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, uint64_t *bytes,
                             he_error *err)
 {
@@ -288,7 +288,7 @@ static he_status read_header(he_stored_reader *r, he_error *err)
     return status;
 }
 
-/* Reads more of the header; *taken is how many bytes belonged to it. */
+/* Reads more of the header; *taken gets the number of bytes that belonged to it. */
 static he_status take_header(he_stored_reader *r, const unsigned char *bytes, size_t size,
                              size_t *taken, he_error *err)
 {
@@ -400,7 +400,7 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
 {
     he_stored_reader *r;
     he_cursor c = he_cursor_over(bytes, size);
-    /* A link takes at least one byte, so this bounds the content. */
+    /* Each link takes at least one byte of the input, so this bounds the size of the content. */
     he_status status = he_stored_reader_new(sizeof(uint32_t) * (uint64_t)size, &r, err);
     if (status != HE_OK) {
         return status;

@@ -1,11 +1,11 @@
-/* Writes a mesh as a content: he_stored_writer of stored.h. The bytes are made piece by piece (a
- * head, a label, an array) and cut into parts regardless of pieces. */
+/* content_write.c - writes a mesh as a content: he_stored_writer of stored.h. The bytes are made
+ * piece by piece (a head, a label, an array) and cut into parts regardless of pieces. */
 #include "mesh/layout.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
-/* The kind of the present piece. */
+/* The kind of the piece that is being written. */
 enum stage {
     HEADER,
     SLOT,
@@ -26,7 +26,7 @@ static const he_column *slot_of(const he_stored_writer *w)
     return w->mesh->c.columns[w->slot];
 }
 
-/* Returns the bytes after the kind and length of a slot. */
+/* Returns the number of bytes of a slot after its kind and length. */
 static uint64_t slot_bytes(const he_column *column)
 {
     return column == NULL ? 0
@@ -256,7 +256,7 @@ static bool has_piece(he_stored_writer *w)
     return w->left > 0;
 }
 
-/* Writes so many bytes of links from the present piece, each as a varint. */
+/* Writes `bytes` bytes of links from the present piece, each link as a varint. */
 static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char *to)
 {
     for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {

@@ -1,4 +1,4 @@
-/* edit_code.h - the constants of a coded edit (stored.h), for core/stored only. A number never
+/* edit_code.h - the constants of a coded edit (stored.h). Only core/stored uses it. A number never
  * changes its meaning. */
 #ifndef HE_STORED_EDIT_CODE_H
 #define HE_STORED_EDIT_CODE_H
@@ -31,7 +31,7 @@ typedef enum he_object {
 static const he_kind he_code_kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
 enum { HE_CODE_KINDS = sizeof he_code_kinds / sizeof *he_code_kinds };
 
-/* Maximum bytes of the parts of an edit, and minimum bytes of a change. */
+/* The most bytes that the parts of an edit take, and the fewest that a change takes. */
 enum {
     HE_EDIT_HEAD = 1 + 10,
     HE_CHANGE_ROOM = 20,

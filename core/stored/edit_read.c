@@ -1,4 +1,4 @@
-/* Reads a coded edit into a delta and applies that to a mesh. */
+/* edit_read.c - reads a coded edit into a delta and applies that to a mesh. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -256,8 +256,8 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     return HE_OK;
 }
 
-/* The material that was there before is identified by its mark, which the record keeps in the field
- * that records of words use for their second value. */
+/* Reads the record of a material. The material that was there before is identified by its mark,
+ * which the record keeps in the field that records of words use for their second value. */
 static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot, he_material **row,
                                    he_error *err)
 {
@@ -348,7 +348,7 @@ static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *del
     return status;
 }
 
-/* Has an added attribute no more rows than its domain will have? */
+/* Returns true if an added attribute has no more rows than its domain will have. */
 static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
 {
     switch (column->domain) {
@@ -365,8 +365,8 @@ static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
     return column->rows <= 1;
 }
 
-/* High-water marks only rise, by the rows that the edit writes; a replaced content brings its
- * own. */
+/* Checks the high-water marks after the edit. They only rise, by the rows that the edit writes; a
+ * replaced content brings its own. */
 static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                              const uint32_t issued[HE_KIND_COUNT], he_error *err)
 {

@@ -1,4 +1,4 @@
-/* Writes a delta as the bytes of stored.h. */
+/* edit_write.c - writes a delta as the bytes of stored.h. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -38,7 +38,8 @@ static he_code code_of(const he_record *r)
     return HE_CODE_ATTRIBUTE;
 }
 
-/* Does a record of the delta replace the content? Sets *renumbers if ids change their meaning. */
+/* Returns true if a record of the delta replaces the content. Sets *renumbers if ids change their
+ * meaning. */
 static bool replaces(const he_delta *delta, bool *renumbers)
 {
     bool found = false;
@@ -130,7 +131,7 @@ static unsigned char *begin_object(unsigned char *to, he_object kind)
     return he_put_u64(to, 0);
 }
 
-/* Writes the object's length, which is now known, before it. */
+/* Writes the length of an object, which is known only at its end, before the object. */
 static unsigned char *end_object(unsigned char *from, unsigned char *to)
 {
     (void)he_put_u64(from - 8, (uint64_t)(to - from));

@@ -1,4 +1,4 @@
-/* stored.h - meshes and edits as bytes that every later release can read.
+/* stored.h - writes meshes and edits as bytes that every later release can read.
  *
  * Two things have a coded form: a CONTENT, which is a whole mesh, and an EDIT, which is one delta.
  * A mesh is loaded from a content, then the edits made after it are applied; afterwards the mesh
@@ -74,10 +74,11 @@ enum { HE_STORED_VERSION = 1 };
 
 /* --- edits --- */
 
-/* Returns the most bytes that the edit can take. `after` is the mesh after the delta. */
+/* Returns the most bytes that the edit can take when it is written. `after` is the mesh after the
+ * delta. */
 size_t he_stored_edit_bound(const he_delta *delta, const he_mesh *after);
-/* Writes the edit to `to`, which has room for the bound, and returns its bytes. Allocates
- * nothing. */
+/* Writes the edit to `to`, which must have room for he_stored_edit_bound bytes, and returns the
+ * number of bytes written. Allocates nothing. */
 size_t he_stored_edit_write(const he_delta *delta, const he_mesh *after, unsigned char *to);
 /* Applies a coded edit to a mesh in the state it was made on; `issued` are the high-water marks
  * after it, indexed by kind. *out, which the caller frees, is the delta as if the edit had been
@@ -113,10 +114,10 @@ typedef struct he_stored_writer {
 } he_stored_writer;
 
 void he_stored_writer_init(he_stored_writer *writer, const he_mesh *mesh);
-/* Writes the next part, at most HE_STORED_PART_ROOM bytes, to `to`. Returns its bytes, 0 after the
- * last part. */
+/* Writes the next part, at most HE_STORED_PART_ROOM bytes, to `to`. Returns the number of bytes
+ * written, 0 after the last part. */
 size_t he_stored_writer_next(he_stored_writer *writer, unsigned char *to, unsigned *coding);
-/* Returns how many parts the whole mesh makes. */
+/* Returns into how many parts the whole mesh is cut. */
 uint64_t he_stored_parts(const he_mesh *mesh);
 
 typedef struct he_stored_reader he_stored_reader;
@@ -133,14 +134,14 @@ void he_stored_reader_free(he_stored_reader *reader);
 HE_NODISCARD he_status he_stored_reader_part(he_stored_reader *reader, unsigned coding,
                                              const unsigned char *bytes, size_t size,
                                              he_error *err);
-/* Makes the mesh, which the caller owns, after the last part.
+/* Makes the mesh, which the caller owns. It must be called after the last part was read.
  * Returns HE_CORRUPT if parts are missing. */
 HE_NODISCARD he_status he_stored_reader_end(he_stored_reader *reader, he_mesh **out, he_error *err);
 
 /* --- contents as one block: the parts, each after its coding (1 byte) and length (4 bytes) --- */
 
 size_t he_stored_content_bound(const he_mesh *mesh);
-/* Writes a content and returns its bytes. Allocates nothing. */
+/* Writes a content and returns the number of bytes written. Allocates nothing. */
 size_t he_stored_content_write(const he_mesh *mesh, unsigned char *to);
 HE_NODISCARD he_status he_stored_content_read(const unsigned char *bytes, size_t size,
                                               he_mesh **out, he_error *err);

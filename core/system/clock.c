@@ -40,8 +40,8 @@ static char *put_digits(char *at, int value, int digits)
     return at + digits;
 }
 
-/* Written by hand: the access log formats a time for each line, and the C library's functions would
- * take as long as the rest of the line. */
+/* Formats a time. It is written by hand, because the access log formats a time for each line, and
+ * the C library's functions would take as long as the rest of the line. */
 void st_clock_format(double utc, char out[ST_TIMESTAMP])
 {
     time_t seconds = (time_t)utc;

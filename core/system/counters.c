@@ -6,8 +6,8 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-/* More copies than this cost memory and save little: there are about as many counting threads as
- * cores, and a cache line that two of them share is still fast enough. */
+/* The most copies of a table. More would cost memory and save little: there are about as many
+ * counting threads as cores, and a cache line that two of them share is still fast enough. */
 enum { MOST_COPIES = 8, LINE = 64 / sizeof(uint64_t) };
 
 struct st_counters {
@@ -17,7 +17,8 @@ struct st_counters {
     _Atomic uint64_t values[];
 };
 
-/* Threads are numbered when they count for the first time. */
+/* The number of threads that have counted so far. A thread gets its number when it counts for the
+ * first time. */
 static _Atomic size_t threads;
 static _Thread_local size_t own_number; /* from 1; 0: none yet */
 

@@ -12,7 +12,7 @@
 
 enum { ST_BOUNDS = 14, ST_BUCKETS = ST_BOUNDS + 1 };
 
-/* A scale has ST_BOUNDS rising bounds. */
+/* A scale consists of ST_BOUNDS rising bounds. */
 extern const uint64_t st_scale_micros[ST_BOUNDS]; /* 100 microseconds to 300 seconds */
 extern const uint64_t st_scale_counts[ST_BOUNDS]; /* 1 to 8192, doubling */
 
@@ -26,7 +26,7 @@ static inline size_t st_bucket_of(const uint64_t scale[ST_BOUNDS], uint64_t valu
     return bucket;
 }
 
-/* Zeroed memory is an empty histogram. */
+/* A histogram. Zeroed memory is an empty one. */
 typedef struct st_histogram {
     _Atomic uint64_t buckets[ST_BUCKETS];
     _Atomic uint64_t sum; /* sum of the values */

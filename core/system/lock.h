@@ -12,7 +12,8 @@ void st_lock_read(pthread_rwlock_t *lock);
 void st_lock_write(pthread_rwlock_t *lock);
 void st_lock_mutex(pthread_mutex_t *lock);
 
-/* Counts another kind of wait for other requests, which began at `since` by st_clock_micros. */
+/* Counts a wait for other requests that is not for a lock. It began at `since` by
+ * st_clock_micros. */
 void st_lock_count(uint64_t since);
 /* Returns the microseconds that the calling thread has waited in these functions since it began. */
 uint64_t st_lock_waited(void);

@@ -14,8 +14,8 @@ static _Atomic uint64_t budget_bytes;
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
-/* Counts `size` more, unless that exceeds the budget. Counting first and subtracting on failure
- * keeps two threads from passing the limit together. */
+/* Counts `size` bytes more, unless that exceeds the budget. The bytes are added first and
+ * subtracted on failure, which keeps two threads from passing the limit together. */
 static bool try_take(size_t size)
 {
     uint64_t budget = atomic_load_explicit(&budget_bytes, memory_order_relaxed);
@@ -31,7 +31,8 @@ static bool try_take(size_t size)
     return false;
 }
 
-/* The giver is not called for allocations that it makes itself. */
+/* Takes `size` bytes from the budget, if necessary after asking the thread's giver to free memory.
+ * The giver is not called for allocations that it makes itself. */
 static bool take(size_t size)
 {
     const st_memory_giver *giver = asked;
@@ -54,7 +55,7 @@ static void give_back(size_t size)
     atomic_fetch_sub_explicit(&used, size, memory_order_relaxed);
 }
 
-/* Includes the word that the C library has before each block. */
+/* Returns the bytes of a block, including the word that the C library has before it. */
 static size_t block_bytes(void *memory)
 {
     return malloc_usable_size(memory) + sizeof(size_t);
@@ -89,7 +90,7 @@ static void *resize(void *context, void *memory, size_t size)
 
 /* A block of this size or more is a mapping of its own: growing it moves page tables and not bytes,
  * so the first edit of a large mesh does not copy it, and freeing it returns it to the system. By
- * default glibc would raise the threshold to 32 MB as blocks are freed. */
+ * default glibc would raise this threshold to 32 MB as blocks are freed. */
 enum { OWN_MAPPING_BYTES = 1 << 20 };
 
 void st_memory_install(uint64_t budget)
@@ -146,8 +147,10 @@ bool st_memory_is_full(void)
     return budget != 0 && st_memory_used() >= budget - budget / RESERVE_SHARE;
 }
 
-/* Every thread has a heap of its own, and glibc returns only what is free at the end of one. Pages
- * in between stay: after minutes of mixed requests they are more than all memory in use. */
+/* The process counts as idle if it worked at least WORKED_MICROS since memory was last returned,
+ * and less than RESTING_MICROS since the last call. Every thread has a heap of its own, and glibc
+ * returns only what is free at the end of one. Pages in between stay: after minutes of mixed
+ * requests they are more than all memory in use. */
 enum { WORKED_MICROS = 20 * 1000, RESTING_MICROS = 50 * 1000 };
 
 bool st_memory_rests(st_memory_rest *rest, uint64_t processor)

@@ -20,14 +20,15 @@
 void st_memory_install(uint64_t budget);
 void st_memory_set_budget(uint64_t budget);
 
-/* Counts `bytes` more, or fewer if negative, of memory outside the hook: the kernel's for sockets,
- * libmicrohttpd's for connections. Never refused, but it leaves less for large blocks. */
+/* Counts memory that does not come from the hook: the kernel's for sockets, libmicrohttpd's for
+ * connections. `bytes` are added, or subtracted if negative. Such memory is never refused, but
+ * leaves less for large blocks. */
 void st_memory_count(int64_t bytes);
 /* Returns the memory counted by st_memory_count. */
 uint64_t st_memory_outside(void);
 
-/* he_mem_resize for a library that cannot undo its work if memory is refused: a block beyond the
- * budget is allocated and counted too. */
+/* Resizes like he_mem_resize, for a library that cannot undo its work if memory is refused: a block
+ * beyond the budget is allocated and counted, too. */
 void *st_memory_resize_unrefused(void *memory, size_t size);
 
 /* A function that may free memory for a thread that needs it. */
@@ -38,18 +39,19 @@ typedef struct st_memory_giver {
     void *context;
 } st_memory_giver;
 
-/* Sets the giver that is called before this thread is refused memory; NULL: none. */
+/* Sets the function that is called before this thread is refused memory; NULL sets none. */
 void st_memory_ask(const st_memory_giver *giver);
 
 uint64_t st_memory_used(void);
 uint64_t st_memory_budget(void);
-/* Is so much free, with the part that is reserved for small blocks? */
+/* Returns true if this much memory is free, including the part that is reserved for small
+ * blocks. */
 bool st_memory_has(uint64_t bytes);
-/* Would a large block be refused now? */
+/* Returns true if a large block would be refused now. */
 bool st_memory_is_full(void);
 
-/* Processor time of the process at the last call, and when memory was last given back;
- * microseconds. */
+/* What st_memory_rests remembers: the processor time of the process at its last call, and when
+ * memory was last returned; in microseconds. */
 typedef struct st_memory_rest {
     uint64_t looked, trimmed;
 } st_memory_rest;

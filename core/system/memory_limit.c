@@ -7,7 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Only an overlay with many layers has a longer line in /proc/self/mountinfo. */
+/* The room for a line of /proc/self/mountinfo. Only an overlay with many layers has a longer
+ * line. */
 enum { LINE = 8192, DIGITS = 19 };
 
 /* The two versions of control groups, and the files that limit memory in each. Above memory.high
@@ -29,7 +30,7 @@ typedef struct membership {
     char path[VERSIONS][PATH_MAX];
 } membership;
 
-/* "max" and any other text that is no number mean no limit. */
+/* Reads a limit from a file. "max" and any other text that is no number mean no limit. */
 static uint64_t read_limit(const char *path)
 {
     char text[32];
@@ -75,7 +76,7 @@ static bool next_line(FILE *file, char line[LINE])
     return true;
 }
 
-/* Is `word` in a list with commas? */
+/* Returns true if `word` is in a list separated by commas. */
 static bool has_word(const char *list, const char *word)
 {
     size_t length = strlen(word);
@@ -95,7 +96,8 @@ static FILE *open_beneath(const char *root, const char *name)
     return length < 0 || (size_t)length >= sizeof path ? NULL : fopen(path, "re");
 }
 
-/* Lines are NUMBER:CONTROLLERS:PATH; that of version 2 names no controllers. */
+/* Reads the path of the process's group in each hierarchy. Lines are NUMBER:CONTROLLERS:PATH; that
+ * of version 2 names no controllers. */
 static void read_membership(const char *root, membership *m)
 {
     char line[LINE];
@@ -119,7 +121,7 @@ static void read_membership(const char *root, membership *m)
     }
 }
 
-/* Blanks and similar characters are written as \040. */
+/* Replaces the escapes of blanks and similar characters, which are written as \040. */
 static void unescape(char *text)
 {
     char *to = text;
@@ -140,7 +142,8 @@ typedef struct mount {
     char *options; /* options of the file system: in version 1 they include its controllers */
 } mount;
 
-/* NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM SOURCE OPTIONS */
+/* Parses a line of mountinfo: NUMBER PARENT DEVICE ROOT POINT OPTIONS [FIELD...] - FILESYSTEM
+ * SOURCE OPTIONS */
 static bool parse_mount(char *line, mount *m)
 {
     char *tail = strstr(line, " - "), *rest = NULL;

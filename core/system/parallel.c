@@ -28,7 +28,7 @@ struct st_parallel {
     pthread_t *threads;
 };
 
-/* Everything below runs with the lock held, except a part itself. */
+/* All functions below run with the lock held, except while they run a part itself. */
 
 static bool has_parts(const work *w)
 {

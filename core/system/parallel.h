@@ -16,11 +16,12 @@
 
 typedef struct st_parallel st_parallel;
 
-/* Returns NULL if memory or threads are out. `threads` may be 0. */
+/* Makes a pool of helping threads. Returns NULL if memory or threads are out. `threads` may be
+ * 0. */
 st_parallel *st_parallel_new(size_t threads);
-/* No thread may have work in parts any more. */
+/* Frees the pool. No thread may have work in parts any more. */
 void st_parallel_free(st_parallel *parallel);
-/* Returns the host, which lives as long as `parallel`. */
+/* Returns the pool as a host (exec.h), which lives as long as `parallel`. */
 const he_exec *st_parallel_exec(const st_parallel *parallel);
 
 #endif

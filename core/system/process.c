@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Descriptors are used rather than FILE, which would allocate memory that is not counted. */
+/* Reads a file by its descriptor. A FILE would allocate memory that is not counted. */
 static void read_text(const char *path, char *out, size_t size)
 {
     ssize_t got = -1;
@@ -46,8 +46,8 @@ static void read_memory(st_process *out)
     }
 }
 
-/* The start time is in ticks since the machine was booted. It is word 22, the 20th after the name,
- * which is in parentheses and may contain anything. */
+/* Reads when the process started. The start time is in ticks since the machine was booted. It is
+ * word 22, the 20th after the name, which is in parentheses and may contain anything. */
 static void read_start(st_process *out)
 {
     char text[1024];
@@ -66,8 +66,8 @@ static void read_start(st_process *out)
     }
 }
 
-/* Since Linux 6.2 the size of the folder is the number of descriptors; before, they are counted,
- * the descriptor of the folder itself included. */
+/* Returns the number of open descriptors. Since Linux 6.2 the size of the folder is this number;
+ * before, they are counted, and the descriptor of the folder itself is included. */
 static uint64_t count_descriptors(void)
 {
     static const char folder[] = "/proc/self/fd";

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* A fact that the system does not tell is 0. */
+/* Facts about this process. A fact that the system does not reveal is 0. */
 typedef struct st_process {
     double processor;          /* seconds of processor time */
     double started;            /* seconds since 1970 UTC */
@@ -14,7 +14,7 @@ typedef struct st_process {
     uint64_t most_descriptors; /* and the limit of them */
 } st_process;
 
-/* Reads /proc; does not wait for a disk. */
+/* Reads the facts from /proc, which does not wait for a disk. */
 void st_process_read(st_process *out);
 
 #endif

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <sys/random.h>
 
-/* getrandom fails only when interrupted by a signal; a kernel without it cannot run the daemon. */
+/* Fills bytes with random numbers. getrandom fails only when interrupted by a signal; a kernel
+ * without it cannot run the daemon. */
 static void fill(void *bytes, size_t size)
 {
     unsigned char *at = bytes;

@@ -22,7 +22,7 @@ static _Atomic uint64_t beside;
 static _Atomic uint64_t measured; /* when it was last measured */
 static _Atomic uint64_t told;     /* resident bytes when st_resident_is_beyond last returned true */
 
-/* Returns 0 if the system does not tell. */
+/* Returns the resident bytes of the process, 0 if the system does not reveal them. */
 static uint64_t resident(void)
 {
     char text[64];
@@ -33,7 +33,7 @@ static uint64_t resident(void)
     const ssize_t length = read(fd, text, sizeof text - 1);
     close(fd);
     text[length < 0 ? 0 : length] = '\0';
-    /* The first number is pages of address space, the second resident pages. */
+    /* The first number is the pages of address space, the second is the resident pages. */
     const char *second = strchr(text, ' ');
     return second == NULL ? 0 : strtoull(second, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
 }

@@ -15,20 +15,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Switches measuring on; until then the result is 0, as in a test, whose process holds other
+/* Switches measuring on. Until then the result is 0, as in a test, whose process also holds other
  * things. Must be called before the first thread. */
 void st_resident_watch(void);
 
-/* Returns the bytes last measured, at most half of the memory budget: the other half stays for
- * blocks, however small the budget is beside the program. */
+/* Returns the measured bytes that the process holds beside counted blocks, but at most half of the
+ * memory budget: the other half stays for blocks, however small the budget is beside the
+ * program. */
 uint64_t st_resident_beside(void);
 
 /* Returns memory of freed blocks, which the C library keeps, to the system, then measures. Does
  * nothing within 100 ms of the last time, because it takes the lock of each heap in turn. */
 void st_resident_measure(void);
 
-/* Is more resident than 31/32 of the budget, and more by a sixth of a thirty-second than when this
- * last returned true? */
+/* Returns true if the resident memory is more than 31/32 of the budget, and has grown by a sixth of
+ * a thirty-second since this last returned true. */
 bool st_resident_is_beyond(void);
 
 #endif

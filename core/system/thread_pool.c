@@ -6,7 +6,8 @@
 #include <string.h>
 #include <sys/prctl.h>
 
-/* Flows whose hashes have equal low bits share a stamp, and so take turns as one. */
+/* The number of stamps for flows. Flows whose hashes have equal low bits share a stamp, and so take
+ * turns as if they were one flow. */
 enum { FLOWS = 256 };
 
 enum { NAME = 16 /* with its NUL, as prctl(2) has it */ };
@@ -17,7 +18,8 @@ typedef struct waiting {
     uint64_t number; /* in the order of submission */
 } waiting;
 
-/* A heap: no task comes before its parent, which is at (i - 1) / 2. */
+/* The tasks of a share that wait, as a heap: no task comes before its parent, which is at (i - 1) /
+ * 2. */
 typedef struct queue {
     waiting *heap;
     size_t count, room;
@@ -48,7 +50,7 @@ static bool is_before(const waiting *a, const waiting *b)
     return a->stamp != b->stamp ? a->stamp < b->stamp : a->number < b->number;
 }
 
-/* Returns false if memory is out. */
+/* Makes room for one more task in a queue. Returns false if memory is out. */
 static bool make_room(queue *q)
 {
     if (q->count < q->room) {
@@ -94,7 +96,7 @@ static waiting pop(queue *q)
     return top;
 }
 
-/* --- the pool, under its lock --- */
+/* --- the pool, while its lock is held --- */
 
 static bool may_begin(const st_pool *pool, st_share share)
 {
@@ -167,7 +169,8 @@ static void *run(void *context)
             run_next(pool, share);
         }
     }
-    /* Threads may be waiting for a task of a share that will not come any more. */
+    /* Threads may be waiting for a task of a share that will not come any more, so all are
+     * woken. */
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -256,7 +259,8 @@ void st_pool_look(st_pool *pool, st_share share, st_pool_state *out)
     pthread_mutex_unlock(&pool->lock);
 }
 
-/* FNV-1a, 64 bits. Each text is added with its NUL, so no two pairs of texts give one sequence. */
+/* Adds a text to a hash by FNV-1a, 64 bits. Each text is added with its NUL, so no two pairs of
+ * texts give one sequence. */
 static uint64_t add_text(uint64_t hash, const char *text)
 {
     do {

@@ -39,7 +39,7 @@ typedef struct st_task {
 /* Makes a pool. `most_waiting` tasks of each share may wait. `name`, of at most 15 characters, is
  * what the system shows for the threads. Returns NULL if memory or threads are out. */
 st_pool *st_pool_new(const char *name, size_t threads, size_t most_waiting);
-/* Runs what is queued, then ends the threads. Accepts NULL. */
+/* Runs all tasks that are queued, then ends the threads and frees the pool, which may be NULL. */
 void st_pool_free(st_pool *pool);
 /* Runs task->work(task->context) on one of the threads. Tasks of one flow and share begin in the
  * order of their submission. Returns false if the share's queue is full, or memory is out. */
@@ -51,9 +51,9 @@ typedef struct st_pool_state {
     uint64_t refused; /* tasks refused since the start */
 } st_pool_state;
 
-/* Takes the pool's lock for a moment. */
+/* Gets the present state of a share. Takes the pool's lock for a moment. */
 void st_pool_look(st_pool *pool, st_share share, st_pool_state *out);
-/* Returns the flow of a client's requests for a mesh; either may be "". */
+/* Returns the flow to which a client's requests for a mesh belong; client and mesh may be "". */
 uint64_t st_pool_flow(const char *client, const char *mesh);
 
 #endif

@@ -57,7 +57,7 @@ static bool open_file(st_db *db, const char *file, char message[ST_SQLITE_MESSAG
     return outcome == ST_SQL_DONE || st_sqlite_explain(db, file, outcome, message);
 }
 
-/* Reports the first fault that SQLite finds. */
+/* Checks the structure of a database, and reports the first fault that SQLite finds. */
 static bool check_structure(st_db *db, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     sqlite3_stmt *s = NULL;
@@ -127,7 +127,7 @@ bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_
     return true;
 }
 
-/* Names of files that a store's folder may contain. */
+/* The names of the files that a store's folder may contain. */
 static const char *const own_names[] = {
     "hedge.db",         "hedge.db-wal",    "hedge.db-shm",
     "hedge.db-journal", "hedge.mark",      "lock",
@@ -144,8 +144,8 @@ static bool names_file_of(const char *folder, const char *own, const struct stat
            there.st_dev == status->st_dev && there.st_ino == status->st_ino;
 }
 
-/* Would the backup replace a file of a store: the one that is copied, by whatever path, or any
- * other whose folder contains the file? */
+/* Returns false if the backup would replace a file of a store: the store that is copied, by
+ * whatever path, or any other whose folder contains the file. */
 static bool may_be_backup(const char *store, const char *file, char message[ST_SQLITE_MESSAGE])
 {
     char folder[PATH_MAX], database[PATH_MAX];
@@ -166,7 +166,7 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
         file, "it would be replayed onto the backup; remove it, or name another file", message);
 }
 
-/* Free space that a backup leaves to the store, because the daemon goes on writing. */
+/* The free space that a backup leaves to the store, because the daemon goes on writing. */
 enum { SPARE_BYTES = 64 << 20 };
 
 static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESSAGE])
@@ -200,7 +200,8 @@ static bool copy_pages(st_db *from, const char *part, char message[ST_SQLITE_MES
     }
     if (outcome == ST_SQL_DONE) {
         sqlite3_backup *backup = sqlite3_backup_init(to.handle, "main", from->handle, "main");
-        /* Copies all pages in one step: the state of one moment, while other connections write. */
+        /* All pages are copied in one step, which gives the state of one moment while other
+         * connections write. */
         (void)(backup != NULL && sqlite3_backup_step(backup, -1));
         outcome = st_db_outcome(&to, backup == NULL ? sqlite3_extended_errcode(to.handle)
                                                     : sqlite3_backup_finish(backup));

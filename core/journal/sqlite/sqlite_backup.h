@@ -1,4 +1,5 @@
-/* sqlite_backup.h - stores as single files: backup beside a running daemon, inspection, restore.
+/* sqlite_backup.h - stores as single files: a backup beside a running daemon, inspection of a file,
+ * and restore.
  *
  * A backup is the state of one moment. It has its name only when it is complete: it is written as
  * NAME.part, synced, checked, then renamed.
@@ -38,10 +39,10 @@ bool st_sqlite_check_file(const char *file, char message[ST_SQLITE_MESSAGE]);
 bool st_sqlite_look(const char *path, st_sqlite_opened *out);
 
 typedef void st_say(void *context, const char *what);
-/* Checks the structure of such a journal's file and passes what is wrong with it to `say`, one line
- * each for the first hundred faults; returns how many. If there are any, `list` gives from then on
- * the meshes that can be reached, in the order in which they were made; its `after` is the last id
- * that was listed, or "". */
+/* Checks the structure of the file of a journal that st_sqlite_look has made, and passes what is
+ * wrong with it to `say`, one line for each of the first hundred faults; returns their number. If
+ * there are any, `list` gives from then on the meshes that can be reached, in the order in which
+ * they were made; its `after` is the last id that was listed, or "". */
 unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context);
 
 #endif

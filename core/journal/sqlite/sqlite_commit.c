@@ -1,4 +1,4 @@
-/* The commit thread.
+/* sqlite_commit.c - the commit thread, which writes what is queued to the database, and its states:
  *
  *     WRITES   everything queued is taken as one group (take_group) and committed (commit_group),
  *              with a slice of background work. commit_group leads to the states below
@@ -17,7 +17,8 @@ enum {
     GROUP_BYTES = 8 << 20,
     SLICE_BESIDE = 64 << 10, /* bytes of background work while records wait */
     SLICE_ALONE = 256 << 10, /* bytes otherwise: records that come meanwhile wait for it */
-    /* Records wait for a checkpoint, the longer the more pages it writes. While slices fill the
+    /* The number of pages of the log after which a checkpoint is made. Records wait for a
+     * checkpoint, the longer the more pages it writes. While slices of background work fill the
      * log, checkpoints come more often, so that one is as short as a slice. */
     CHECKPOINT_PAGES = 1000,
     CHECKPOINT_PAGES_BESIDE = 256,
@@ -139,7 +140,8 @@ static uint64_t charge_of(const st_item *item)
     return charge;
 }
 
-/* Ends the slice of a stage, which was written or never will be. The caller holds the lock. */
+/* Ends a slice of a stage (a content written in advance), which was written or never will be. The
+ * caller holds the lock. */
 static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
 {
     st_stage **at = &self->stages;
@@ -152,7 +154,8 @@ static void end_slice(st_sqlite *self, st_stage *stage, st_status status)
     pthread_cond_broadcast(&self->moved);
 }
 
-/* Sets the position up to which everything is durable or reported. The caller holds the lock. */
+/* Sets the position of the journal up to which everything is durable or reported as lost. The
+ * caller holds the lock. */
 static void move(st_sqlite *self, uint64_t position)
 {
     self->told = position;
@@ -181,8 +184,8 @@ static void stop_writing(st_sqlite *self, st_write_mode mode)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Takes the lost items from the queue: the rooms, and in FAILED all others too. The caller holds
- * the lock. */
+/* Takes the lost items from the queue: the rooms (groups of records), and in the state FAILED all
+ * others, too. The caller holds the lock. */
 static st_item *take_lost(st_sqlite *self)
 {
     st_item *lost = NULL, **lost_end = &lost, **at = &self->first;
@@ -211,7 +214,8 @@ static bool has_room(const st_sqlite *self)
     return false;
 }
 
-/* Deletes the staged contents of lost records. The caller holds the lock. */
+/* Deletes the contents that were written in advance for records that are lost. The caller holds the
+ * lock. */
 static void unstage(st_sqlite *self, st_sqlite_room *room)
 {
     for (size_t i = 0; i < room->count; i++) {
@@ -224,8 +228,8 @@ static void unstage(st_sqlite *self, st_sqlite_room *room)
     }
 }
 
-/* Loses everything queued; rooms that are still reserved are lost when they come. The caller holds
- * the lock, which is released meanwhile. */
+/* Loses everything that is queued; rooms that are still reserved are lost when they are appended.
+ * The caller holds the lock, which is released meanwhile. */
 static void lose(st_sqlite *self)
 {
     st_item *lost = take_lost(self);
@@ -355,8 +359,9 @@ static bool is_closing(st_sqlite *self)
     return closing;
 }
 
-/* Tries until the disk has accepted or refused. A group that does not fit is tried without
- * background work; a purge alone is not, because it would be due again at once. */
+/* Tries to commit a group until the disk has accepted or refused it. A group that does not fit is
+ * tried without background work; a purge alone is not tried again, because it would be due again at
+ * once. */
 static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 {
     for (unsigned tries = 1;; tries++) {
@@ -364,8 +369,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
         if (outcome == ST_SQL_FULL && g->slice > 0 && (g->first != NULL || g->stage != NULL)) {
             g->slice = 0;
         } else if (outcome == ST_SQL_DAMAGED && st_purge_gives_up(self)) {
-            /* Damage in rows that are being deleted must not stop the journal: the group is tried
-             * without that slice. */
+            /* Damage in rows that are being deleted must not stop the journal, so the group is
+             * tried without this slice of deletions. */
         } else if ((outcome == ST_SQL_NO_MEMORY || outcome == ST_SQL_BUSY) &&
                    (tries < CLOSING_TRIES || !is_closing(self))) {
             rest(self);
@@ -377,8 +382,8 @@ static st_sql insist(st_sqlite *self, group *g, st_progress *progress)
 
 static void write_mark(st_sqlite *self)
 {
-    /* If the mark is not written it names an older commit, which reveals less but is never
-     * wrong. */
+    /* If the mark cannot be written, it names an older commit. Such a mark reveals less lost data,
+     * but it is never wrong. */
     (void)st_mark_write(&self->folder, &(st_mark){self->identity.store, self->progress.commits,
                                                   self->progress.position});
 }
@@ -448,16 +453,16 @@ static bool checkpoint(st_sqlite *self, int how)
     st_histogram_add(&self->checkpoints, st_scale_micros, st_clock_micros() - begun);
     self->log_tried = self->log_pages;
     pthread_mutex_lock(&self->lock);
-    /* Loads go on waiting if loads under way may have kept this checkpoint from writing everything
-     * back. After a complete one, new loads read nothing from the log, and the next commit starts
-     * the log anew. */
+    /* Loads of meshes go on waiting if loads under way may have kept this checkpoint from writing
+     * everything back. After a complete checkpoint, new loads read nothing from the log, and the
+     * next commit starts the log anew. */
     self->log_is_long = self->mode == ST_WRITES && log_is_long(self) && self->loads_taken > 0;
     if (!self->log_is_long) {
         pthread_cond_broadcast(&self->moved);
     }
     pthread_mutex_unlock(&self->lock);
     note_refusal(self, outcome);
-    /* A full disk is no failure here, because the log is intact. */
+    /* A full disk is no failure of a checkpoint, because the log is intact. */
     return (outcome != ST_SQL_FAILED && outcome != ST_SQL_DAMAGED && st_mark_sync(&self->folder)) ||
            (stop_writing(self, ST_WRITES_FAILED), false);
 }
@@ -484,8 +489,8 @@ int st_commit_log_grew(void *context, sqlite3 *db, const char *name, int pages)
 
 /* --- the disk is full --- */
 
-/* Makes what can be done with little space: purges, and returns pages. The caller holds the lock,
- * which is released meanwhile. */
+/* Makes space on a full disk with what can be done with little space: purges rows, and returns
+ * pages. The caller holds the lock, which is released meanwhile. */
 static bool make_space(st_sqlite *self)
 {
     bool good, closing;
@@ -551,7 +556,7 @@ static void seek_space(st_sqlite *self)
 
 /* --- the thread --- */
 
-/* Has the thread something to do now? The caller holds the lock. */
+/* Returns true if the thread has something to do now. The caller holds the lock. */
 static bool has_work(const st_sqlite *self)
 {
     switch (self->mode) {
@@ -566,7 +571,7 @@ static bool has_work(const st_sqlite *self)
     return self->first != NULL || (self->losing && self->old_rooms == 0);
 }
 
-/* The caller holds the lock, which is released meanwhile. */
+/* Does the next piece of work. The caller holds the lock, which is released meanwhile. */
 static void work_once(st_sqlite *self)
 {
     if (self->mode == ST_WRITES_FAILED || self->losing) {
@@ -612,7 +617,7 @@ void *st_commit_thread(void *context)
         }
         self->idle = false;
     }
-    /* On a full disk some deletions are still queued. */
+    /* On a full disk some deletions are still queued when the thread ends. */
     free_items(self->first);
     self->first = NULL;
     self->end = &self->first;

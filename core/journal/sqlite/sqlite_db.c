@@ -12,8 +12,8 @@
 
 /* --- memory --- */
 
-/* SQLite asks for the size of its blocks, which base/mem.h does not know, so it is stored before
- * each. */
+/* SQLite asks for the size of its blocks, which base/mem.h does not know, so the size is stored
+ * before each block. */
 enum { HEADER = 16, ROUND = 8 };
 
 static void *block_resize(void *memory, int size)
@@ -89,7 +89,7 @@ bool st_db_prepare(void)
 
 /* --- connections --- */
 
-/* How long a statement waits for another program's lock. */
+/* How many milliseconds a statement waits for another program's lock. */
 enum { BUSY_MILLIS = 5000 };
 
 st_sql st_db_open(st_db *db, const char *path, int flags, const char *const *texts, size_t count)
@@ -121,7 +121,7 @@ st_sql st_db_set_cache(st_db *db, unsigned kib)
         budget == 0 || budget >= FULL_CACHE_BUDGET ? kib : kib * budget / FULL_CACHE_BUDGET;
     char text[64];
     share = share < LEAST_CACHE_KIB ? LEAST_CACHE_KIB : share;
-    /* A negative number counts KiB, a positive one pages. */
+    /* In this pragma a negative number counts KiB, a positive one pages. */
     (void)snprintf(text, sizeof text, "PRAGMA cache_size = -%u", (unsigned)share);
     return st_db_run(db, text);
 }
@@ -163,8 +163,9 @@ st_sql st_db_outcome(const st_db *db, int code)
         if (code == SQLITE_IOERR_NOMEM) {
             return ST_SQL_NO_MEMORY;
         }
-        /* SQLite distinguishes only ENOSPC, and not while it extends the -shm. A sync that fails
-         * with ENOSPC counts as failed like any other. */
+        /* SQLite distinguishes only ENOSPC among the errors of a full disk, and not while it
+         * extends the -shm, so the system's error is looked at. A sync that fails with ENOSPC
+         * counts as failed like any other. */
         if (code == SQLITE_IOERR_WRITE || code == SQLITE_IOERR_SHMSIZE) {
             const int reason = sqlite3_system_errno(db->handle);
             return reason == EDQUOT || reason == ENOSPC ? ST_SQL_FULL : ST_SQL_FAILED;

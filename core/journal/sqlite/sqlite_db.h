@@ -48,9 +48,10 @@ bool st_db_close(st_db *db);
 /* Returns SQLite's last message about the connection. */
 const char *st_db_message(const st_db *db);
 
-/* Runs a text without parameters, such as a pragma, and ignores its rows. */
+/* Runs a text of SQL without parameters, such as a pragma, and ignores its rows. */
 st_sql st_db_run(st_db *db, const char *text);
-/* Reads the first number of the first row; `otherwise` if there is none. */
+/* Runs a text of SQL and reads the first number of the first row; `otherwise` if there is no
+ * row. */
 st_sql st_db_number(st_db *db, const char *text, int64_t otherwise, int64_t *out);
 
 /* Binds the parameters of statement `which` as `format` says, a letter each, and takes the first
@@ -63,7 +64,7 @@ st_sql st_db_number(st_db *db, const char *text, int64_t otherwise, int64_t *out
 st_sql st_db_find(st_db *db, unsigned which, sqlite3_stmt **out, const char *format, ...);
 st_sql st_db_step(st_db *db, sqlite3_stmt *statement);
 void st_db_reset(sqlite3_stmt *statement); /* takes NULL */
-/* Runs a statement that returns no rows. */
+/* Runs a statement that returns no rows. Its parameters are those of st_db_find. */
 st_sql st_db_do(st_db *db, unsigned which, const char *format, ...);
 /* Turns a result code of SQLite into ST_SQL_DONE or a failure. */
 st_sql st_db_outcome(const st_db *db, int code);

@@ -82,7 +82,7 @@ void st_folder_above(const char *path, char out[PATH_MAX])
     out[length == 0 ? 1 : length] = '\0';
 }
 
-/* A new folder is durable when the folder above it is synced. */
+/* Syncs the folder above the store, which makes a new folder durable. */
 static bool sync_above(const char *path)
 {
     char above[PATH_MAX];
@@ -123,7 +123,8 @@ void st_folder_close(st_folder *folder)
 
 const char *st_folder_doubt(const st_folder *folder)
 {
-    /* Magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p, fs/smb of the kernel. */
+    /* These are magic numbers from linux/magic.h, and from fs/nfs, fs/fuse, fs/9p and fs/smb of the
+     * kernel. */
     enum { NFS = 0x6969, FUSE = 0x65735546, P9 = 0x01021997 };
     const uint32_t cifs = UINT32_C(0xff534d42), smb2 = UINT32_C(0xfe534d42);
     struct statfs system;
@@ -174,7 +175,7 @@ bool st_folder_sync(st_folder *folder)
 
 /* --- the mark --- */
 
-/* A slot: store, commits, position, 4 zeros, CRC-32C of all before. */
+/* The layout of a slot of the mark: store, commits, position, 4 zeros, CRC-32C of all before. */
 enum { SLOT = 32, SLOTS = 2, SUM_AT = 28 };
 
 bool st_mark_open(st_folder *folder)
@@ -249,8 +250,8 @@ bool st_ballast_make(st_folder *folder)
     return made;
 }
 
-/* Does the file system report free blocks, and can they be allocated? Only allocation shows a
- * quota. */
+/* Returns true if the file system reports free blocks and they can be allocated. Only allocation
+ * shows whether a quota is exhausted. */
 bool st_folder_has_space(st_folder *folder)
 {
     struct statvfs space;

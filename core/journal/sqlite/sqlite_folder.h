@@ -33,7 +33,8 @@ typedef struct st_mark {
  * false if another process has the lock, or the system refuses. */
 bool st_folder_open(st_folder *folder, const char *path);
 void st_folder_close(st_folder *folder); /* also releases the lock */
-/* Returns a warning about a file system whose locks or syncs are not reliable; "" for any other. */
+/* Returns a warning if the file system of the folder has locks or syncs that are not reliable; ""
+ * otherwise. */
 const char *st_folder_doubt(const st_folder *folder);
 
 /* Writes a message that `what`, such as "cannot make", failed with errno for a file of the folder
@@ -45,9 +46,9 @@ void st_folder_above(const char *path, char out[PATH_MAX]);
 /* Makes the path of a file in the folder. Returns false if it is too long. */
 bool st_folder_path(const st_folder *folder, const char *name, char out[PATH_MAX]);
 bool st_folder_has(const st_folder *folder, const char *name);
-/* Makes an empty file that only its owner may read, unless it exists. */
+/* Makes an empty file that only its owner may read, unless the file exists. */
 bool st_folder_make(st_folder *folder, const char *name);
-/* Does the file exist, empty or not? */
+/* Returns true if the file exists, empty or not. */
 bool st_folder_finds(const st_folder *folder, const char *name);
 /* Removes a file durably. Returns false if it still exists. */
 bool st_folder_drop(st_folder *folder, const char *name);
@@ -56,19 +57,21 @@ bool st_folder_sync(st_folder *folder);
 
 /* Opens the mark, or makes an empty one. Must be called before the other functions of the mark. */
 bool st_mark_open(st_folder *folder);
-/* Reads the newest mark that is intact. Returns false if there is none. */
+/* Reads the newest mark (the record of the last commit) that is intact. Returns false if there is
+ * none. */
 bool st_mark_read(st_folder *folder, st_mark *out);
 /* Writes the mark without waiting for the disk. */
 bool st_mark_write(st_folder *folder, const st_mark *mark);
 bool st_mark_sync(st_folder *folder);
 
-/* Has the file system some MiB of free space? */
+/* Returns true if the file system has some MiB of free space. */
 bool st_folder_has_space(st_folder *folder);
-/* Makes the ballast unless it exists. Returns false if there is no space for it. */
+/* Makes the ballast (space that is freed when the disk is full) unless it exists. Returns false if
+ * there is no space for it. */
 bool st_ballast_make(st_folder *folder);
 /* Removes the ballast. Returns false if there was none. */
 bool st_ballast_drop(st_folder *folder);
-/* Removes the ballast if the disk is too full to start; returns false if it is not. */
+/* Removes the ballast if the disk is too full to start; returns false if the disk is not. */
 bool st_ballast_drop_for_start(st_folder *folder);
 
 #endif

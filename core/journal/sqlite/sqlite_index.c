@@ -1,5 +1,5 @@
-/* Compares the table of meshes with its indexes. A mesh whose index entry is damaged would seem not
- * to exist, and another could be made under its id.
+/* sqlite_index.c - compares the table of meshes with its indexes. A mesh whose index entry is
+ * damaged would seem not to exist, and another could be made under its id.
  *
  * SQLite's integrity_check looks up each row in each index, at random places of the file: half a
  * minute for a million meshes. Here table and indexes are read sequentially. They are equal if
@@ -18,7 +18,7 @@ static const char *const texts[STATEMENTS] = {
                      "ORDER BY incarnation",
 };
 
-/* Sums over the ids and over the incarnations, each hashed with its key. */
+/* Sums over all ids and over all incarnations, each hashed with the key of its row. */
 typedef struct sums {
     uint64_t ids, incarnations;
 } sums;

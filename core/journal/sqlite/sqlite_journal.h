@@ -28,8 +28,8 @@ enum { ST_SQLITE_QUEUE = 64 << 20, ST_SQLITE_KEYS = 1 << 20 };
 
 typedef struct st_sqlite_opened {
     st_journal journal;
-    /* the store is new: the start that made it, this one or an earlier one that was killed, is not
-     * over. It contains only what that start has put in */
+    /* Whether the store is new: the start that made it, this one or an earlier one that was killed,
+     * is not over. The store then contains only what that start has put into it. */
     bool made;
     char message[ST_SQLITE_MESSAGE]; /* a warning, "" for none; after a failure the reason */
 } st_sqlite_opened;

@@ -1,9 +1,9 @@
-/* Reads stored keys of requests: those of one mesh, or of the store. */
+/* sqlite_keys.c - reads stored keys of requests: those of one mesh, or of the store. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
 
-/* The newest keys, from the day before the newest one. */
+/* Selects the newest keys, from the day before the newest one. */
 static const char of_store[] =
     "SELECT * FROM (SELECT " ST_KEPT_COLUMNS
     " FROM kept WHERE mesh = 0 AND time > (SELECT max(time) FROM kept WHERE mesh = 0) - ?1 "
@@ -52,7 +52,8 @@ st_sql st_kept_count_damaged(st_db *db, uint64_t *out)
     return outcome;
 }
 
-/* A damaged key is passed on too, so that a repeated request is not executed again. */
+/* Passes a key on. A damaged key is passed on, too, so that a repeated request is not executed
+ * again. */
 static bool give(const st_kept_row *row, bool good, st_take_key *take, void *to)
 {
     const st_kept_key key = {.key = {.text = row->text,
@@ -77,7 +78,7 @@ st_status st_sqlite_keys(void *context, const char *id, st_take_key *take, void 
     bool taken = true;
     uint64_t damaged = 0;
     if (self->only_reads) {
-        /* a journal that only reads answers no requests, and damaged keys must not hide a mesh */
+        /* A journal that only reads answers no requests, and damaged keys must not hide a mesh. */
         return ST_OK;
     }
     pthread_mutex_lock(&self->cards_lock);

@@ -1,4 +1,4 @@
-/* sqlite_message.h - writes sentences that say why something was refused. */
+/* sqlite_message.h - writes the sentences that say why something was refused. */
 #ifndef HE_JOURNAL_SQLITE_MESSAGE_H
 #define HE_JOURNAL_SQLITE_MESSAGE_H
 

@@ -1,5 +1,6 @@
-/* Notes: the state of jobs, and keys of requests that changed nothing. A note is a room without
- * records, so that it has a position among them: if it is lost, so is everything after it.
+/* sqlite_notes.c - notes: the state of jobs, and keys of requests that changed nothing. A note is a
+ * room (a queued group) without records, so that it has a position among them: if it is lost, so is
+ * everything after it.
  *
  *     accepted ----> done             by the room of the record that is the job's work: both or
  *         |            |              neither
@@ -25,7 +26,7 @@ static void texts_of(st_job *job, const char **out[JOB_TEXTS])
     }
 }
 
-/* Returns the bytes of a copy of all that the job points to. */
+/* Returns the bytes that a copy of all that the job points to takes. */
 static size_t bytes_of(const st_job *job)
 {
     st_job copy = *job;
@@ -94,7 +95,7 @@ static st_sql make_row(st_sqlite *self, const st_job *job)
                                   : outcome;
 }
 
-/* Marks the job as done, because the records of this transaction are its work. A job that is not
+/* Marks a job as done, because the records of this transaction are its work. A job that is not
  * stored, or is damaged, is skipped. */
 static st_sql end_row(st_sqlite *self, const st_job *work)
 {
@@ -134,7 +135,7 @@ st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room)
 
 /* --- reading the table --- */
 
-/* A row with a wrong checksum is skipped. */
+/* Reads all stored jobs. A row with a wrong checksum is skipped. */
 st_status st_sqlite_jobs(void *context, st_take_job *take, void *to)
 {
     st_sqlite *self = context;

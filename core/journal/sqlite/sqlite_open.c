@@ -1,4 +1,4 @@
-/* Opens and closes the store: folder, lock, database, checks, mark. */
+/* sqlite_open.c - opens and closes the store: folder, lock, database, checks, mark. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_journal.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -95,7 +95,8 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
 static bool make_store(st_sqlite *self, const char *path, const char *release,
                        st_sqlite_opened *out)
 {
-    /* Made before the database, so that no start takes a half-made store for an existing one. */
+    /* The file `fresh` is made before the database, so that no start takes a half-made store for an
+     * existing one. */
     if (!st_folder_make(&self->folder, "fresh") || !st_folder_sync(&self->folder)) {
         return st_refuse(out->message, "%s", self->folder.message);
     }
@@ -108,7 +109,7 @@ static bool make_store(st_sqlite *self, const char *path, const char *release,
     return true;
 }
 
-/* Does the database have every commit that the mark names? */
+/* Checks that the database has every commit that the mark names. */
 static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
 {
     st_mark mark;
@@ -183,14 +184,16 @@ static bool check_tables(st_sqlite *self, const char *path, st_sqlite_opened *ou
     return good;
 }
 
-/* If its key is damaged a repeated request may be executed again, so the start warns about it. */
+/* Checks the stored keys. If a key is damaged, a repeated request may be executed again, so the
+ * start warns about it. */
 static bool check_keys(st_sqlite *self, const char *path, st_sqlite_opened *out)
 {
     const st_sql outcome = st_kept_count_damaged(&self->db, &self->damaged_keys);
     return outcome == ST_SQL_DONE || st_sqlite_explain(&self->db, path, outcome, out->message);
 }
 
-/* Finds the last key given to a row; a lower one would be given again. */
+/* Finds the highest key that was ever given to a row of a table. Numbering must go on from it, or a
+ * key would be given again. */
 static st_sql last_key(st_db *db, const char *table, int64_t *out)
 {
     char text[96];
@@ -288,7 +291,7 @@ static bool clean_up(st_sqlite *self, const char *path, st_sqlite_opened *out)
         return st_sqlite_explain(&self->db, path, outcome, out->message);
     }
     const st_mark mark = {self->identity.store, self->progress.commits, self->progress.position};
-    /* The folder, and files in it, may be new. */
+    /* The folder, and files in it, may be new, so they are synced. */
     return (st_mark_write(&self->folder, &mark) && st_mark_sync(&self->folder) &&
             st_folder_sync(&self->folder)) ||
            st_refuse(out->message, "%s", self->folder.message);
@@ -381,8 +384,8 @@ static bool open_all(st_sqlite *self, const st_sqlite_options *options, st_sqlit
     if (!open_database(self, options->release, path, out) || !clean_up(self, path, out)) {
         return false;
     }
-    /* The store works without a ballast too. But if the ballast was freed to be able to start, the
-     * disk counts as full, and the space is for removals. */
+    /* The store works without a ballast (reserved space), too. But if the ballast was freed to be
+     * able to start, the disk counts as full, and the space is for removals. */
     if (!st_ballast_make(&self->folder) && full) {
         self->mode = ST_WRITES_FULL;
         self->fulls = 1;

@@ -1,7 +1,8 @@
-/* Deletes what is no longer needed: the group that makes it so writes a row to the table `purge`,
- * and the deletion follows in slices when there is time. A row whose checksum is wrong is skipped:
- * keeping too much is safe, deleting too much is not. What lies in damaged pages stays for ever:
- * the mesh is removed, and its key is never used again. */
+/* sqlite_purge.c - deletes what is no longer needed. The transaction that makes something
+ * unnecessary writes a row to the table `purge`, and the deletion follows in slices when there is
+ * time. A row whose checksum is wrong is skipped: keeping too much is safe, deleting too much is
+ * not. What lies in damaged pages stays for ever: the mesh is removed, and its key is never used
+ * again. */
 #include "journal/sqlite/sqlite_state.h"
 
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before)
@@ -63,7 +64,7 @@ st_sql st_purge_dead_stages(st_sqlite *self)
 
 /* --- in slices --- */
 
-/* Finds the last of the first records that make up so many bytes; 0 if there are none. */
+/* Finds the last of the first records that make up `bytes` bytes; 0 if there are none. */
 static st_sql end_of_slice(st_sqlite *self, const st_purge_row *row, size_t bytes, uint64_t *last)
 {
     sqlite3_stmt *s;
@@ -117,7 +118,7 @@ static st_sql next_row(st_sqlite *self, st_purge_row *out, bool *found)
 }
 
 /* Returns free pages to the file system if there are many; some stay for new rows. While the disk
- * is full all are returned. */
+ * is full all free pages are returned. */
 enum { SPARE_PAGES = 4096, SPARE_SHARE = 4 };
 
 static st_sql shrink(st_sqlite *self, bool *done)

@@ -1,4 +1,5 @@
-/* Rooms: reserves them, appends records, and queues them for the commit thread. */
+/* sqlite_queue.c - rooms, which are the memory for groups of records: reserves them, appends
+ * records, and queues them for the commit thread. */
 #include "base/mem.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -15,8 +16,8 @@ st_sqlite_room *st_room_of(st_item *item)
 static bool size_of_room(const st_room_need *need, size_t *out)
 {
     size_t heads, entries;
-    /* One head more than records, because the head of the record with the body is written directly
-     * before the body. */
+    /* There is one head more than records, because the head of the record with the body is written
+     * directly before the body. */
     return !__builtin_mul_overflow(need->records + 1, (size_t)ST_FRAME_HEAD, &heads) &&
            !__builtin_mul_overflow(need->records, sizeof(st_queued), &entries) &&
            !__builtin_add_overflow(heads, entries, out) &&
@@ -24,7 +25,7 @@ static bool size_of_room(const st_room_need *need, size_t *out)
            !__builtin_add_overflow(*out, need->bytes, out);
 }
 
-/* The caller holds the lock. */
+/* Decides whether a group of `size` bytes is accepted now. The caller holds the lock. */
 static st_status admit(const st_sqlite *self, size_t size, bool freeing)
 {
     if (self->mode == ST_WRITES_FAILED) {
@@ -75,7 +76,7 @@ st_status st_sqlite_reserve(void *context, const st_room_need *need, st_room **o
     return ST_OK;
 }
 
-/* Counts one room less in use. The caller holds the lock. */
+/* Counts one reserved room less. The caller holds the lock. */
 static void come_back(st_sqlite *self, const st_sqlite_room *room)
 {
     self->rooms--;
@@ -145,8 +146,8 @@ void st_room_key(st_sqlite_room *room, const st_kept_key *kept)
                               .made = key->of_store};
 }
 
-/* The answer does not exist yet: until it is noted, the status is the one that the record
- * implies. */
+/* Fills in what the room says about a job. The answer of the job does not exist yet: until it is
+ * noted, the status is the one that the record implies. */
 static void fill_job(st_sqlite_room *room, const st_record *record, bool made)
 {
     enum { CREATED = 201, NO_CONTENT = 204 };

@@ -1,4 +1,4 @@
-/* Reads meshes: cards by one connection, loads by ST_LOADS others. */
+/* sqlite_read.c - reads meshes: cards by one connection, loads by ST_LOADS others. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -21,7 +21,7 @@ static const char *const texts[STATEMENTS] = {
     [COMMIT] = "COMMIT",
 };
 
-/* The present state of a load. */
+/* How far the load of a mesh is. */
 typedef enum stage_of_load {
     AT_BASE,
     AT_BASE_PARTS,   /* parts of a base in rows of their own */
@@ -57,7 +57,7 @@ enum { CACHE_KIB = 2 << 10 };
 static st_sql open_one(st_db *db, const char *path)
 {
     st_sql outcome = st_db_open(db, path, SQLITE_OPEN_READONLY, texts, STATEMENTS);
-    /* Without a mapping: with one, a bad sector would raise SIGBUS. */
+    /* The file is not mapped into memory, because a bad sector would then raise SIGBUS. */
     if (outcome == ST_SQL_DONE) {
         outcome = st_db_run(db, "PRAGMA mmap_size = 0");
     }
@@ -85,7 +85,7 @@ bool st_readers_close(st_sqlite *self)
     return closed;
 }
 
-/* Waits until a connection is free and the log is short enough. */
+/* Waits until a connection for loading is free and the write-ahead log is short enough. */
 static st_load_slot *take_slot(st_sqlite *self)
 {
     pthread_mutex_lock(&self->lock);
@@ -127,7 +127,7 @@ st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row)
     return row->card.damage[0] == '\0' ? ST_OK : ST_DAMAGED;
 }
 
-/* A journal that only reads gives damaged meshes too. */
+/* Finds the card of a mesh. A journal that only reads also gives damaged meshes. */
 static st_status find_card(st_sqlite *self, st_db *db, const char *id, st_mesh_row *row)
 {
     sqlite3_stmt *s;
@@ -196,7 +196,8 @@ st_status st_sqlite_holdings(void *context, st_take_holding *take, void *to)
 
 /* --- damage --- */
 
-/* Finds the damage of a mesh. Returns NULL if none was found. The caller holds the lock. */
+/* Finds damage of a mesh that was found by a load. Returns NULL if there is none. The caller holds
+ * the lock. */
 static st_finding *find_finding(st_sqlite *self, uint64_t incarnation, uint64_t base)
 {
     for (size_t i = 0; i < ST_FINDINGS; i++) {
@@ -218,7 +219,7 @@ static void note_finding(st_sqlite *self, const st_finding *noted)
     pthread_mutex_unlock(&self->lock);
 }
 
-/* Adds the damage that was found after the row was written. */
+/* Adds to a card the damage that was found after its row was written. */
 static st_status add_finding(st_sqlite *self, st_mesh_row *row)
 {
     st_card *card = &row->card;
@@ -333,7 +334,7 @@ void st_sqlite_shut(st_reader *reader)
     }
 }
 
-/* Fills a piece from its frame and, for what the frame lacks, from the card. */
+/* Fills in a piece from its frame and, for what the frame lacks, from the card of the mesh. */
 static void fill_piece(st_reader *reader, st_piece_kind kind, st_piece *out)
 {
     const st_card *card = &reader->row.card;
@@ -367,7 +368,7 @@ static st_status read_frame(st_reader *reader, const unsigned char *bytes, size_
     return ST_OK;
 }
 
-/* Finds the snapshot of that record, to read it part by part.
+/* Finds the snapshot with the content of record `number`, to read it part by part.
  * Returns ST_ABSENT if there is none. */
 static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
 {
@@ -396,7 +397,8 @@ static st_status find_snapshot(st_reader *reader, uint64_t number, bool facts)
     return ST_OK;
 }
 
-/* A coding that this release does not know is left for core/stored, which reports it. */
+/* Decompresses a part. A coding that this release does not know is left for core/stored, which
+ * reports it. */
 static st_status unpack(st_reader *reader, st_piece *piece)
 {
     const char *why = "";
@@ -417,7 +419,7 @@ static st_status unpack(st_reader *reader, st_piece *piece)
                          (unsigned long long)reader->part, (unsigned long long)reader->number, why);
 }
 
-/* Reads the next part of the snapshot; after the last, *out stays as it is. */
+/* Reads the next part of the snapshot; after the last part, *out stays as it is. */
 static st_status read_part(st_reader *reader, bool *got, st_piece *out)
 {
     st_db *db = &reader->slot->db;
@@ -461,8 +463,8 @@ static st_status read_part(st_reader *reader, bool *got, st_piece *out)
     return status;
 }
 
-/* Reads the next part of a content in one block: each part is after its coding and length
- * (stored.h). */
+/* Reads the next part of a content that is stored as one block: each part comes after its coding
+ * and length (stored.h). */
 static st_status read_inline_part(st_reader *reader, bool *got, st_piece *out)
 {
     he_cursor *c = &reader->inline_parts;
@@ -495,7 +497,7 @@ static uint64_t parts_in(he_cursor c)
     return parts;
 }
 
-/* Reads a base that is a record with the content in its own row. */
+/* Reads a base (the record from which a mesh is loaded) that has the content in its own row. */
 static st_status read_inline_base(st_reader *reader)
 {
     const uint64_t number = reader->row.base;
@@ -530,7 +532,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
 {
     st_status status = find_snapshot(reader, reader->row.base, true);
     reader->at = AT_BASE_PARTS;
-    /* If the table of snapshots cannot be read, the record may have its content inline. */
+    /* If the table of snapshots cannot be read, the record may still have its content in its own
+     * row. */
     if (status == ST_ABSENT || (status == ST_DAMAGED && reader->journal->salvage.on)) {
         status = read_inline_base(reader);
         reader->at = AT_INLINE_PARTS;
@@ -545,7 +548,8 @@ static st_status read_base(st_reader *reader, st_piece *out)
     return status;
 }
 
-/* After the last record: is it the one that the card names as the last? */
+/* Ends the load after the last record: checks that it is the one that the card names as the
+ * last. */
 static st_status end_of_records(st_reader *reader, st_piece *out)
 {
     const st_mesh_row *row = &reader->row;
@@ -597,7 +601,7 @@ static st_status read_record(st_reader *reader, st_piece *out)
                            (unsigned long long)number);
         }
         reader->at = AT_RECORD_PARTS;
-        /* Only tells the store that there is a stage; the pointer is never used. */
+        /* This pointer is never used; it only shows the store that there is a stage. */
         out->record.stage = (st_stage *)reader;
         out->parts = reader->parts_left;
         out->record.body = NULL;

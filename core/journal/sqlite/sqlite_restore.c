@@ -1,4 +1,4 @@
-/* Replaces a store by a backup: the steps of sqlite_backup.h. */
+/* sqlite_restore.c - replaces a store by a backup, in the steps that sqlite_backup.h lists. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 #include "system/clock.h"
@@ -35,7 +35,8 @@ static bool copy_bytes(st_folder *folder, const char *file, int from, int to)
     return got == 0 || cannot_read(folder, file);
 }
 
-/* Removes what a killed restore left: SQLite would replay its journal into the next copy. */
+/* Removes the copy that a killed restore left, because SQLite would replay its journal into the
+ * next copy. */
 static bool remove_copy(st_folder *folder)
 {
     static const char *const names[] = {"restored.db-journal", "restored.db-wal", "restored.db-shm",
@@ -91,7 +92,7 @@ static st_sql draw_incarnations(st_db *db)
         const bool good = st_mesh_row_read(s, &row);
         st_db_reset(s);
         row.card.incarnation = st_random();
-        /* A damaged row stays damaged. */
+        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
         const uint32_t sum = st_mesh_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, MESH_PUT, "iii", row.key, row.card.incarnation, (uint64_t)sum);
         if (outcome != ST_SQL_DONE) {
@@ -115,7 +116,7 @@ static st_sql take_tags_of_keys(st_db *db)
         const bool good = st_kept_row_read(s, &row_texts, &row);
         st_db_reset(s);
         row.incarnation = row.revision = row.metadata = 0;
-        /* A damaged row stays damaged. */
+        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
         const uint32_t sum = st_kept_row_sum(&row) ^ (good ? 0 : 1);
         outcome = st_db_do(db, KEPT_PUT, "itti", row.mesh, row.holder, row.text, (uint64_t)sum);
         if (outcome == ST_SQL_DONE && sqlite3_changes(db->handle) == 0) {
@@ -139,7 +140,7 @@ static st_sql take_tags_of_jobs(st_db *db)
         }
         const bool good = st_job_read(s, &job);
         job.headers[ST_JOB_TAG] = "";
-        /* A damaged row stays damaged. */
+        /* A row that was damaged keeps a wrong checksum, so that it stays damaged. */
         const uint32_t sum = st_job_sum(&job) ^ (good ? 0 : 1);
         st_db_reset(s);
         outcome = st_db_do(db, JOB_PUT, "ti", job.id, (uint64_t)sum);
@@ -154,7 +155,7 @@ static st_sql take_tags_of_jobs(st_db *db)
 
 static st_sql renew(st_db *db)
 {
-    /* Leaves WAL mode, so that no part of the copy is in a file beside it. */
+    /* The copy leaves WAL mode, so that no part of it is in a file beside it. */
     st_sql outcome = st_db_run(db, "PRAGMA journal_mode = DELETE");
     if (outcome == ST_SQL_DONE) {
         outcome = st_schema_raise(db);
@@ -190,7 +191,7 @@ static bool renew_copy(st_folder *folder)
     return good && st_sqlite_check_file(path, folder->message);
 }
 
-/* --- putting it in place --- */
+/* --- putting the copy in place of the store --- */
 
 static bool sync_name(st_folder *folder, const char *name, int flags)
 {
@@ -282,11 +283,12 @@ bool st_sqlite_finish_restore(st_folder *folder)
 
 static bool restore(st_folder *folder, const char *path, const char *file, char before[NAME_BYTES])
 {
-    /* An interrupted restore is finished before this one begins, because its note names a copy. */
+    /* An interrupted restore is finished before this one begins, because its file `restoring` names
+     * a copy. */
     bool good = st_folder_open(folder, path);
     if (good && st_folder_finds(folder, "restoring") && st_folder_finds(folder, "restored.db") &&
         !read_note(folder, before)) {
-        /* The note was not written completely, so nothing was moved. */
+        /* The file `restoring` was not written completely, so nothing was moved. */
         good = unlinkat(folder->folder, "restoring", 0) == 0 && st_folder_sync(folder);
     }
     /* Only the file itself is copied: changes in a log beside it would be left out. */

@@ -1,4 +1,4 @@
-/* Applies records to the tables, within the commit thread's transaction. */
+/* sqlite_rows.c - applies records to the tables, within the commit thread's transaction. */
 #include "journal/sqlite/sqlite_state.h"
 
 #include <string.h>
@@ -57,7 +57,7 @@ const char *const st_writer_texts[ST_WRITER_STATEMENTS] = {
     [ST_SQL_STATE_PUT] = "UPDATE state SET commits = ?1, position = ?2, meshes = ?3, sum = ?4",
 };
 
-/* --- heads: the cache of mesh rows --- */
+/* --- heads, which are cached rows of meshes --- */
 
 static st_sql make_row(st_sqlite *self, const st_mesh_row *row)
 {
@@ -95,7 +95,8 @@ static bool holds(const st_head *head, uint64_t incarnation)
     return head->row.key != 0 && head->row.card.incarnation == incarnation;
 }
 
-/* Finds the slot of a mesh's head; a dirty head of another mesh in it is written first. */
+/* Finds the slot of the cache for a mesh; if it holds the changed row of another mesh, that is
+ * written first. */
 static st_sql place_of(st_sqlite *self, uint64_t incarnation, st_head **out)
 {
     *out = &self->heads.slots[incarnation % ST_HEADS];
@@ -173,7 +174,7 @@ st_sql st_heads_flush(st_sqlite *self)
 
 /* --- records --- */
 
-/* Works also if the row is damaged: the index has its key. */
+/* Removes a mesh. It works even if the mesh's row is damaged, because the index has its key. */
 static st_sql remove_mesh(st_sqlite *self, uint64_t incarnation)
 {
     st_head *head;
@@ -216,7 +217,7 @@ static st_sql make_mesh(st_sqlite *self, const st_queued *entry, st_head **out)
     return outcome;
 }
 
-/* Writes the record's own row, and the row of its stage. */
+/* Writes the row of a record, and the row of its staged content. */
 static st_sql add_frame(st_sqlite *self, st_head *head, const st_queued *entry, uint64_t chain)
 {
     const bool is_base = entry->barrier && !entry->staged_edit &&
@@ -304,7 +305,8 @@ static st_sql keep_key(st_sqlite *self, const st_sqlite_room *room, const st_hea
     return outcome == ST_SQL_DONE ? trim_keys(self, &row, sum) : outcome;
 }
 
-/* Stores the key of a request that changed nothing; its mesh may have been removed meanwhile. */
+/* Stores the key of a request that changed nothing; the mesh of the request may have been removed
+ * meanwhile. */
 static st_sql add_note(st_sqlite *self, const st_sqlite_room *room)
 {
     st_head *head = NULL;

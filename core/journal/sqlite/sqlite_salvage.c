@@ -1,6 +1,6 @@
-/* Reads files whose structure is damaged: reports the faults, and finds meshes without indexes. The
- * table of meshes is searched by its keys; if a page of it cannot be read, each following key is
- * tried until one is in a page that can. */
+/* sqlite_salvage.c - reads files whose structure is damaged: reports the faults, and finds meshes
+ * without indexes. The table of meshes is searched by its keys; if a page of it cannot be read,
+ * each following key is tried until one is in a page that can be read. */
 #include "journal/sqlite/sqlite_backup.h"
 #include "journal/sqlite/sqlite_state.h"
 
@@ -16,7 +16,7 @@ static const char *const texts[STATEMENTS] = {
 
 /* --- what is wrong --- */
 
-/* Passes on each line of what SQLite found. */
+/* Passes each line of what SQLite found on to `say`. */
 static unsigned tell_lines(const char *text, st_say *say, void *context)
 {
     unsigned told = 0;
@@ -110,7 +110,7 @@ static int64_t last_key(st_db *db)
     return found > counted ? found : counted;
 }
 
-/* Reads the next row that can be read.
+/* Reads the next row of a mesh that can be read.
  * Returns ST_SQL_DONE after the last. */
 static st_sql next_row(st_db *db, int64_t after, st_mesh_row *out)
 {

@@ -8,8 +8,8 @@ static const char *const tables[] = {
     "CREATE TABLE meta(name TEXT PRIMARY KEY, value, sum INTEGER NOT NULL) WITHOUT ROWID",
     "CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), commits INTEGER NOT NULL, "
     "position INTEGER NOT NULL, meshes INTEGER NOT NULL, sum INTEGER NOT NULL)",
-    /* A key belongs to one incarnation and is never used again. `fence` and `node` are always the
-     * values given here. */
+    /* The key of a mesh's row belongs to one incarnation and is never used again. The columns
+     * `fence` and `node` always have the values given here. */
     "CREATE TABLE mesh(key INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, "
     "name TEXT NOT NULL, incarnation INTEGER NOT NULL UNIQUE, origin INTEGER NOT NULL, "
     "metadata INTEGER NOT NULL, revision INTEGER NOT NULL, record INTEGER NOT NULL, "
@@ -18,7 +18,7 @@ static const char *const tables[] = {
     "boundary INTEGER NOT NULL, bytes INTEGER NOT NULL, base INTEGER NOT NULL, "
     "damage TEXT NOT NULL, fence INTEGER NOT NULL DEFAULT 0, node TEXT NOT NULL DEFAULT '', "
     "holder TEXT NOT NULL DEFAULT '', sum INTEGER NOT NULL)",
-    /* One tree for all meshes, so that small records share pages. */
+    /* The records of all meshes are in one tree, so that small records share pages. */
     "CREATE TABLE record(mesh INTEGER, number INTEGER, bytes BLOB NOT NULL, "
     "PRIMARY KEY(mesh, number)) WITHOUT ROWID",
     "CREATE TABLE snapshot(key INTEGER PRIMARY KEY AUTOINCREMENT, mesh INTEGER NOT NULL, "
@@ -66,7 +66,8 @@ static uint32_t add_time(uint32_t sum, double time)
     return st_crc32c(sum, &time, sizeof time);
 }
 
-/* Adds the NUL too, so that two texts never give the same bytes as another two. */
+/* Adds a text to a checksum, with its NUL, so that two texts never give the same bytes as another
+ * two. */
 static uint32_t add_text(uint32_t sum, const char *text)
 {
     return st_crc32c(sum, text, strlen(text) + 1);
@@ -307,7 +308,7 @@ st_sql st_schema_make(st_db *db, const st_identity *identity)
     return outcome == ST_SQL_DONE ? st_db_run(db, "COMMIT") : outcome;
 }
 
-/* Reads the version.
+/* Reads the version of the schema.
  * Returns ST_SQL_DAMAGED if there never was such a version. */
 static st_sql read_version(st_db *db, int64_t *out)
 {
@@ -352,7 +353,7 @@ st_sql st_schema_check(st_db *db)
     return outcome;
 }
 
-/* Reads the number of that name, or with `text` the text. */
+/* Reads a value of the table of facts by its name: a number, or, if `text` is not NULL, a text. */
 static st_sql get_meta(st_db *db, const char *name, uint64_t *word, char *text)
 {
     sqlite3_stmt *s;

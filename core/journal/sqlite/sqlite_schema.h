@@ -28,17 +28,18 @@ typedef struct st_progress {
     uint64_t commits, position, meshes;
 } st_progress;
 
-/* A mesh's row. The card has its facts; `origin` is the number that its chain began with, `chain`
- * the chain of the next record, `base` the number of the record that the mesh is loaded from. */
+/* The row of a mesh. The card has the mesh's facts; `origin` is the number that its chain of hashes
+ * began with, `chain` is the chain of the next record, `base` is the number of the record from
+ * which the mesh is loaded. */
 typedef struct st_mesh_row {
     int64_t key;
     st_card card;
     uint64_t origin, chain, base;
 } st_mesh_row;
 
-/* A snapshot's row: a whole content in parts, of the mesh after record `number`. If it belongs to
- * no mesh, `process` is staging it. `facts` is a frame (record_bytes.h), `chain` the chain of the
- * record after it. */
+/* The row of a snapshot: a whole content in parts, of the mesh after record `number`. If it belongs
+ * to no mesh yet, `process` is the process that is writing it. `facts` is a frame (record_bytes.h),
+ * `chain` is the chain of the record after it. */
 typedef struct st_snapshot_row {
     int64_t key, mesh;
     uint64_t number, revision, parts, process, chain;
@@ -59,7 +60,7 @@ typedef struct st_purge_row {
     uint64_t before;
 } st_purge_row;
 
-/* A stored key's row; the mesh is 0 for keys of the store. */
+/* The row of a stored key; its mesh is 0 if the key belongs to the store. */
 typedef struct st_kept_row {
     int64_t mesh;
     const char *holder, *text, *id;
@@ -83,8 +84,8 @@ uint32_t st_purge_row_sum(const st_purge_row *row);
 uint32_t st_kept_row_sum(const st_kept_row *row);
 uint32_t st_job_sum(const st_job *job);
 
-/* Bytes of a part's row before the part: checksum (4), coding (1). The checksum covers the numbers
- * of snapshot and part too. */
+/* The bytes of a part's row before the part itself: checksum (4), coding (1). The checksum also
+ * covers the numbers of the snapshot and of the part. */
 enum { ST_PART_HEAD = 5 };
 uint32_t st_part_sum(int64_t snapshot, uint64_t part, const unsigned char *bytes, size_t size);
 
@@ -104,10 +105,12 @@ enum { ST_KEPT_COUNT = 12 }; /* columns above */
 
 /* Reads a mesh's row. Returns false if the checksum is wrong; the row is filled in then too. */
 bool st_mesh_row_read(sqlite3_stmt *statement, st_mesh_row *out);
-/* `facts` is borrowed from the statement. */
+/* Reads the row of a snapshot; `facts` is borrowed from the statement. Returns false if the
+ * checksum is wrong. */
 bool st_snapshot_row_read(sqlite3_stmt *statement, st_snapshot_row *out);
 bool st_purge_row_read(sqlite3_stmt *statement, st_purge_row *out);
-/* Texts and body are borrowed from the statement. */
+/* Reads the row of a job; its texts and body are borrowed from the statement. Returns false if the
+ * checksum is wrong. */
 bool st_job_read(sqlite3_stmt *statement, st_job *out);
 
 /* --- the whole database --- */
@@ -119,7 +122,7 @@ st_sql st_schema_raise(st_db *db);
 /* Compares the texts of the tables with those of the version.
  * Returns ST_SQL_DAMAGED if they differ. */
 st_sql st_schema_check(st_db *db);
-/* Reads the identity.
+/* Reads the identity of the store.
  * Returns ST_SQL_DAMAGED if rows are missing or their checksums are wrong. */
 st_sql st_identity_read(st_db *db, st_identity *out);
 st_sql st_progress_read(st_db *db, st_progress *out);

@@ -1,5 +1,6 @@
-/* Stages contents and large edits, in parts. The thread that stages codes one slice at a time, and
- * waits while the commit thread writes the slice beside the records of other threads. */
+/* sqlite_stage.c - stages contents and large edits: writes them to disk in parts before they are
+ * published. The thread that stages codes one slice of parts at a time, and waits while the commit
+ * thread writes the slice beside the records of other threads. */
 #include "base/mem.h"
 #include "journal/part_packing.h"
 #include "journal/sqlite/sqlite_state.h"
@@ -9,14 +10,14 @@
 
 /* --- the thread that stages --- */
 
-/* What is staged: a content, or what is left of a coded edit. */
+/* What is being staged: a content, or the rest of a coded edit. */
 typedef struct source {
     he_stored_writer *content;
     const unsigned char *edit;
     size_t left;
 } source;
 
-/* Codes the next part. Returns its bytes, 0 after the last. */
+/* Codes the next part of what is staged. Returns the number of its bytes, 0 after the last part. */
 static size_t next_part(source *from, unsigned char *to, unsigned *coding)
 {
     if (from->content != NULL) {
@@ -30,7 +31,7 @@ static size_t next_part(source *from, unsigned char *to, unsigned *coding)
     return size;
 }
 
-/* Returns false after the last part. */
+/* Fills a slice with parts. Returns false after the last part. */
 static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
 {
     *slice = (st_slice){.count = 0};
@@ -48,7 +49,7 @@ static bool fill_slice(st_slice *slice, source *from, st_packer *packer)
     return true;
 }
 
-/* The caller holds the lock. */
+/* Returns why the journal refuses to stage now, or ST_OK. The caller holds the lock. */
 static st_status refusal(const st_sqlite *self)
 {
     return self->mode == ST_WRITES ? ST_OK : self->mode == ST_WRITES_FULL ? ST_FULL : ST_FAILED;
@@ -184,7 +185,7 @@ st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most)
         (void)he_put_u32(bytes, st_part_sum(key, part, bytes + 4, size - 4));
         outcome = st_db_do(&self->db, ST_SQL_PART_MAKE, "iib", key, part, bytes, size);
     }
-    /* Counted only after the transaction was committed: st_stage_written. */
+    /* The parts count as written only after the transaction was committed: st_stage_written. */
     stage->writing = outcome == ST_SQL_DONE ? count : 0;
     stage->new_key = key;
     return outcome;
@@ -212,9 +213,9 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
     return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
 }
 
-/* Reads the record after which the stage is the content. If the one meant was lost, another record
- * may have its number; *same tells. `chain` is the record's own, `next` that of the record after
- * it. */
+/* Reads the record after which the stage is the content of the mesh. If that record was lost,
+ * another one may have its number; *same says whether it is the right one. `chain` is the chain of
+ * that record, `next` that of the record after it. */
 static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head, bool *same,
                           uint64_t *chain, uint64_t *next)
 {
@@ -237,7 +238,8 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     return ST_SQL_DONE;
 }
 
-/* A large edit also has a row among the snapshots, which is no content. */
+/* Returns true if the row of a snapshot is a content. A large edit also has a row among the
+ * snapshots, which is no content. */
 static bool is_content(const st_snapshot_row *row)
 {
     st_frame frame;
@@ -245,7 +247,8 @@ static bool is_content(const st_snapshot_row *row)
            !frame.record.staged_edit;
 }
 
-/* Finds the newest base whose revision is not after `needed`; 0 if that is the present one. */
+/* Finds the newest base (record that a mesh can be loaded from) whose revision is not after
+ * `needed`; 0 if that is the present one. */
 static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, uint64_t *out)
 {
     sqlite3_stmt *s;
@@ -275,7 +278,7 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     } else if (outcome != ST_SQL_DONE) {
         return outcome;
     }
-    /* Nothing before the base can be loaded. */
+    /* A mesh can be loaded only from its base or a later record, so an older stage is useless. */
     if (head != NULL && stage->number > head->row.base) {
         outcome = read_record(self, stage, head, &same, &chain, &next);
     }
@@ -298,7 +301,7 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     if (outcome == ST_SQL_DONE && base != 0) {
         head->row.base = base;
-        /* The records that were damaged are read and checked again. */
+        /* Records that were found damaged before are read and checked again. */
         head->row.card.damage[0] = '\0';
         st_head_touch(self, head);
         outcome = st_purge_before(self, head->row.key, base, false);

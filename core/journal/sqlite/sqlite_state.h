@@ -1,4 +1,7 @@
-/* sqlite_state.h - the private structs and functions of core/journal/sqlite.
+/* sqlite_state.h - the private structs and functions of core/journal/sqlite. A ROOM is the reserved
+ * memory for one group of records, a STAGE a content that is written to disk before it is
+ * published, a SLICE a piece of background work that fits beside a commit, a HEAD a cached row of a
+ * mesh, to PURGE is to delete what is no longer needed.
  *
  *     sqlite_queue.c    reserve, append: rooms on their way to the commit thread
  *     sqlite_commit.c   the commit thread: groups, checkpoints, faults of the disk
@@ -9,7 +12,7 @@
  *     sqlite_read.c     reads meshes
  *     sqlite_salvage.c  reads meshes from a file whose structure is damaged
  *     sqlite_index.c    compares the table of meshes with its indexes at the start
- *     sqlite_open.c     the start and the end
+ *     sqlite_open.c     opens and closes the store
  *
  * One mutex guards what threads share (`shared` below); the writing connection and its state belong
  * to the commit thread. */
@@ -55,7 +58,7 @@ typedef struct st_queued {
     bool staged_edit;
 } st_queued;
 
-/* What a room says about a job. */
+/* What a room (the memory of a group of records) says about a job. */
 typedef enum st_job_word {
     ST_JOB_UNNAMED,
     ST_JOB_WORK,  /* its records are the work of the job */
@@ -63,8 +66,8 @@ typedef enum st_job_word {
     ST_JOB_LEAVES /* the job is to be deleted */
 } st_job_word;
 
-/* Allocated as one block with entries, heads of frames and bytes. A room without records is a
- * note. */
+/* A room, allocated as one block with its entries, the heads of frames and their bytes. A room
+ * without records is a note. */
 typedef struct st_sqlite_room {
     st_room room; /* the part that other files know */
     st_item item;
@@ -85,7 +88,7 @@ typedef struct st_sqlite_room {
     st_queued entries[];
 } st_sqlite_room;
 
-/* Damage found while loading a mesh from this base. */
+/* Damage that was found while a mesh was loaded from this base. */
 typedef struct st_finding {
     uint64_t incarnation, base;
     char damage[ST_DAMAGE];
@@ -96,7 +99,8 @@ typedef struct st_condemned {
     st_finding finding;
 } st_condemned;
 
-/* The parts of a stage go to the disk in slices of this many. */
+/* The parts of a stage (a content written in advance) go to the disk in slices of this many
+ * parts. */
 enum { ST_SLICE_PARTS = 16 };
 
 typedef struct st_slice {
@@ -111,13 +115,14 @@ struct st_stage {
     uint64_t parts; /* parts in all, and parts written */
     uint64_t written;
     st_slice *slice; /* the slice being written or filled; NULL after the last */
-    /* parts of the slice in the present transaction, in which the key is new_key */
+    /* The parts of the slice that are in the present transaction, in which the snapshot's key is
+     * new_key. */
     size_t writing;
     int64_t new_key;
     bool waits; /* its slice waits to be written */
     st_status status;
     st_stage *next; /* the next stage that waits */
-    /* Set if the item is a rebase. */
+    /* Set only if the item is a rebase, which makes a staged content the base of a mesh. */
     uint64_t incarnation, number, revision, needed;
     double time;
     unsigned char facts[ST_FRAME_HEAD];
@@ -126,7 +131,7 @@ struct st_stage {
 
 /* --- the commit thread's cache of mesh rows --- */
 
-/* A mesh that was written to, so that its row need not be read for each record. */
+/* A mesh that was written to, cached so that its row need not be read for each record. */
 typedef struct st_head {
     st_mesh_row row; /* key 0: the slot is empty */
     bool dirty;      /* the row on the disk is older, */
@@ -152,7 +157,8 @@ enum { ST_LOADS = 2 }; /* connections, and so loads at once */
  * journal that only reads it is never committed. The oldest findings are dropped. */
 enum { ST_FINDINGS = 64 };
 
-/* A damaged file is searched by keys: the meshes listed last are remembered with theirs. */
+/* When a damaged file is searched by keys, this many of the meshes listed last are remembered with
+ * their keys. */
 enum { ST_SALVAGE_PAGE = 64 };
 
 typedef struct st_salvager {
@@ -207,7 +213,7 @@ struct st_sqlite {
     st_finding findings[ST_FINDINGS];
     unsigned last_finding;
 
-    /* Written by the commit thread, read by any. */
+    /* Measurements that the commit thread writes and any thread reads. */
     st_histogram syncs, commits, groups, checkpoints;
 
     pthread_mutex_t telling; /* held while the listener is called */
@@ -223,7 +229,7 @@ struct st_sqlite {
     st_heads heads;
     st_progress progress;             /* the last commit */
     int64_t last_mesh, last_snapshot; /* keys given last */
-    /* Pages of the -wal after the last commit; other threads may read it. */
+    /* The pages of the write-ahead log after the last commit; other threads may read this. */
     _Atomic uint64_t log_pages;
     uint64_t log_tried; /* pages after the last checkpoint that did not write all of them back */
     uint64_t keys;      /* rows of `kept`, at most */
@@ -241,11 +247,11 @@ uint64_t st_sqlite_count(void *self);
 void st_sqlite_health(void *self, st_health *out);
 void st_sqlite_measure(void *self, st_journal_measures *out);
 void st_sqlite_listen(void *self, const st_journal_listener *listener);
-/* Fills in the key of the room. */
+/* Copies the Idempotency-Key of a request into the room. */
 void st_room_key(st_sqlite_room *room, const st_kept_key *key);
-/* Queues the room, and gives it so many positions. Returns the last one. */
+/* Queues the room, and gives it `positions` positions of the journal. Returns the last one. */
 uint64_t st_room_push(st_sqlite *self, st_sqlite_room *room, uint64_t positions);
-/* Appends an item to the queue. The caller holds the lock. */
+/* Appends an item to the queue of the commit thread. The caller holds the lock. */
 void st_queue_put(st_sqlite *self, st_item *item);
 st_sqlite_room *st_room_of(st_item *item);
 /* Frees a room that was committed or lost, and its share of the queue. The caller holds the
@@ -295,13 +301,13 @@ enum st_writer_statement {
     ST_SQL_STATE_PUT,
     ST_WRITER_STATEMENTS
 };
-/* Finds the head of a mesh; *out is NULL if there is no such mesh.
+/* Finds the head (the cached row) of a mesh; *out is NULL if there is no such mesh.
  * Returns ST_SQL_DAMAGED if its row is damaged. */
 st_sql st_head_find(st_sqlite *self, uint64_t incarnation, st_head **out);
 /* Marks the row as changed. */
 void st_head_touch(st_sqlite *self, st_head *head);
 void st_heads_forget(st_sqlite *self);
-/* Writes all rows that changed. */
+/* Writes all heads (cached rows of meshes) that have changed. */
 st_sql st_heads_flush(st_sqlite *self);
 st_sql st_rows_add_room(st_sqlite *self, st_sqlite_room *room);
 st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned);
@@ -309,7 +315,7 @@ st_sql st_rows_condemn(st_sqlite *self, const st_condemned *condemned);
 /* --- sqlite_notes.c --- */
 st_status st_sqlite_note(void *self, const st_note *note, uint64_t *position);
 st_status st_sqlite_jobs(void *self, st_take_job *take, void *context);
-/* Stores what the room says about a job. To be called within a transaction. */
+/* Stores what the room says about a job. It must be called within a transaction. */
 st_sql st_notes_add_job(st_sqlite *self, const st_sqlite_room *room);
 
 /* --- sqlite_stage.c --- */
@@ -317,29 +323,29 @@ st_status st_sqlite_stage(void *self, const he_mesh *content, st_stage **out);
 st_status st_sqlite_stage_edit(void *self, const unsigned char *bytes, size_t size, st_stage **out);
 void st_sqlite_unstage(void *self, st_stage *stage);
 void st_sqlite_rebase(void *self, st_stage *stage, const st_record *facts, uint64_t needed);
-/* To be called within a transaction. A stage becomes the content of a record: the row of the stage,
- * which has the key of `row` and belongs to no mesh, is replaced by `row`. */
+/* Makes a staged content the content of a record: the row of the stage, which has the key of `row`
+ * and belongs to no mesh, is replaced by `row`. It must be called within a transaction. */
 st_sql st_stage_adopt(st_sqlite *self, const st_snapshot_row *row);
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage);
 st_sql st_stage_drop(st_sqlite *self, const st_stage *stage);
-/* Writes up to `most` parts of the slice, at least one. */
+/* Writes up to `most` parts of the stage's slice, at least one. */
 st_sql st_stage_write(st_sqlite *self, st_stage *stage, size_t most);
-/* Called after the transaction was committed. */
+/* Counts the parts of a stage as written; called after the transaction was committed. */
 void st_stage_written(st_stage *stage);
 
 /* --- sqlite_purge.c: functions to be called within a transaction --- */
 st_sql st_purge_add(st_sqlite *self, st_purge_kind kind, int64_t key, uint64_t before);
-/* Purges what is before record `base`, from which the mesh is loaded from now on. `is_inline`: the
- * record contains the content itself. */
+/* Purges what is before record `base`, from which the mesh is loaded from now on. `is_inline` says
+ * that the record itself contains the content. */
 st_sql st_purge_before(st_sqlite *self, int64_t mesh, uint64_t base, bool is_inline);
-/* Purges everything of a mesh that was removed. */
+/* Purges everything that belongs to a mesh that was removed. */
 st_sql st_purge_mesh(st_sqlite *self, int64_t mesh);
-/* Deletes about so many bytes. Sets *done when nothing is left. */
+/* Deletes about `bytes` bytes of what is to be purged. Sets *done when nothing is left. */
 st_sql st_purge_slice(st_sqlite *self, size_t bytes, bool *done);
-/* Called after a transaction that met damage. Returns whether the damage was in the slice; the next
- * slice then skips it. */
+/* Called after a transaction that met damage. Returns true if the damage was in the slice of
+ * purging; the next slice then skips it. */
 bool st_purge_gives_up(st_sqlite *self);
-/* Deletes contents that an earlier process was staging when it ended. */
+/* Deletes contents that an earlier process was writing in advance when it ended. */
 st_sql st_purge_dead_stages(st_sqlite *self);
 
 /* --- sqlite_read.c --- */
@@ -349,10 +355,10 @@ void st_sqlite_shut(st_reader *reader);
 void st_sqlite_condemn(st_reader *reader, const char *damage);
 st_status st_sqlite_list(void *self, const char *after, st_card *out, size_t limit, size_t *count);
 st_status st_sqlite_holdings(void *self, st_take_holding *take, void *context);
-/* Reads a mesh's row as a card.
- * Returns ST_DAMAGED if the card says so, or its checksum is wrong. */
+/* Reads the row of a mesh as a card.
+ * Returns ST_DAMAGED if the card says that the mesh is damaged, or if its checksum is wrong. */
 st_status st_sqlite_read_card(sqlite3_stmt *s, st_mesh_row *row);
-/* --- sqlite_salvage.c: functions that need the lock of `cards` --- */
+/* --- sqlite_salvage.c: functions that the caller must call with the lock of `cards` --- */
 /* Lists the next meshes that can be reached, up to `limit` or ST_SALVAGE_PAGE; none after the
  * last. */
 st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t limit, size_t *count);
@@ -360,8 +366,8 @@ st_sql st_salvage_list(st_sqlite *self, bool from_start, st_card *out, size_t li
  * Returns ST_SQL_DONE if it is none of them. */
 st_sql st_salvage_find(st_sqlite *self, st_db *reader, const char *id, st_mesh_row *out);
 /* --- sqlite_keys.c --- */
-/* Reads a key's row; its texts are in `texts`. Returns false if the checksum is wrong: the key then
- * counts as damaged. */
+/* Reads the row of a stored key; its texts are in `texts`. Returns false if the checksum is wrong:
+ * the key then counts as damaged. */
 bool st_kept_row_read(sqlite3_stmt *statement, st_kept_texts *texts, st_kept_row *row);
 /* Checks all stored keys and counts the damaged ones. */
 st_sql st_kept_count_damaged(st_db *db, uint64_t *out);
@@ -373,12 +379,13 @@ bool st_readers_close(st_sqlite *self);
 /* --- sqlite_open.c --- */
 void st_sqlite_begun(void *self);
 void st_sqlite_close(void *self);
-/* Returns NULL if memory is out. Freeing it closes everything that was opened for it. */
+/* Makes the state of a store. Returns NULL if memory is out. Freeing it closes everything that was
+ * opened for it. */
 st_sqlite *st_sqlite_new(const st_sqlite_options *options);
 void st_sqlite_free(st_sqlite *self);
 st_journal st_sqlite_filled(st_sqlite *self); /* fills in its functions */
-/* Is it a store of a version that `release` knows? If not, `message` is a sentence about `path`.
- * *empty says that it has no tables yet. */
+/* Checks that the database is a store of a version that `release` knows. If not, `message` is a
+ * sentence about `path`. *empty says that it has no tables yet. */
 bool st_sqlite_check_version(st_db *db, const char *path, const char *release, bool *empty,
                              char message[ST_SQLITE_MESSAGE]);
 /* Writes a sentence about a statement that failed on the database at `path`; returns false. */
@@ -386,8 +393,8 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
                        char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_backup.c --- */
-/* Has the file no -wal or -journal beside it, which SQLite would replay into it? If it has one,
- * `message` says so and ends with `advice`. */
+/* Checks that the file has no -wal or -journal beside it, which SQLite would replay into it. If it
+ * has one, `message` says so and ends with `advice`. */
 bool st_sqlite_has_no_log(const char *file, const char *advice, char message[ST_SQLITE_MESSAGE]);
 
 /* --- sqlite_index.c --- */
