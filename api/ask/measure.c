@@ -26,8 +26,8 @@ typedef struct measure {
     /* Measures one element; NULL if `many` is used for that, too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
     /* Measures the listed elements, or, if `of` is NULL, all live elements in the order of ids. If
-     * it is NULL, elements are measured one by one. `most` limits the sum of the squared numbers of
-     * corners of the faces around listed elements. */
+     * this function is missing (NULL), elements are measured one by one. `most` limits the sum of
+     * the squared numbers of corners of the faces around listed elements. */
     he_status (*many)(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
                       uint64_t most, double *out, he_error *err);
 } measure;

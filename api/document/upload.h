@@ -21,8 +21,8 @@ bool api_upload_end(api_exchange *x);
 /* Returns how many elements building the mesh will handle, for api_run_long. It must be called
  * after api_upload_end has returned true. */
 uint64_t api_upload_elements(const api_exchange *x);
-/* Is the number of elements a guess? A file that api_upload_build reads as a whole may expand a few
- * bytes to many elements. */
+/* Returns true if the number of elements is only a guess: a file that api_upload_build reads as a
+ * whole may expand a few bytes to many elements. */
 bool api_upload_is_guessed(const api_exchange *x);
 bool api_upload_build(api_exchange *x, he_mesh **out);
 /* Returns the name in the document or in ?name=, or NULL. */

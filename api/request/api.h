@@ -165,7 +165,7 @@ void api_watch_worker(api_exchange *exchange,
 /* Sets the problem that the client gets instead of HE_CANCELLED. The callback `tell` calls it
  * before it returns false. */
 void api_give_up(api_exchange *exchange, int code, const char *text);
-/* May the request become a job if its client prefers that? */
+/* Returns true if the request may become a job if its client prefers that. */
 bool api_can_be_job(const api_exchange *exchange);
 /* Returns the cost of the work, after API_WORK or API_JOB and before the work begins. */
 api_load api_load_of(const api_exchange *exchange);

@@ -16,7 +16,7 @@
 bool api_coded_body(api_exchange *x);
 /* Reads which codings the client accepts into x->codings, or refuses with 406. */
 bool api_coded_accept(api_exchange *x);
-/* Does the answer depend on Accept-Encoding? */
+/* Returns true if the answer depends on Accept-Encoding. */
 bool api_coded_varies(const api_exchange *x);
 /* Compresses the complete answer. If there is no memory for that, the answer stays uncompressed. */
 void api_coded_answer(api_exchange *x);

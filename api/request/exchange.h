@@ -110,7 +110,7 @@ struct api_exchange {
     bool is_cold;      /* the mesh is not in memory; it is looked for after the body arrived */
     st_mesh_info info; /* filled by read_begin, write_begin and write_commit */
     bool has_info;
-    /* the answer may show more of the store than `info`: see `shown` of api_answer */
+    /* Whether the answer may show more of the store than `info`: see `shown` of api_answer. */
     bool shows_all;
     uint64_t since;      /* all records up to this position were durable when the exchange began */
     st_write write;      /* of the mesh; a claim outlives the handler that began it */
@@ -173,10 +173,11 @@ bool api_write_claim(api_exchange *x, const api_in *expected);
  * (api_publish). Returns false with the problem filled and nothing changed if the journal has no
  * space, or if a claimed mesh was deleted meanwhile. */
 bool api_write_commit(api_exchange *x, const char *ops);
-/* Do If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info? */
+/* Returns true if If-Match, If-None-Match and the expected revision (NULL: none) hold for x->info;
+ * otherwise fills the problem. */
 bool api_preconditions_hold(api_exchange *x, const uint64_t *expected);
-/* Do the preconditions hold for a PUT to a mesh that is absent (If-None-Match: * does, If-Match
- * does not)? */
+/* Returns true if the preconditions hold for a PUT to a mesh that does not exist: If-None-Match: *
+ * does, If-Match does not. */
 bool api_precondition_absent(api_exchange *x);
 
 /* --- work --- */
@@ -191,14 +192,15 @@ void api_run_long(api_exchange *x, void (*handler)(api_exchange *x), bool costly
 /* Returns the seconds that the client will wait; longer work becomes a job. Negative: all work
  * becomes a job. HUGE_VAL: no work can. */
 double api_patience(const api_exchange *x);
-/* Must work that takes this many seconds become a job? */
+/* Returns true if work that takes this many seconds must become a job. */
 bool api_wants_job(const api_exchange *x, double seconds);
-/* Should work on this many elements (or bytes) leave the worker? Returns false in api_work. */
+/* Returns true if work on this many elements (or bytes) should leave the worker. Returns false in
+ * api_work. */
 bool api_is_costly(const api_exchange *x, uint64_t amount, uint64_t threshold);
 /* Returns the number of ids of vertices, half-edges and faces, dead ones included: the cost of work
  * on the whole mesh. */
 uint64_t api_elements_of(const he_mesh *mesh);
-/* Should work on the whole mesh leave the worker? Returns false in api_work. */
+/* Returns true if work on the whole mesh should leave the worker. Returns false in api_work. */
 bool api_is_large(const api_exchange *x, const he_mesh *mesh);
 
 /* --- answers: call one of these, once --- */

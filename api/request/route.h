@@ -87,7 +87,7 @@ enum {
     API_INTERRUPTS = 256, /* allowed during a long edit of the mesh */
     API_REHEARSED = 512,  /* takes `dry_run`: an answer may describe a state that does not exist */
     API_UNLIMITED = 8192, /* not counted by limits of clients: monitoring must get in */
-    /* the answer repeats that of another request, which may have had no tag */
+    /* The answer repeats that of another request, which may have had no ETag. */
     API_TAG_OF_OTHERS = 4096,
     /* Answers show nothing that is stored, so they wait for no journal; the same holds for those
      * with API_FIXED. */
@@ -113,8 +113,8 @@ typedef struct api_route {
     /* Chooses a reader by x->media_in, before the body of an upload arrives. NULL if there is
      * nothing to choose. */
     void (*begin)(api_exchange *x);
-    /* what `begin` reads: NONE; CARD, which is x->info; or LOCKED. If the mesh is absent or not in
-     * memory, it reads nothing */
+    /* What the function `begin` reads of the mesh: NONE; CARD, which is x->info; or LOCKED. If the
+     * mesh is absent or not in memory, it reads nothing. */
     api_reads begin_reads;
     void (*body)(api_exchange *x, const char *bytes, size_t length);
     /* Reads the document into x->state before the mesh is obtained; NULL if `cost` or `run` reads

@@ -57,8 +57,8 @@ typedef struct he_face_shape {
 } he_face_shape;
 
 he_face_shape he_face_measure(const he_mesh *m, he_face f);
-/* These functions find one of them each. he_face_normal returns false, with zero, for a degenerate
- * face. */
+/* Each of these functions finds one property of a face. he_face_normal returns false, with zero,
+ * for a degenerate face. */
 bool he_face_normal(const he_mesh *m, he_face f, he_vec3 *out);
 double he_face_area(const he_mesh *m, he_face f);
 he_vec3 he_face_centroid(const he_mesh *m, he_face f);

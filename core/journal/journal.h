@@ -138,8 +138,8 @@ typedef struct st_journal {
     /* Two random words, stored with the meshes: hashes of requests are keyed with them. */
     uint64_t secret[2];
 
-    /* Reserves a room. Never waits. A group larger than the queue is accepted when the queue is
-     * empty.
+    /* Reserves a room: memory for a group of records, and a place in the queue. Never waits. A
+     * group larger than the queue is accepted when the queue is empty.
      * Returns ST_BEHIND if the queue is full.
      * Returns ST_FULL or ST_FAILED if the disk is full or failed.
      * Returns ST_NO_MEMORY if memory is out.

@@ -120,9 +120,9 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* Notes that one word went from `before` to `after`, net; `attribute` is NULL unless it is a word
- * of an attribute. Rows that died or were born are noted as modified too; keep_modified drops them
- * at the end. */
+/* Records that one word went from `before` to `after`, over all deltas; `attribute` is NULL unless
+ * it is a word of an attribute. Elements that were created or deleted are recorded as modified,
+ * too; keep_modified drops them at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
                            uint32_t column, uint32_t row, uint32_t before, uint32_t after,
                            he_error *err)
@@ -209,8 +209,8 @@ typedef struct words {
     size_t slot_count;
 } words;
 
-/* Notes a record that added or dropped a column. The delta owns the column that is not in the mesh
- * now. A slot beyond those of the mesh belongs to a content that was replaced. */
+/* Registers a record that added or dropped a column. The delta owns the column that is not in the
+ * mesh now. A slot beyond those of the mesh belongs to a content that was replaced. */
 static void note_slot(words *w, const he_change_part *part, const he_record *r)
 {
     if (r->row >= w->slot_count) {

@@ -45,7 +45,7 @@ typedef struct he_marks {
     const he_column *locked[HE_KIND_COUNT]; /* indexed by HE_VERTEX, HE_EDGE, HE_FACE */
 } he_marks;
 
-/* Returns true if it is a bool column of one component with that name. */
+/* Returns true if the column is a bool column of one component with that name. */
 bool he_is_mark(const he_column *column, const char *name);
 /* Finds the mark of that domain and name. Returns NULL if the mesh has none. */
 const he_column *he_mark_find(const he_mesh *m, he_kind domain, const char *name);

@@ -68,8 +68,8 @@ static void meet(const ray *r, const he_bvh *tree, const he_mesh *m, uint32_t tr
         x[k] = p[r->x] - r->origin[r->x] - r->shear_x * z[k];
         y[k] = p[r->y] - r->origin[r->y] - r->shear_y * z[k];
     }
-    /* Both faces beside an edge compute exactly these two products for it, so they agree on which
-     * side of the edge the ray passes: there is no crack between them. */
+    /* The two faces beside an edge compute exactly these two products for it, so they agree on
+     * which side of the edge the ray passes: there is no crack between them. */
     double side[3];
     for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3, j = (k + 2) % 3;

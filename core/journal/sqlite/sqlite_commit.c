@@ -28,7 +28,7 @@ enum {
     CLOSING_TRIES = 50
 };
 
-/* The content of one transaction. */
+/* The items of the queue that are written in one transaction. */
 typedef struct group {
     st_item *first, *last;
     uint64_t records /* records and notes */, position, made, removed;
