@@ -89,8 +89,8 @@ static void zigzag(uint32_t n, he_vec3 *out)
 static void spiral(uint32_t n, he_vec3 *out)
 {
     uint32_t half = n / 2;
-    /* This is the largest number of turns for which the sides of a turn do not cross the next
-     * one. */
+    /* The spiral gets the largest number of turns for which the sides of a turn do not cross the
+     * next one. */
     double turns = fmin(40, cbrt(0.03 * half * half));
     for (uint32_t i = 0; i < half; i++) {
         double angle = TURN * turns * i / half, radius = 1 + angle / TURN;

@@ -105,7 +105,7 @@ static void put_number(draft *d, const he_param *p)
     }
     bool ranged = (p->flags & HE_RANGE) != 0 && p->max - p->min < 1e6;
     double low = ranged ? p->min : 0, high = ranged ? p->max : 1;
-    /* a large tolerance would merge the whole mesh */
+    /* the tolerance is kept small, because a large one would merge the whole mesh */
     high = strcmp(p->name, "tolerance") == 0 ? 0.05 : high;
     put(d, "%.17g", low + (high - low) * (0.01 + 0.98 * md_unit(d->random)));
 }

@@ -226,8 +226,8 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     assert_int_equal(journal.staged_edits, 0);
     staging_for = b;
     bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
-    /* This many operations need a claim on the mesh because of the rows they change, whether they
-     * run on a worker or as a job. */
+    /* A list of API_CLAIM_EDITS operations changes so many rows that it needs a claim on the mesh,
+     * whether it runs on a worker or as a job. */
     splits(b, API_CLAIM_EDITS);
     assert_int_equal(journal.staged_edits, 1);
     bench_free(b);

@@ -35,7 +35,7 @@ static float float_at(const char *p)
     return value;
 }
 
-/* An answer of GET .../geometry, taken apart. */
+/* The parts of an answer to GET .../geometry: its header and its arrays. */
 typedef struct arrays {
     bench_reply reply;
     uint64_t revision, layout;
@@ -274,7 +274,7 @@ static void test_each_allocation_failing(void **state)
     (void)state;
     pg_mesh pg;
     api_bench *b = bench_new();
-    /* This polygon is star-shaped and concave: a fan of triangles from one of its corners would be
+    /* The polygon is a concave star, so a fan of triangles from one of its corners would be
      * wrong. */
     pg_make(&pg, "01234567", 0);
     for (unsigned v = 0; v < 8; v++) {

@@ -635,7 +635,7 @@ static void a_finer_mesh_is_one_step_of_the_history(void **state)
     bench_done(bench_expect(200, history_post(b, "redo", "{\"steps\":2}")));
     char *again = dump(b, 0);
     assert_string_equal(again, after);
-    /* Ids issued by the undone edits must not be issued again. */
+    /* Ids that were issued by edits which are undone must not be issued again. */
     bench_done(bench_expect(200, history_post(b, "undo", "{\"steps\":3}")));
     r = bench_expect(200, history_post(b, "edits", "{\"op\":\"face_poke\",\"face\":2}"));
     const cJSON *results = cJSON_GetObjectItem(r.json, "results");

@@ -648,7 +648,8 @@ static void starve(const char *method, const char *target, const char *body)
             assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
             bench_reply_free(&r);
         }
-        /* After each of these outcomes the mesh must be writable. */
+        /* Whether the request was refused, the job failed or it succeeded, the mesh must be
+         * writable afterwards. */
         send(200, "POST", "/v1/meshes/m/edits", POKE);
         bench_free(bench);
         bench = NULL;

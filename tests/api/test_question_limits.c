@@ -21,7 +21,7 @@ static void put(api_bench *b, const char *document)
     bench_reply_free(&r);
 }
 
-/* A cube, and vertex 8 by itself. */
+/* A document of a cube and of vertex 8, which no face has. */
 static const char cube[] =
     "{\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1],[5,5,5]],"
     "\"faces\":[[3,2,1,0],[4,5,6,7],[5,4,0,1],[6,5,1,2],[7,6,2,3],[4,7,3,0]]}";
@@ -202,7 +202,7 @@ static const refusal bad_questions[] = {
      "/crease"},
     {NULL, "{\"measure\":\"angle\",\"of\":{\"halfedge\":4},\"crease\":1}", 400, "unknown_member",
      "/crease"},
-    /* rays, nearest points, intersections */
+    /* mistakes in rays, nearest points and intersections */
     {NULL, "{\"ray\":{\"origin\":[0,0,0]}}", 400, "missing_member", "/ray"},
     {NULL, "{\"ray\":{\"origin\":[0,0],\"direction\":[0,0,1]}}", 400, "bad_value", "/ray/origin"},
     {NULL, "{\"ray\":{\"origin\":[0,0,0],\"direction\":[0,-0.0,0]}}", 400, "bad_value",

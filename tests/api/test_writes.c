@@ -653,8 +653,8 @@ static void long_work_with_a_small_mesh_leaves_the_worker(void **state)
     assert_false(body.failed);
     assert_int_equal(step_of(b, "/v1/meshes/d/edits", body.bytes), API_WORK);
     api_text_empty(&body);
-    /* Each of these operations welds two vertices on the rim, and visits all elements around the
-     * hub. */
+    /* Each operation of the next list welds two vertices on the rim, and visits all elements around
+     * the hub. */
     api_text_add_string(&body, "{\"dry_run\":true,\"ops\":[");
     for (int i = 0; i < 1000; i++) {
         api_text_add_format(&body, "%s{\"op\":\"vertex_weld\",\"vertices\":[%d,%d]}",

@@ -55,7 +55,8 @@ int client_connect(const daemon_process *d, int buffer);
  * `half_close` closes our direction after sending. */
 char *client_raw(const daemon_process *d, const char *bytes, size_t length, int answers,
                  bool half_close);
-/* Returns the status of the first answer in such bytes, 0 if there is none. */
+/* Returns the status of the first answer in the bytes that client_raw has returned, 0 if there is
+ * none. */
 int client_raw_status(const char *bytes);
 
 #endif

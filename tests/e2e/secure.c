@@ -87,8 +87,8 @@ static bool take_from_outside(relay *r)
     if (got < 0 && comes_later(got)) {
         return true;
     }
-    /* Whether the daemon ended the connection in order or cut it off: what has come is passed on
-     * first. */
+    /* The daemon may have ended the connection in order or cut it off: in both cases the bytes that
+     * have come are passed on first. */
     p->at = 0;
     p->end = got > 0 ? (size_t)got : 0;
     p->ended = got <= 0;

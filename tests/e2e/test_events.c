@@ -340,8 +340,8 @@ static long resident_kilobytes(const daemon_process *d)
     return kilobytes;
 }
 
-/* Each event has some 50 kB, and there are many more than the buffers between daemon and client
- * hold. */
+/* Events of some 50 kB are made while the client reads nothing, many more than the buffers between
+ * daemon and client hold: the daemon must drop them and tell the client to fetch the mesh anew. */
 static void who_reads_nothing_is_sent_to_fetch_anew(void **state)
 {
     (void)state;

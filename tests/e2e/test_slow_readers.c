@@ -230,8 +230,8 @@ static double counted(client *c)
     return bytes;
 }
 
-/* Each look at the counters is a request, so that the waiting is bounded by a number of requests
- * and not by time. */
+/* The test waits by sending requests for the counters, so that the waiting is bounded by a number
+ * of requests and not by time. */
 static void what_readers_leave_in_sockets_is_little_and_counted(void **state)
 {
     (void)state;

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* The lexer refuses longer numbers and names only in a text that comes in pieces, so such inputs
- * are left out. */
+/* Numbers and names longer than this are refused only in a text that comes in pieces, so longer
+ * inputs are cut off here. */
 enum { MOST = HE_JSON_NAMES };
 
 void fuzz_one(const uint8_t *bytes, size_t size)

@@ -83,8 +83,8 @@ static uint64_t play_vertex_split_corners(const md_call *c, or_mesh *o, const he
     if (he_origin(m, a).i != he_origin(m, b).i) {
         return OR_BIT(HE_DIFFERENT_ORIGINS);
     }
-    /* These are the vertices that the move takes along. At a bow-tie (a vertex with several fans of
-     * faces) the order of the fans is hedge's choice, so it is read from hedge's mesh. */
+    /* The new vertex takes the edges to the vertices `moved`. At a bow-tie (a vertex with several
+     * fans of faces) the order of the fans is hedge's choice, so it is read from hedge's mesh. */
     for (he_halfedge h = a; h.i != b.i; h = he_turn_ccw(m, h)) {
         moved[count++] = he_target(m, h).i;
     }

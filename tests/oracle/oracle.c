@@ -288,8 +288,8 @@ bool or_closes_beside(const or_mesh *o, uint32_t v, uint32_t x, uint32_t y)
     return x == y && or_fans(o, v) > 1;
 }
 
-/* Returns whether a mesh can have such faces around v: one closed fan, or any number of open
- * ones. */
+/* Returns whether a mesh can have the faces around v: they must be one closed fan, or any number of
+ * open ones. */
 static bool fans_can_be_held(const or_mesh *o, uint32_t v)
 {
     uint32_t degree = or_degree(o, v);

@@ -520,8 +520,8 @@ static void only_compressed_data_lets_a_body_unfold(void **state)
         free(named.data);
         free(after.data);
     }
-    /* Each body may be decompressed to a first megabyte whatever its size. Many small members or
-     * frames must not get this allowance again and again. */
+    /* The first megabyte of a decompressed body is allowed whatever its compressed size. Many small
+     * members or frames in one body must not get this allowance again and again. */
     for (size_t c = 0; c < 2; c++) {
         bytes part = zeros_in(both[c], 200000), coded = {0};
         for (size_t i = 0; i < 20; i++) {

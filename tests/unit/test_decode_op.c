@@ -15,7 +15,8 @@ static const struct {
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"by\":[0,0,1]}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":[1,2],\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[2,1,0]}", HE_OK, ""},
-    /* these are refused by the operation and not by the decoder */
+    /* the next two lists of vertices are invalid, but the operation refuses them and not the
+     * decoder */
     {"{\"op\":\"face_add\",\"vertices\":[0,0]}", HE_OK, ""},
     {"{\"op\":\"face_add\",\"vertices\":[]}", HE_OK, ""},
     {"{\"op\":\"vertex_split\",\"vertex\":0,\"left\":1,\"right\":null,\"to\":[0,0,0]}", HE_OK, ""},
@@ -23,7 +24,7 @@ static const struct {
     {"{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}", HE_OK, ""},
     {"{\"op\":\"face_delete\",\"face\":1,\"keep_isolated\":true}", HE_OK, ""},
     {"{\"op\":\"edge_collapse\",\"halfedge\":1,\"t\":1}", HE_OK, ""},
-    /* named sets, whose elements are looked up after decoding */
+    /* elements named by a set of the mesh ("selected"), which is looked up after decoding */
     {"{\"op\":\"face_delete\",\"faces\":{\"selected\":true}}", HE_OK, ""},
     {"{\"op\":\"delaunay\",\"edges\":{\"a b\":true}}", HE_OK, ""},
     {"{\"op\":\"vertex_move\",\"vertices\":{\"s\":true},\"to\":[[0,0,1],[1,1,1]]}", HE_OK, ""},

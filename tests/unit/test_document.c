@@ -436,7 +436,7 @@ static void text_is_one_item_a_line(void **state)
 static void a_large_document_is_cut_anywhere(void **state)
 {
     (void)state;
-    /* This strip of quads is written to a document larger than the writer's buffer. */
+    /* The mesh is a strip of quads whose document is larger than the writer's buffer. */
     enum { QUADS = 5000 };
     he_soup soup;
     he_mesh *mesh = NULL;

@@ -110,7 +110,7 @@ static void test_cut_leaves_other_fans_alone(void **state)
     assert_face(m, 0, "012");
     assert_face(m, 1, "023");
     assert_int_equal(he_vertex_fans(m, (he_vertex){0}), 2);
-    /* The side of half-edge 2e keeps both vertices. */
+    /* The face at half-edge 2e of the cut edge keeps both old vertices. */
     assert_int_equal(he_origin(m, (he_halfedge){2 * e}).i + he_target(m, (he_halfedge){2 * e}).i,
                      5);
     assert_false(he_is_boundary_halfedge(m, (he_halfedge){2 * e}));

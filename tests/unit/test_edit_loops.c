@@ -314,7 +314,8 @@ static void test_unequal_loops_are_not_twisted(void **state)
     }
 }
 
-/* All corners of one loop are nearest to one and the same corner of the other loop. */
+/* The corners of one loop are all nearest to the same corner of the other loop, so that many
+ * triangles of the bridge meet there. */
 static void test_a_crowd_is_bridged(void **state)
 {
     (void)state;

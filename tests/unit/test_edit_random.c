@@ -237,7 +237,8 @@ static void test_random_edits(void **state)
     script_add_columns(other);
     for (uint64_t round = 0; round < rounds; round++) {
         random_state = seed + round;
-        /* The last line that is printed shows how to repeat a failure. */
+        /* Each round prints how to repeat it, so that the last line printed before a failure shows
+         * this. */
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)random_state);
         he_mesh *m = script_mesh(starts[round % (sizeof starts / sizeof *starts)], NULL);
         script_add_columns(m);

@@ -179,7 +179,7 @@ static void test_cube_bevel(void **state)
     he_vec3 p = he_position(m, end);
     assert_true(p.x == 0.25 && p.y == 0 && p.z == 0);
     he_results_clear(&results);
-    /* The width is limited to the longest that is possible. */
+    /* A width beyond the longest one that is possible is reduced to it. */
     script_prepare(m, "vertex_bevel vertex=6 width=1e300");
     assert_counts(m, 12, 18, 8);
     p = he_position(m, (he_vertex){6});
@@ -344,7 +344,7 @@ static void test_survivors(void **state)
     assert_ids(&e.changes.deleted[HE_EDGE], "4");
     assert_face(e.m, 0, "012");
     assert_face(e.m, 1, "321");
-    /* The edge that remains must keep its direction. */
+    /* After two edges are merged, the one that remains must keep its direction. */
     assert_int_equal(he_origin(e.m, (he_halfedge){2}).i, 1);
     assert_int_equal(he_face_of(e.m, (he_halfedge){3}).i, 1);
     edit_end(&e);

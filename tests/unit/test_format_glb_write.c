@@ -78,7 +78,7 @@ static void polygons_come_back(void **state)
         assert_int_equal(find_note(&notes, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
-        /* the file as other programs see it */
+        /* without the renamed member, the file is read as other programs read it */
         hide_extras(bytes, length);
         import = read_back(bytes, length);
         expect_counts(&import, he_mesh_vertices(mesh), triangles, 3 * triangles);

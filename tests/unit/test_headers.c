@@ -280,8 +280,8 @@ static void one_content_coding_is_taken(void **state)
 
 static const st_mesh_info facts = {.incarnation = 0xABC, .metadata = 2, .revision = 41};
 
-/* Returns whether the header lists the entity tag with this coding, for a client that accepts
- * gzip. */
+/* Returns whether `header`, an If-None-Match, has the entity tag in a coding that a client with
+ * Accept-Encoding: gzip can use. */
 static bool listed(const char *header, const char *etag, api_coding coding)
 {
     const api_codings codings = {.allowed = {[API_GZIP] = true, [API_IDENTITY] = true}};

@@ -335,7 +335,8 @@ static void random_texts_are_the_same_wherever_they_are_cut(void **state)
         for (uint32_t i = any(3); i > 0 && w.length > 1; i--) {
             damage(&w);
         }
-        /* The line feed ends a number at the end of the text. */
+        /* A line feed is added, because a number at the end of a text that comes in pieces could
+         * still go on. */
         w.length -= w.length == TEXT;
         w.text[w.length++] = '\n';
         json_tokens_of_text(&whole, w.text, w.length);

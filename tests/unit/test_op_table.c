@@ -514,7 +514,7 @@ static void test_limit(void **state)
     }
 }
 
-/* This test must be the last one: each operation must declare exactly the refusals that the
+/* This test runs after all others: each operation must declare exactly the refusals that the
  * scenarios have produced. */
 static void test_every_refusal_was_produced(void **state)
 {

@@ -176,7 +176,7 @@ static void edges_and_vertices_are_hit_once_in_the_least_face(void **state)
             assert_int_equal(hit.face, least);
         }
     }
-    /* The ray begins on the surface itself. */
+    /* A ray that begins on the surface itself must hit there, at distance 0. */
     he_hit hit = cast(tree, m, (he_vec3){0.25, 0.25, 1}, (he_vec3){0, 0, 1}, HUGE_VAL);
     assert_true(hit.face != HE_NONE && hit.distance == 0);
     /* The ray runs exactly in the plane of a face, which it must not hit; it must hit the face

@@ -242,7 +242,8 @@ static void planes_do_not_bend(void **state)
     he_mesh_free(m);
 }
 
-/* This holds for any faces and positions, even with bow-ties and reflex corners. */
+/* The sum of the angle defects is 2 pi times the Euler number for any faces and positions, even
+ * with bow-ties and reflex corners. */
 static void angle_defects_sum_to_the_euler_number(void **state)
 {
     (void)state;

@@ -248,7 +248,8 @@ static void test_traverse_loop(void **state)
     assert_int_equal(he_traverse_loop(m, (he_halfedge){2}, &ids, NULL), HE_OK);
     assert_ids(&ids, "2 4 0");
     ids.count = 0;
-    /* The loop of the hole runs in the opposite direction. */
+    /* The loop along a hole must be walked in the direction of its half-edges, which is opposite to
+     * that of the faces beside it. */
     assert_int_equal(he_traverse_loop(m, (he_halfedge){1}, &ids, NULL), HE_OK);
     assert_ids(&ids, "1 9 7 3");
     assert_int_equal(he_traverse_loop(m, (he_halfedge){99}, &ids, NULL), HE_NO_SUCH_ELEMENT);

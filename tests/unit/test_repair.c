@@ -18,7 +18,8 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         /* three faces on an edge; four on an edge, of two tetrahedra with a common face */
         {"012,103,014", HE_NONMANIFOLD_EDGE, SPLIT, 7, 8, 3},
         {"021,032,013,123,132,124,234,314", HE_NONMANIFOLD_EDGE, SPLIT, 8, 12, 8},
-        /* a repeated corner, too few corners, no valid face left */
+        /* faces with a repeated corner, faces with too few corners, and a soup without any valid
+         * face */
         {"012,0230", HE_REPEATED_CORNER, DEGENERATE, 4, 5, 2},
         {"012,23", HE_TOO_FEW_CORNERS, DEGENERATE, 4, 3, 1},
         {"011,22", HE_REPEATED_CORNER, DEGENERATE, 3, 0, 0},

@@ -23,11 +23,11 @@ static void pairs_between_the_same_fans_exchange_partners(void **state)
 {
     (void)state;
     static const char *const rows[] = {
-        /* a tetrahedron and the same one reversed */
+        /* a tetrahedron, and a second one with the same vertices and reversed faces */
         "031,123,320,321,130,210,023,201",
         /* two pairs of triangles back to back, the second pair in reverse order */
         "012,013,103,102",
-        /* three such pairs, in a circle */
+        /* three pairs of triangles back to back, all at one edge, in a circle */
         "012,013,014,103,104,102",
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -112,7 +112,7 @@ static void the_edges_that_a_weld_would_make_are_counted(void **state)
         /* the edges coincide, but both faces would use the merged edge in the same direction, so a
          * weld cannot join them */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\n", "f 1 2 3\nf 4 6 5\n", 0},
-        /* of three faces along one edge, two can be joined */
+        /* three faces lie along one edge, of which only two can be joined */
         {"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nv 1 0 0\n",
          "f 1 2 3\nf 4 5 6\nf 7 8 9\n", 1},
         {"v 0 0 0\nv 0 0 0\nv 0 0 0\n", "f 1 2 3\n", 0},

@@ -263,7 +263,7 @@ static const struct {
       "8901234567890123456789\"}"},
      413,
      "body_too_large"},
-    /* Accept headers that exclude the answer */
+    /* requests whose header Accept excludes every type that the server can send */
     {{"GET /version", "Accept: text/html", NULL}, 406, "not_acceptable"},
     {{"GET /version", "Accept: application/json;q=0", NULL}, 406, "not_acceptable"},
     {{"GET /version", "Accept: text/html, */*;q=0.1", NULL}, 200, NULL},

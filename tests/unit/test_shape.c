@@ -294,7 +294,7 @@ static void test_shape_arguments_are_refused(void **state)
         assert_int_equal(he_shape_make(shape, args, NULL, &soup, NULL), rows[i].status);
         assert_int_equal(soup.vertex_count, 77);
     }
-    /* These arguments are just inside the limits. */
+    /* Arguments that are just inside the limits must be accepted. */
     he_mesh *m = make("disk", NAN, NAN, -2, NAN);
     he_mesh_free(m);
     m = make("cube", 1e-300, NAN, NAN, NAN);

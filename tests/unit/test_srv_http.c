@@ -385,7 +385,7 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     read_until(listener, "\"reason\":\"lost\"");
     assert_int_equal(answer(listener, text, sizeof text), 0);
     assert_null(strstr(text, "other"));
-    /* Other meshes have lost nothing. */
+    /* Meshes other than "m" have lost nothing, so requests about them succeed. */
     slow_journal_advance(&slow, 3);
     assert_int_equal(round_trip("PUT", "/v1/meshes/n", "{\"shape\":\"cube\"}"), 201);
     assert_int_equal(round_trip("GET", "/v1/meshes/n", ""), 200);

@@ -45,7 +45,7 @@ static void keep(st_keyed *c, const char *body, size_t length, bool changed)
     st_keyed_end(c);
 }
 
-/* Begins a request with this key and keeps its answer at once. */
+/* Begins a request with the Idempotency-Key `text`, and stores its answer at once. */
 static void put(const char *text, const char *body, size_t length, double now)
 {
     st_keyed *c = NULL;

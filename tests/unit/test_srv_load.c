@@ -212,7 +212,7 @@ static void a_mesh_comes_back_as_it_was(void **state)
             if (md_chance(&random, 15)) {
                 st_mesh *loaded;
                 st_store *other = expect_loads(mesh, budget, &loaded);
-                /* The loaded mesh must accept further edits. */
+                /* Edits and history must continue on the loaded mesh. */
                 st_release(mesh);
                 st_store_free(store);
                 mesh = loaded;

@@ -106,7 +106,7 @@ static void a_mesh_with_a_lost_change_leaves_the_store(void **state)
     assert_int_equal(st_write_claim(mesh, NULL, &w), ST_LOST);
     assert_int_equal(st_follow(mesh, &listener, &since, &missed, &info), ST_LOST);
     assert_int_equal(st_listeners(store), 0);
-    /* The change of the other mesh was kept. */
+    /* The change of the mesh "n" was not lost, so the mesh is still there. */
     assert_int_equal(st_find(store, "n", &found), ST_OK);
     st_release(found);
     assert_false(facts(other).lost);

@@ -269,7 +269,7 @@ static void a_refused_stage_changes_nothing(void **state)
     assert_true(journal.groups == groups);
     assert_true(he_mesh_equal(before, st_read_begin(mesh, NULL)));
     st_read_end(mesh);
-    /* The claim ended with its commit. */
+    /* The claim on the mesh ended although its commit was refused, so another one can begin. */
     compact_claimed(&w);
     /* If the mesh of a claim is deleted meanwhile, the content that the claim has staged must be
      * released. */

@@ -126,8 +126,8 @@ static bool read_all(const char *file, found *f)
     return true;
 }
 
-/* Each page of the file is overwritten in turn: what was on it is lost, and the rest must be
- * read. */
+/* Overwrites one page of the file after another: each time, what was on the page is lost, and the
+ * rest must be read. */
 static void a_damaged_page_costs_what_was_on_it(void **state)
 {
     (void)state;

@@ -290,8 +290,8 @@ static void a_line_may_set_limits_of_its_own(void **state)
     assert_int_equal(api_token_limit(a, API_LIMIT_MESHES), 3);
     assert_int_equal(api_token_limit(a, API_LIMIT_JOBS), 0);
 
-    /* A token with the same name must use the same bucket of requests; one with another name must
-     * not. */
+    /* When the file is replaced, a token that has the name of an old one must use its bucket of
+     * requests; a token with another name must not. */
     api_token_list list;
     assert_true(read_text("a write " OTHER "\nb read " HASH, &list));
     assert_memory_equal(&list.items[0]->rate_key, &a->rate_key, sizeof a->rate_key);

@@ -288,8 +288,8 @@ static void what_meets_itself_is_not_swept(void **state)
 
 /* --- edges, memory, watches --- */
 
-/* An export uses triangles that were computed without regard to existing edges, if none of their
- * diagonals is such an edge. */
+/* An export first computes triangles without regard to the edges of the mesh. If none of their
+ * diagonals is an edge already, it must use them as they are. */
 static void avoiding_edges_changes_nothing_where_there_are_none(void **state)
 {
     (void)state;

@@ -337,8 +337,8 @@ static specimen_verdict judge_content(const expected *e, st_mesh *mesh, const ch
                  e->states == 0 ? "there, and was removed" : "another one than it was");
 }
 
-/* Whether the store reported a damaged key at one of its starts. A damaged key may be forgotten,
- * but it must never give another answer. */
+/* True if the store reported a damaged key at one of its starts. A damaged key may be forgotten,
+ * but the store must never give another answer for it. */
 static bool key_was_told;
 
 static specimen_verdict judge_key(st_store *store, st_mesh *mesh, char why[SPECIMEN_WHY])
