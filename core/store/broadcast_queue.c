@@ -25,7 +25,7 @@ void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts)
     pthread_mutex_init(&queue->lock, NULL);
 }
 
-/* --- functions that need the lock --- */
+/* --- functions that need the queue's lock --- */
 
 static st_message *message_at(const st_queue *queue, size_t i)
 {
@@ -131,7 +131,8 @@ static uint64_t newest_number(const st_queue *queue)
     return queue->floor_number + queue->count;
 }
 
-/* Messages are in the order of stamps; returns the index of the first one that may not be read. */
+/* Returns the index of the first message that may not be read. Messages are in the order of
+ * stamps. */
 static size_t first_forbidden(const st_queue *queue)
 {
     size_t low = 0, high = queue->count;
@@ -174,7 +175,7 @@ static st_message *message_new(const char *bytes, size_t length)
     return message;
 }
 
-/* Appends the message, which it takes, at the newest place; NULL makes listeners fall behind. */
+/* Appends a message, which it takes, at the newest place; NULL makes listeners fall behind. */
 static void append(st_queue *queue, st_message *message)
 {
     if (message == NULL || !reserve_place(queue)) {
@@ -315,7 +316,7 @@ void st_queue_leave(st_listener *listener)
     *listener = (st_listener){0};
 }
 
-/* Makes the next message that the listener may read its present one. */
+/* Makes the next message that the listener may read its present message. */
 static st_queue_result next_message(st_queue *queue, st_listener *listener)
 {
     if (listener->number < queue->floor_number) {

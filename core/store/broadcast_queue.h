@@ -38,8 +38,8 @@ typedef struct st_place {
 
 typedef struct st_message st_message;
 
-/* In the caller's storage, which must stay until st_queue_leave has returned, even during a call of
- * `wake`. */
+/* One listener of a queue. It is in the caller's storage, which must stay until st_queue_leave has
+ * returned, even during a call of `wake`. */
 typedef struct st_listener {
     struct st_queue *queue; /* NULL: not listening */
     uint64_t number;        /* number of the message it read last, or is reading */
@@ -56,7 +56,7 @@ typedef struct st_queue_counts {
     _Atomic uint64_t messages; /* messages added */
     _Atomic uint64_t bytes;    /* bytes of messages in the queues */
     _Atomic uint64_t behind;   /* how often a listener fell behind */
-    /* microseconds from adding a message until it was read, once for each listener */
+    /* The microseconds from adding a message until it was read, once for each listener. */
     st_histogram lag;
 } st_queue_counts;
 
@@ -77,12 +77,13 @@ typedef struct st_queue {
     st_listener *waiting;
 } st_queue;
 
-/* Makes an empty queue at `place`. `counts` must outlive the queue. */
+/* Makes an empty queue whose newest message counts as at `place`. `counts` must outlive the
+ * queue. */
 void st_queue_init(st_queue *queue, st_place place, st_queue_counts *counts);
 /* No listener may be left. */
 void st_queue_clear(st_queue *queue);
 
-/* Does a listener exist, or did one until lately, so that messages are worth making? */
+/* Returns true if a listener exists, or did until lately, so that messages are worth making. */
 bool st_queue_is_followed(st_queue *queue);
 /* Adds a message; its bytes are copied. With NULL bytes, or if memory is out, every listener that
  * has not read beyond this place is behind. */
@@ -93,11 +94,12 @@ void st_queue_add_beside(st_queue *queue, const char *bytes, size_t length);
 uint64_t st_queue_newest(st_queue *queue);
 /* Allows messages up to this stamp to be read, and wakes the listeners that wait. */
 void st_queue_allow(st_queue *queue, uint64_t stamp);
-/* Says that stamps which are not allowed by now never will be. */
+/* Declares that stamps which are not allowed by now never will be, because their changes are
+ * lost. */
 void st_queue_lose(st_queue *queue);
-/* Says that no message will be added any more. */
+/* Declares that no message will be added any more. */
 void st_queue_end(st_queue *queue);
-/* Frees the messages if no listener exists. */
+/* Frees the messages of a queue if it has no listener. */
 void st_queue_shed(st_queue *queue);
 
 /* Adds a listener, which begins after the newest message, allowed or not. Returns false if `most`
@@ -106,10 +108,10 @@ bool st_queue_listen(st_queue *queue, st_listener *listener, size_t most);
 /* Moves a listener back to what follows the first message of this key. Returns false if some of
  * that was dropped. */
 bool st_queue_rewind(st_listener *listener, uint64_t key);
-/* Sets the function that is called after ST_QUEUE_WAIT. The caller must do this before the first
- * read. */
+/* Sets the function that is called when a listener that got ST_QUEUE_WAIT can read on. The caller
+ * must do this before the first read. */
 void st_queue_wake(st_listener *listener, void (*wake)(void *context), void *context);
-/* Removes a listener; does nothing if it is not listening. */
+/* Removes a listener; does nothing if it does not listen. */
 void st_queue_leave(st_listener *listener);
 
 typedef enum st_queue_result {
@@ -121,8 +123,8 @@ typedef enum st_queue_result {
 } st_queue_result;
 
 st_queue_result st_queue_read(st_listener *listener, char *buffer, size_t size, size_t *got);
-/* Continues, after ST_QUEUE_BEHIND or ST_QUEUE_LOST, from the newest message that may be read, and
- * returns its place. */
+/* Lets a listener continue, after ST_QUEUE_BEHIND or ST_QUEUE_LOST, from the newest message that
+ * may be read, and returns the place of that message. */
 st_place st_queue_skip(st_listener *listener);
 
 #endif

@@ -1,9 +1,9 @@
-/* Lists all meshes, in memory or not. */
+/* cards.c - lists all meshes, in memory or not. */
 #include "store/table.h"
 
 #include <string.h>
 
-/* Most handles held at once. */
+/* The most references to meshes that are held at once. */
 enum { BATCH = 64 };
 
 /* Copies the card of a mesh in memory. Returns false if it was removed. */
@@ -70,8 +70,8 @@ static size_t merge(const st_card *memory, size_t in_memory, const st_card *disk
     return count;
 }
 
-/* Memory is listed first, then the disk: a mesh that is evicted in between is then in both
- * lists. */
+/* Lists cards. Memory is listed first, then the disk, so that a mesh that is evicted in between is
+ * in both lists, not in none. */
 st_status st_cards(st_store *store, const char *after, st_card *out, size_t limit, size_t *count)
 {
     const st_journal *journal = &store->journal;

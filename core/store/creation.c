@@ -1,4 +1,4 @@
-/* Adds meshes to the store: under a free id, or in place of a damaged one. */
+/* creation.c - adds meshes to the store: under a free id, or in place of a damaged one. */
 #include "store/table.h"
 #include "system/lock.h"
 #include "system/memory.h"
@@ -21,7 +21,8 @@ static st_status book(const st_store *store, const he_mesh *content, size_t reco
     return status;
 }
 
-/* The caller holds the table's exclusive lock. */
+/* Returns true if the store may have no more meshes. The caller holds the table's exclusive
+ * lock. */
 static bool is_full(const st_store *store)
 {
     const st_journal *journal = &store->journal;
@@ -46,8 +47,9 @@ static st_status insert(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* The first record is appended under the lock: a thread that finds the mesh, or its id taken, knows
- * that the record is in the journal. */
+/* Appends the first record of a new mesh and puts the mesh into the table. The record is appended
+ * under the lock: a thread that finds the mesh, or its id taken, knows that the record is in the
+ * journal. */
 static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, st_booking *booking)
 {
     st_lock_write(&store->lock);
@@ -98,10 +100,11 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
     st_mesh *mesh;
     st_status status = prepare(store, id, name, cause, content, 1, &booking, &mesh);
     if (status == ST_OK) {
-        /* Before the mesh is in the table: one that was never used would be evicted first. */
+        /* The use is recorded before the mesh is in the table, because a mesh that was never used
+         * would be evicted first. */
         st_mesh_use(mesh);
-        /* Room is already reserved, so if a later loss takes `from`, this record is lost with
-         * it. */
+        /* Room in the journal is already reserved, so if a later loss takes `from`, this record is
+         * lost with it. */
         const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
         status = lost ? ST_LOST : publish(store, mesh, cause, &booking);
         if (status == ST_OK) {
@@ -125,8 +128,9 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
     return status;
 }
 
-/* Asks for more than is needed: if only a few bytes were free for a moment, the memory would seem
- * full again when other threads take them back. */
+/* Returns true if there is memory for another mesh. It asks for more than is needed: if only a few
+ * bytes were free for a moment, the memory would seem full again when other threads take them
+ * back. */
 static bool has_room(st_store *store)
 {
     st_make_room(store, st_memory_budget() / 64);
@@ -159,8 +163,8 @@ st_status st_create(st_store *store, const char *id, const char *name, he_mesh *
 
 /* --- replacing a damaged mesh --- */
 
-/* Publishes one group of records, the removal first. The caller holds the exclusive lock of the old
- * mesh. */
+/* Publishes the removal of the old mesh and the first record of the new one, as one group. The
+ * caller holds the exclusive lock of the old mesh. */
 static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st_cause *cause,
                          st_booking *booking)
 {
@@ -186,8 +190,8 @@ static void publish_over(st_store *store, st_mesh *old, st_mesh *fresh, const st
     pthread_rwlock_unlock(&store->lock);
 }
 
-/* Moves the holder's count from the old mesh to the new one, or leaves it if that is refused. The
- * caller holds the exclusive lock of the old mesh. */
+/* Moves the holder's count from the old mesh to the new one, or leaves it if the new one would
+ * exceed the limit. The caller holds the exclusive lock of the old mesh. */
 static st_status count_over(st_store *store, const st_mesh *old, st_mesh *fresh)
 {
     const st_holding come = {fresh->holding.holder, he_mesh_bytes(fresh->content)};

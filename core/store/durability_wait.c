@@ -42,7 +42,8 @@ static st_wait *meld(st_wait *a, st_wait *b)
     return a;
 }
 
-/* Melds the children in pairs, then the pairs from the last to the first. */
+/* Removes the top of the pairing heap: melds the children in pairs, then the pairs from the last to
+ * the first. */
 static st_wait *without_top(st_wait *top)
 {
     st_wait *pairs = NULL, *left = top->child, *all = NULL;
@@ -99,7 +100,8 @@ static bool reserve_loss(st_waits *waits)
     return true;
 }
 
-/* After a fault each room that comes back is a loss of its own; adjacent losses are merged. */
+/* Merges a loss into the last one if they are adjacent, because after a fault of the disk each room
+ * that comes back is a loss of its own. */
 static bool extend_last(st_waits *waits, const st_loss *loss)
 {
     st_loss *last = waits->loss_count == 0 ? NULL : &waits->losses[waits->loss_count - 1];
@@ -111,12 +113,13 @@ static bool extend_last(st_waits *waits, const st_loss *loss)
     return true;
 }
 
-/* If memory is out, everything from this loss on counts as lost: refusing too much is safe. */
+/* Stores a loss. If memory is out, everything from this loss on counts as lost: refusing too much
+ * is safe. */
 void st_waits_lose(st_waits *waits, const st_loss *loss)
 {
     pthread_mutex_lock(&waits->lock);
     if (extend_last(waits, loss)) {
-        /* it was merged into the last loss */
+        /* The loss was merged into the last one. */
     } else if (reserve_loss(waits)) {
         waits->losses[waits->loss_count++] = *loss;
     } else if (loss->from < waits->rest.from) {
@@ -130,7 +133,7 @@ void st_waits_lose(st_waits *waits, const st_loss *loss)
 
 /* --- waiting --- */
 
-/* Is the wait over, and how? The caller holds the lock. */
+/* Returns true if a wait is over, and sets how it ended. The caller holds the lock. */
 static bool is_over(const st_waits *waits, st_wait *wait)
 {
     const st_shown *shown = &wait->shown;
@@ -142,8 +145,8 @@ static bool is_over(const st_waits *waits, st_wait *wait)
     return durable || waits->stopped;
 }
 
-/* Takes the finished waits off the heap first, in the order of positions: resume may free the
- * wait. */
+/* Resumes the waits that are over, in the order of positions. All are taken off the heap first,
+ * because resuming one may free it. */
 static void resume_those_over(st_waits *waits)
 {
     st_wait *first = NULL, **end = &first;
@@ -217,14 +220,15 @@ bool st_waits_is_lost(st_waits *waits, const st_shown *shown)
     return found;
 }
 
-/* The journal reports a loss before it moves past it, so losses are checked after the position. */
+/* Decides whether records are durable. The journal reports a loss before it moves past it, so
+ * losses are checked after the position. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown)
 {
     return shown->position <= atomic_load(&waits->durable) && !st_waits_is_lost(waits, shown);
 }
 
-/* Checks again under the lock: a notice that came after the caller's check did not find the wait;
- * one that comes later will. */
+/* Adds a wait. It checks again under the lock: a notice of the journal that came after the caller's
+ * check did not find the wait; one that comes later will. */
 bool st_waits_add(st_waits *waits, st_wait *wait)
 {
     pthread_mutex_lock(&waits->lock);

@@ -22,15 +22,15 @@ typedef struct st_waits st_waits;
 /* The records that an answer shows. */
 typedef struct st_shown {
     uint64_t position; /* position of the newest record that it shows; 0: none */
-    /* records up to this position were durable when the answer was begun, so a later loss of
-     * records does not concern them */
+    /* The records up to this position were durable when the answer was begun, so a later loss of
+     * records does not concern them. */
     uint64_t since;
     uint64_t incarnation; /* the mesh whose records it shows; 0: any */
 } st_shown;
 
 typedef enum st_wait_end { ST_WAIT_DURABLE, ST_WAIT_LOST, ST_WAIT_STOPPED } st_wait_end;
 
-/* In the caller's storage, which must outlive the wait. */
+/* A wait for durability. It is in the caller's storage, which must outlive the wait. */
 typedef struct st_wait {
     st_shown shown;
     void (*resume)(struct st_wait *wait);
@@ -40,30 +40,30 @@ typedef struct st_wait {
     struct st_wait *child, *beside; /* links of the heap */
 } st_wait;
 
-/* Returns NULL if memory is out. */
+/* Makes the set of waits. Returns NULL if memory is out. */
 st_waits *st_waits_new(void);
 /* No wait may be left. */
 void st_waits_free(st_waits *waits); /* takes NULL */
 
-/* The functions that the journal's listener calls (journal.h). */
+/* These functions are called by the journal's listener (journal.h). */
 void st_waits_moved(st_waits *waits, uint64_t position);
 void st_waits_lose(st_waits *waits, const st_loss *loss);
 
-/* Notes the position of a record that was appended. The caller must do this before other threads
+/* Records the position of a record that was appended. The caller must do this before other threads
  * can see the record. */
 void st_waits_appended(st_waits *waits, uint64_t position);
-/* Returns the newest position, for answers that show the records of many meshes, or that something
- * does not exist. */
+/* Returns the newest position of the journal, for answers that show the records of many meshes, or
+ * that something does not exist. */
 uint64_t st_waits_newest(const st_waits *waits);
 /* Returns the position up to which every record is durable or lost. */
 uint64_t st_waits_durable(const st_waits *waits);
-/* May an answer that shows this be sent at once? */
+/* Returns true if an answer that shows these records may be sent at once. */
 bool st_waits_is_durable(st_waits *waits, const st_shown *shown);
-/* Will a record that this shows never be durable? */
+/* Returns true if one of these records will never be durable. */
 bool st_waits_is_lost(st_waits *waits, const st_shown *shown);
 
 /* Blocks until every record up to `position` is durable or lost. Returns false if st_clock_micros
- * comes to `until`, or the waits are stopped, before. */
+ * reaches `until`, or the waits are stopped, before that. */
 bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until);
 
 /* Adds a wait. Returns false if it is over already: `end` is then filled in, and resume is not

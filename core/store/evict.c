@@ -1,5 +1,5 @@
-/* Evicts unused meshes while memory is short; the journal loads them again when a request needs
- * them. */
+/* evict.c - evicts unused meshes while memory is short; the journal loads them again when a request
+ * needs them. */
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/memory.h"
@@ -30,8 +30,9 @@ void st_mesh_use(st_mesh *mesh)
     atomic_store_explicit(&mesh->used, st_clock_micros(), memory_order_relaxed);
 }
 
-/* A thread that asks for memory may hold locks that the owner of the table's lock waits for, or may
- * own the table's lock itself, so it must not wait for ever. */
+/* Takes the lock of the table, if that succeeds in a limited time. A thread that asks for memory
+ * may hold locks that the owner of the table's lock waits for, or may own the table's lock itself,
+ * so it must not wait for ever. */
 static bool lock_table(st_store *store)
 {
     struct timespec until;
@@ -44,8 +45,9 @@ static bool lock_table(st_store *store)
     return pthread_rwlock_timedwrlock(&store->lock, &until) == 0;
 }
 
-/* Does only the table use it, and does the disk have all of it? Under the table's exclusive lock no
- * thread can begin to use it. A message that waits for listeners holds a use. */
+/* Returns true if only the table uses a mesh and the disk has all of it. Under the table's
+ * exclusive lock no thread can begin to use the mesh. A message that waits for listeners holds a
+ * use. */
 static bool is_cold(st_store *store, st_mesh *mesh)
 {
     if (atomic_load_explicit(&mesh->uses, memory_order_acquire) > 1) {
@@ -60,7 +62,8 @@ static uint64_t bytes_of(const st_mesh *mesh)
     return sizeof *mesh + he_mesh_bytes(mesh->content) + mesh->log.bytes + mesh->keys.bytes;
 }
 
-/* Finds the age from which meshes are evicted so that about `bytes` become free. */
+/* The bytes of meshes by classes of their time of last use, from which the age is found before
+ * which meshes are evicted. */
 typedef struct ages {
     uint64_t first, span; /* range of the times of last use */
     uint64_t bytes[AGES];
@@ -71,7 +74,8 @@ static size_t age_of(const ages *a, uint64_t used)
     return (size_t)((used - a->first) / (a->span / AGES + 1));
 }
 
-/* The caller holds the table's lock. */
+/* Returns the time of last use before which meshes are evicted to free about `bytes` bytes. The
+ * caller holds the table's lock. */
 static uint64_t find_limit(st_store *store, uint64_t bytes)
 {
     ages a = {.first = UINT64_MAX};
@@ -96,7 +100,8 @@ static uint64_t find_limit(st_store *store, uint64_t bytes)
     return a.first + age * (a.span / AGES + 1);
 }
 
-/* Takes out meshes that were last used before `limit`, at most a batch, from index *place on. */
+/* Takes meshes that were last used before `limit` out of the table, at most a batch, from index
+ * *place on. */
 static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *batch[BATCH])
 {
     size_t count = 0, to = *place, from = *place;
@@ -121,8 +126,8 @@ static size_t take_out(st_store *store, uint64_t limit, size_t *place, st_mesh *
     return count;
 }
 
-/* Evicts meshes that were last used before `newest`, as many as it takes for the bytes. Returns how
- * many. *locked says whether the table's lock could be taken. */
+/* Evicts meshes that were last used before `newest`, as many as it takes to free the bytes. Returns
+ * their number. *locked says whether the table's lock could be taken. */
 static size_t evict(st_store *store, uint64_t bytes, uint64_t newest, bool *locked)
 {
     st_mesh *batch[BATCH];
@@ -183,8 +188,8 @@ static uint64_t on_its_way(const st_store *store)
     return newest > st_waits_durable(store->followers.waits) ? newest : 0;
 }
 
-/* Waits until what was on its way before an eviction is durable. Returns whether another eviction
- * may find more. */
+/* Waits until the records that were on their way before an eviction are durable. Returns true if
+ * another eviction may find more. */
 static bool await_disk(st_store *store, uint64_t newest, uint64_t until)
 {
     return store->journal.keeps && newest != 0 &&
@@ -202,12 +207,13 @@ void st_make_room(st_store *store, uint64_t bytes)
     do {
         newest = on_its_way(store);
         make_room(store, bytes);
-        /* An edit asks for no bytes and does not wait: what is free may be enough for it. */
+        /* An edit asks for no bytes and does not wait, because what is free may be enough for
+         * it. */
     } while (bytes > 0 && !st_memory_has(bytes + share) && await_disk(store, newest, until));
 }
 
-/* The function of a memory giver: the thread may hold any lock but the table's and those that
- * st_store_shed takes. */
+/* Frees memory for a thread that needs it (a memory giver): the thread may hold any lock but the
+ * table's and those that st_store_shed takes. */
 static bool give_room(void *context, uint64_t bytes)
 {
     st_store *store = context;

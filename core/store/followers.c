@@ -33,7 +33,7 @@ static void allow(st_mesh *mesh)
     }
 }
 
-/* Returns true if there may be more to allow. */
+/* Ends a wait of the queue for the journal. Returns true if there may be more messages to allow. */
 static bool end_wait(st_mesh *mesh)
 {
     const st_wait wait = mesh->wait;
@@ -66,7 +66,8 @@ void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_chan
     }
 }
 
-/* Records of one group become durable together, so their events have one place. */
+/* Informs the listeners of a group of records. The records become durable together, so their events
+ * have one place. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group)
 {
     bool followed = st_queue_is_followed(&mesh->queue);
@@ -102,7 +103,7 @@ void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length)
     allow(mesh);
 }
 
-/* The caller holds the mesh's lock. */
+/* Begins to listen from a position. The caller holds the mesh's lock. */
 static st_missed begin(st_listener *listener, const st_since *since, const st_mesh_info *info)
 {
     if (!since->given) {

@@ -34,10 +34,10 @@ typedef enum st_missed {
 st_status st_follow(st_mesh *mesh, st_listener *listener, const st_since *since, st_missed *missed,
                     st_mesh_info *info);
 void st_unfollow(st_mesh *mesh, st_listener *listener);
-/* Has the mesh a listener, so that a message is worth making? */
+/* Returns true if the mesh has a listener, so that a message is worth making. */
 bool st_is_followed(st_mesh *mesh);
-/* Adds a message beside the changes, without a lock. With NULL bytes every listener that has not
- * read beyond this point is behind. */
+/* Adds a message that is no change of the mesh, without a lock. With NULL bytes, every listener
+ * that has not read beyond this point is behind and must fetch the mesh again. */
 void st_follow_tell(st_mesh *mesh, const char *bytes, size_t length);
 /* Returns the number of listeners to meshes of the store. */
 size_t st_listeners(st_store *store);

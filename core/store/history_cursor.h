@@ -25,7 +25,8 @@ typedef struct st_cursor st_cursor;
 typedef struct st_cursor_step {
     uint64_t revision;
     st_action action;
-    /* Its words may be read by he_changes_find; its objects belong to another state. */
+    /* The delta that led to the revision. Its words may be read by he_changes_find; its objects
+     * belong to another state. */
     const he_delta *delta;
     bool undone; /* the delta was applied backwards */
     const he_mesh *content;
@@ -36,11 +37,11 @@ typedef struct st_cursor_step {
  * Returns ST_GONE if the history does not reach back to it.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if the copy cannot be made. */
 st_status st_cursor_begin(st_mesh *mesh, uint64_t revision, st_cursor **out);
-/* Returns the copy, also before the first step. */
+/* Returns the cursor's copy of the mesh, even before the first step. */
 const he_mesh *st_cursor_content(const st_cursor *cursor);
 uint64_t st_cursor_revision(const st_cursor *cursor);
-/* Goes one revision further; `out` is valid until the next call. After any failure but ST_NOTHING
- * and ST_GONE the caller can only end the cursor.
+/* Moves the cursor one revision further; `out` is valid until the next call. After any failure but
+ * ST_NOTHING and ST_GONE the caller can only end the cursor.
  * Returns ST_NOTHING at the newest revision.
  * Returns ST_GONE if the history was cut off between (a replace, an edit beyond the budget, or so
  * many edits that the next one was dropped): the caller must begin a new cursor. */

@@ -40,7 +40,7 @@ static st_keyed **find(const st_keys *keys, const char *key, const char *holder,
     return at;
 }
 
-/* Takes an entry out of the table. */
+/* Takes an entry out of the table of keys. */
 static void forget(st_keys *keys, st_keyed *keyed)
 {
     *find(keys, keyed->text, keyed->key.holder, keyed->hash) = keyed->next;
@@ -65,7 +65,8 @@ void st_keys_clear(st_keys *keys)
     pthread_mutex_destroy(&keys->lock);
 }
 
-/* If memory is out the table does not grow, and its chains become longer. */
+/* Grows the hash table, if necessary. If memory is out it does not grow, and its chains become
+ * longer. */
 static bool reserve_bucket(st_keys *keys)
 {
     if (keys->count < keys->bucket_count) {
@@ -192,7 +193,7 @@ bool st_keys_restore(void *context, const st_kept_key *kept)
                       .metadata = kept->metadata};
     snprintf(answer.id, sizeof answer.id, "%s", kept->id);
     st_keyed *keyed;
-    /* The time of a damaged key cannot be trusted. */
+    /* The time of a damaged key cannot be trusted, so the present time is used. */
     const double time = kept->is_damaged ? st_clock_utc() : was->time;
     switch (st_keys_begin(keys, &key, time, &keyed)) {
     case ST_KEYED_NEW:

@@ -35,7 +35,8 @@ typedef struct st_keys {
     uint64_t secret[2];
 } st_keys;
 
-/* An entry, with two references: from its table and from the request that began it. */
+/* An entry of the table of keys. It has two references: from its table and from the request that
+ * began it. */
 struct st_keyed {
     st_keys *keys;
     unsigned uses;
@@ -50,15 +51,15 @@ struct st_keyed {
 
 void st_keys_init(st_keys *keys, const uint64_t secret[2]);
 void st_keys_clear(st_keys *keys); /* no request may be under way */
-/* `now` in seconds since 1970. */
+/* Begins a request with a key. `now` is in seconds since 1970. */
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out);
-/* Removes a kept answer that was lent with ST_KEYED_KEPT. The caller calls it instead of
+/* Removes a kept answer that a request got with ST_KEYED_KEPT. The caller calls it instead of
  * st_keyed_end. */
 void st_keys_forget(st_keyed *keyed);
-/* Restores a key from the journal (an st_take_key): its answer is 201 or 204, without a body.
+/* Restores a key from the journal (as an st_take_key): its answer is 201 or 204, without a body.
  * `keys` is an st_keys. */
 bool st_keys_restore(void *keys, const st_kept_key *kept);
-/* Frees the bodies that no request reads. */
+/* Frees the bodies of kept answers that no request reads. */
 void st_keys_shed(st_keys *keys);
 
 #endif

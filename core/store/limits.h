@@ -2,10 +2,12 @@
 #ifndef HE_STORE_LIMITS_H
 #define HE_STORE_LIMITS_H
 
-/* A content that takes more bytes is staged (journal.h) before it is published. */
+/* A content that takes more bytes is staged: written to the disk before it is published
+ * (journal.h). */
 enum { ST_BODY_BYTES = 1 << 20 };
 
-/* A mesh gets a new base when its records take more bytes than this and more than its content. */
+/* A mesh gets a new base, from which it is loaded, when its records take more bytes than this and
+ * more than its content. */
 enum { ST_BASE_BYTES = 16 << 20 };
 
 /* Messages, and their bytes, that listeners of one mesh may be behind before they must fetch the

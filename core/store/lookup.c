@@ -31,7 +31,7 @@ void st_lookups_clear(st_lookups *lookups)
     pthread_mutex_destroy(&lookups->lock);
 }
 
-/* --- functions that need the lock --- */
+/* --- functions that need the lock of the lookups --- */
 
 static st_lookup *find(const st_lookups *lookups, const char *id)
 {
@@ -228,7 +228,8 @@ static st_status put_in(st_store *store, st_mesh *mesh)
     return status;
 }
 
-/* `mesh` is NULL if it was not found; one that cannot be read has no content. */
+/* Counts the load of a mesh for monitoring. `mesh` is NULL if it was not found; a mesh that cannot
+ * be read has no content. */
 static void count_load(st_store *store, st_status status, const st_mesh *mesh, uint64_t micros)
 {
     st_store_counts *counts = &store->followers.counts;
@@ -298,7 +299,8 @@ st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold
     return ST_OK;
 }
 
-/* Makes a mesh without content, never in the table, to append its last record. */
+/* Makes a mesh without content, which is never in the table, to append the last record of a mesh
+ * that is not in memory. */
 static st_mesh *new_stand_in(const st_cold *cold)
 {
     const st_mesh_options options = st_store_mesh_options(cold->store);

@@ -1,4 +1,4 @@
-/* lookup.h - ids that a thread is looking up on the disk, to load their mesh or to make one.
+/* lookup.h - lookups of ids on the disk, by which a thread loads a mesh or makes one.
  *
  * A mesh that is not in memory may be on the disk, and it takes long to find out. Until that is
  * known, one thread has the lookup of the id, and other threads that need the id wait for it to
@@ -23,8 +23,9 @@ typedef struct st_lookups {
 void st_lookups_init(st_lookups *lookups);
 void st_lookups_clear(st_lookups *lookups); /* none may be under way */
 
-/* Finds the mesh in memory and adds a reference; otherwise *mesh is NULL and the caller has the
- * lookup of the id. Waits, so only threads that may wait can call it.
+/* Finds a mesh in memory and adds a reference. If it is not in memory, *mesh is NULL and the caller
+ * has the lookup of the id: other threads wait for it. Waits, so only threads that may wait can
+ * call it.
  * Returns ST_ABSENT if there is no such mesh.
  * Returns ST_LOADING if another thread's lookup takes too long.
  * Returns ST_NO_MEMORY or ST_FAILED if the lookup cannot be made. */
@@ -36,7 +37,7 @@ st_status st_lookup_begin(st_store *store, const char *id, st_mesh **mesh, st_lo
  * Returns ST_LOADING if another thread's lookup takes too long.
  * Returns ST_NO_MEMORY or ST_FAILED if the lookup cannot be made. */
 st_status st_lookup_free_id(st_store *store, const char *id, st_lookup **out);
-/* Ends a lookup: from now on the table decides what the id names. Takes NULL. */
+/* Ends a lookup, which may be NULL: from now on the table decides what the id names. */
 void st_lookup_end(st_store *store, st_lookup *lookup);
 
 #endif

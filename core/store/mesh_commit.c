@@ -1,5 +1,6 @@
-/* The kinds of commit: an edit (perhaps of a claim's copy), steps, replace, rename, removal. Each
- * is first put into the history, then sent to the journal and the listeners. */
+/* mesh_commit.c - the kinds of commit: an edit (perhaps of a claim's copy), undo and redo steps,
+ * replace, rename, removal. Each is first put into the history, then sent to the journal and the
+ * listeners. */
 #include "store/mesh_commit.h"
 
 #include "system/clock.h"
@@ -21,7 +22,8 @@ static double revise(st_mesh *mesh)
     return mesh->info.modified;
 }
 
-/* The tally is not known if the whole content was replaced. */
+/* Counts the elements that were created, deleted and modified. The tally is not known if the whole
+ * content was replaced. */
 static st_tally tally_of(const he_changes *changes)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
@@ -34,7 +36,7 @@ static st_tally tally_of(const he_changes *changes)
     return tally;
 }
 
-/* The delta is held until it was published, even if the history drops it. */
+/* Commits an edit. Its delta is held until it was published, even if the history drops it. */
 static void commit_edit(st_write *w, const char *ops)
 {
     st_mesh *mesh = w->mesh;
@@ -87,7 +89,8 @@ static void rename_mesh(st_mesh *mesh, const char *name)
     mesh->info.modified = st_clock_utc();
 }
 
-/* A replacement with a new name is two records of one group. */
+/* Commits a replacement, a rename, or both. A replacement with a new name is two records of one
+ * group. */
 static void commit_facts(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -116,7 +119,7 @@ static void commit_facts(st_write *w)
                   .booking = &w->booking, .records = records, .changes = changes, .count = count});
 }
 
-/* Puts the new content in and returns the old one, which the caller frees. */
+/* Puts the new content into the mesh and returns the old one, which the caller frees. */
 static he_mesh *exchange_content(st_write *w)
 {
     st_mesh *mesh = w->mesh;
@@ -134,7 +137,8 @@ static he_mesh *exchange_content(st_write *w)
     return before;
 }
 
-/* Reserves room for the record. A claim does so without the lock: no other thread has its copy. */
+/* Reserves room in the journal for the record. A claim does so without the lock, because no other
+ * thread has its copy. */
 static st_status book(st_write *w)
 {
     const st_journal *journal = w->mesh->journal;
@@ -159,7 +163,8 @@ static st_status book(st_write *w)
     return st_book(journal, &need, &w->booking);
 }
 
-/* Called after the room is reserved, so that a later loss takes this record too. */
+/* Returns true if the change was made from records that are lost. It is called after the room is
+ * reserved, so that a later loss takes this record, too. */
 static bool is_from_lost(const st_write *w)
 {
     st_waits *waits = w->mesh->followers->waits;
@@ -223,11 +228,11 @@ st_status st_write_commit(st_write *w, const char *ops)
     }
     st_mesh_facts(mesh, &w->info);
     if (removed) {
-        /* Only after its last record may the id be given to another mesh. */
+        /* The id may be given to another mesh only after the last record of this one. */
         st_store_take_out(mesh->store, mesh);
     }
     st_write_end(w, discard);
-    /* No copy can cross a replacement. */
+    /* A copy of the mesh cannot follow it across a replacement, so cached copies are freed. */
     if (cut_off) {
         st_mesh_shed(mesh);
     }

@@ -75,7 +75,7 @@ static st_status wrong_marks(load *l, const st_record *record)
 
 /* --- contents --- */
 
-/* Begins the history with this content, which it takes. */
+/* Begins the history of a mesh with this content, which it takes. */
 static st_status begin_history(load *l, const st_record *record, he_mesh *takes)
 {
     st_mesh *mesh = l->mesh;
@@ -102,7 +102,7 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     return ST_OK;
 }
 
-/* Adds the reserved delta, which led to the record, as its entry. */
+/* Adds the reserved delta to the history, as the entry of the record that it led to. */
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
@@ -137,7 +137,7 @@ static st_status edit_whole(load *l, const st_record *record, he_mesh *takes)
     return add_edit(l, record);
 }
 
-/* The content of a base or of a record has been read completely. */
+/* Takes a content that has been read completely: that of a base or of a record. */
 static st_status take_content(load *l, const st_record *record, bool is_base, he_mesh *takes)
 {
     if (!has_marks(takes, record->issued)) {
@@ -287,7 +287,7 @@ static st_status take_step(load *l, const st_record *record)
     } else {
         he_delta_redo(delta, mesh->content);
     }
-    /* Ids issued by a replacement within an edit are in the record's high-water marks only. */
+    /* Ids that a replacement within an edit issued are only in the record's high-water marks. */
     he_status status = he_mesh_issue(mesh->content, record->issued, &err);
     if (status == HE_OK && !has_marks(mesh->content, record->issued)) {
         return wrong_marks(l, record);
@@ -298,7 +298,7 @@ static st_status take_step(load *l, const st_record *record)
     return status_of(l, status, record->number, &err);
 }
 
-/* Is it the record that must come next, and of this mesh? */
+/* Checks that a record is the one that must come next, and belongs to this mesh. */
 static st_status check_record(load *l, const st_record *record)
 {
     const st_mesh *mesh = l->mesh;
@@ -413,14 +413,14 @@ static st_status check_content(load *l)
     return total == 0 ? ST_OK : damaged(l, "I%d: %.140s", problem.rule, problem.text);
 }
 
-/* The history is as it was, unless the budget is much smaller now. */
+/* Ends the loading of the history. It is as it was, unless the undo budget is much smaller now. */
 static void end_history(load *l)
 {
     st_log_drop(&l->mesh->log, l->reach);
     st_log_limit(&l->mesh->log, l->options->undo_budget);
 }
 
-/* Is this piece the first one after the revision that is wanted? */
+/* Returns true if this piece is the first one after the revision that is wanted. */
 static bool is_beyond(const load *l, const st_piece *piece)
 {
     return piece->kind == ST_PIECE_END ||

@@ -11,9 +11,9 @@
 
 #include "store/stored_mesh.h"
 
-/* Makes room in memory and loads a mesh. `until` is a revision at which the load stops, with the
- * history of that time; 0 loads everything. With ST_DAMAGED and ST_NEWER, `damage` says what is
- * wrong.
+/* Makes room in memory and loads a mesh from the pieces of `reader`. `until` is a revision at which
+ * the load stops, with the history of that time; 0 loads everything. With ST_DAMAGED and ST_NEWER,
+ * `damage` says what is wrong.
  * Returns ST_GONE if the base is of a later revision, which is found at once, or if no record leads
  * to exactly that revision, which is found at the end.
  * Returns ST_DAMAGED if the pieces make no mesh, or not the one of the card; the card is then

@@ -1,4 +1,4 @@
-/* Begins a write, prepares what it commits, and aborts it. */
+/* mesh_write.c - begins a write, prepares what it commits, and aborts it. */
 #include "store/mesh_commit.h"
 
 #include "store/table.h"
@@ -19,7 +19,7 @@ static void begin_recording(st_write *w)
     }
 }
 
-/* The caller holds the lock. */
+/* Checks that a write may begin. The caller holds the lock. */
 static st_status begin(st_write *w)
 {
     const st_mesh *mesh = w->mesh;
@@ -82,7 +82,8 @@ void st_claimed_by(st_mesh *mesh, const char *id)
     pthread_rwlock_unlock(&mesh->lock);
 }
 
-/* Needs no lock: other writes cannot change the mesh until the claim ends. */
+/* Returns the content of a claimed mesh. It needs no lock, because other writes cannot change the
+ * mesh until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *w)
 {
     assert(w->claimed);
@@ -100,7 +101,8 @@ he_status st_write_copy(st_write *w, he_watch *watch, he_error *err)
     return status;
 }
 
-/* The objects of the delta are from the copy, so they go with it. */
+/* Frees the copy of a claim and empties its delta, because the objects of the delta are from the
+ * copy. */
 void st_write_discard_copy(st_write *w)
 {
     assert(w->claimed);
@@ -132,7 +134,7 @@ bool st_write_undoable(const st_write *w)
     return !w->changes.renumbered && st_log_fits(&w->mesh->log);
 }
 
-/* Rolls back to where the write began, empties its delta and stops recording. */
+/* Rolls the content back to where the write began, empties its delta and stops recording. */
 static void roll_back(st_write *w)
 {
     if (w->delta != NULL) {
@@ -198,8 +200,8 @@ static bool reserve_steps(st_write *w)
     return true;
 }
 
-/* The event shows values as they are after this step, so it is rendered now. For a single step, the
- * net changes found for the answer are used. */
+/* Renders the event of step i. It shows values as they are after this step, so it is rendered now.
+ * For a single step, the net changes found for the answer are used. */
 static void write_event(st_write *w, uint32_t i)
 {
     const st_mesh *mesh = w->mesh;
@@ -247,7 +249,7 @@ st_status st_write_step(st_write *w, st_action which, uint32_t steps)
     if (steps > (which == ST_UNDO ? log->undo_count : log->redo_count)) {
         return ST_NOTHING;
     }
-    /* A step is a revision of its own: the reserved delta must not record it. */
+    /* A step is a revision of its own, so the reserved delta must not record it. */
     roll_back(w);
     w->which = which;
     w->steps = steps;

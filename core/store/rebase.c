@@ -1,5 +1,5 @@
-/* Makes a newer base for a mesh with many records, so that its loading time and disk space stay
- * bounded.
+/* rebase.c - makes a newer base, from which a mesh is loaded, for a mesh with many records, so that
+ * its loading time and disk space stay bounded.
  *
  *     base ... records ... | ... records ...
  *                          +-- snapshot, staged while edits go on; when nothing before it can be
@@ -16,17 +16,18 @@
 
 #include <string.h>
 
-/* Can the mesh be loaded from this record on, without any before it? */
+/* Returns true if the mesh can be loaded from this record on, without any record before it. */
 static bool is_base(const st_record *record)
 {
     return record->barrier && !record->staged_edit &&
            (record->kind == ST_RECORD_CONTENT || record->stage != NULL);
 }
 
-/* Bytes of a record without its body; how much smaller a content is on the disk than in memory. */
+/* The bytes of a record without its body, and the factor by which a content is smaller on the disk
+ * than in memory. */
 enum { FRAME_BYTES = 200, PACKED_SHARE = 2 };
 
-/* A snapshot that may become the base. */
+/* A snapshot of a mesh that may become its base. */
 struct st_next_base {
     bool taking; /* it is being staged: only the thread that stages it may change it */
     bool spoiled;
@@ -88,7 +89,7 @@ static st_status begin(st_mesh *mesh, st_snapshot **out)
     return st_snapshot_held(mesh, out);
 }
 
-/* Runs on a thread of the pool. */
+/* Takes a snapshot and stages it. It runs on a thread of the pool. */
 static void take(void *context)
 {
     st_mesh *mesh = context;

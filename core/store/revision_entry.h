@@ -1,5 +1,5 @@
-/* revision_entry.h - the entries and steps of a revision log, for revision_log.c and
- * revision_walk.c only. */
+/* revision_entry.h - the entries and steps of a revision log. Only revision_log.c and
+ * revision_walk.c use it. */
 #ifndef HE_STORE_REVISION_ENTRY_H
 #define HE_STORE_REVISION_ENTRY_H
 
@@ -17,7 +17,8 @@ struct st_step {
     uint64_t applied;  /* revision of the entry that applied it last */
     st_revision *kept; /* that entry, if only the redo stack still needs it */
     uint32_t uses;     /* how many entries and stacks use it */
-    /* References: one from the log while `uses` is not 0, one from each st_log_hold. */
+    /* The number of references: one from the log while `uses` is not 0, and one from each
+     * st_log_hold. */
     _Atomic uint32_t holders;
     st_stack stack;
     st_step *below, *above; /* neighbours on its stack */
@@ -41,7 +42,7 @@ static inline st_revision *st_entry_at(const st_revision_log *log, size_t i)
     return log->ring[(log->first + i) & (log->capacity - 1)];
 }
 
-/* Returns the entry of a revision, which the log must have. */
+/* Returns the log's entry of a revision, which the log must have. */
 static inline st_revision *st_entry_of(const st_revision_log *log, uint64_t revision)
 {
     return st_entry_at(log, (size_t)(revision - log->before.revision - 1));

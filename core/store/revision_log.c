@@ -8,7 +8,7 @@
 /* A reserved delta larger than this is freed rather than reused for the next edit. */
 enum { SPARE_BYTES = 64 * 1024 };
 
-/* The ring is at least a quarter full, unless it has only this many places. */
+/* The ring of entries is at least a quarter full, unless it has only this many places. */
 enum { FEWEST_PLACES = 8 };
 
 static void note_marks(st_point *point, const he_mesh *content)
@@ -147,7 +147,8 @@ static void clear_stacks(st_revision_log *log)
     }
 }
 
-/* Entries stay as history without their deltas; only the newest revision can be read. */
+/* Frees the deltas of all entries, which stay as history; only the newest revision can be read
+ * then. */
 static void forget_deltas(st_revision_log *log)
 {
     clear_stacks(log);
@@ -176,8 +177,9 @@ static void drop_undo_bottom(st_revision_log *log)
     release_step(log, step);
 }
 
-/* The steps of the undo stack were last applied in the order in which they lie there, so the step
- * that the oldest entry applied last, if it is on the undo stack, is at its bottom. */
+/* Drops the oldest entry. The steps of the undo stack were last applied in the order in which they
+ * lie there, so the step that the oldest entry applied last, if it is on the undo stack, is at its
+ * bottom. */
 static void drop_oldest(st_revision_log *log)
 {
     st_revision *entry = st_entry_at(log, 0);
@@ -222,7 +224,8 @@ void st_log_drop(st_revision_log *log, uint64_t reach)
 
 void st_log_settle(st_revision_log *log)
 {
-    /* The newest entry stays whatever the budget: it has the facts of the present revision. */
+    /* The newest entry stays whatever the budget is, because it has the facts of the present
+     * revision. */
     while (log->bytes > log->budget && log->count > 1) {
         drop_oldest(log);
     }
@@ -335,7 +338,8 @@ bool st_log_fits(const st_revision_log *log)
     return spare_bytes(log) + entry_size(ST_ENTRY_OPS) <= log->budget;
 }
 
-/* Cuts at the end of a name, so that a reader sees whole names and then "...". */
+/* Copies the names of operations and cuts them at the end of a name, so that a reader sees whole
+ * names and then "...". */
 static void copy_ops(char out[ST_ENTRY_OPS], const char *ops)
 {
     size_t length = strlen(ops);
@@ -360,7 +364,7 @@ static void add_entry(st_revision_log *log, st_revision *entry)
     log->bytes += entry->size;
 }
 
-/* Adds the reserved entry, for a content that differs from all before. */
+/* Adds the reserved entry, for a content that differs from all contents before. */
 static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action action,
                               const char *ops, double time, const he_mesh *content)
 {
@@ -411,7 +415,7 @@ void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, d
         log->bytes += step->charged;
     }
     st_log_settle(log);
-    /* If there was no memory to trim it, the step can be larger than expected. */
+    /* If there was no memory to trim the delta, the step can be larger than expected. */
     if (log->bytes > log->budget) {
         forget_deltas(log);
     }
@@ -439,7 +443,8 @@ void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, 
     }
 }
 
-/* Swaps created and deleted: what an undo creates is what the edit deleted. */
+/* Swaps the numbers of created and deleted elements, because an undo creates what the edit
+ * deleted. */
 static void turn_tally(st_tally *tally)
 {
     st_tally before = *tally;
@@ -447,8 +452,8 @@ static void turn_tally(st_tally *tally)
     memcpy(tally->deleted, before.created, sizeof tally->deleted);
 }
 
-/* Makes an entry that applies a step in the other direction than the entry that applied it last; a
- * step on a stack always has that one. */
+/* Makes an entry that undoes or redoes a step: it applies the step in the other direction than the
+ * entry that applied it last. A step on a stack always has that entry. */
 static st_revision *step_entry(const st_revision_log *log, const st_step *step)
 {
     const st_revision *last = step->kept != NULL ? step->kept : st_entry_of(log, step->applied);
@@ -490,7 +495,8 @@ void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, d
     log->steps = entry->next;
     st_step *step = which == ST_UNDO ? pop_undo(log) : pop_redo(log);
     assert(step->revision == entry->inverts);
-    /* Columns and contents have changed sides, so the step holds other bytes now. */
+    /* The columns and contents of the delta were exchanged with those of the mesh, so the step
+     * holds other bytes now. */
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
     entry->action = which;
     entry->forward = which == ST_REDO;

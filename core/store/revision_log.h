@@ -61,20 +61,22 @@ typedef struct st_revision_log {
     st_revision *steps;  /* entries that st_log_reserve_steps reserved, in the order of their use */
 } st_revision_log;
 
-/* Begins a history with this revision (but for the high-water marks) and content. */
+/* Begins a history with this revision and content; the high-water marks are taken from the
+ * content. */
 void st_log_init(st_revision_log *log, uint64_t budget, const st_point *begin,
                  const he_mesh *content);
 void st_log_clear(st_revision_log *log);
 
-/* Makes sure that one entry can be added without allocating, and lends the empty delta it would
- * have. Returns NULL if memory is out. The functions below that add an entry require this. */
+/* Makes sure that one entry can be added without allocating, and lends the empty delta that the
+ * entry would have. Returns NULL if memory is out. The functions below that add an entry require
+ * this. */
 he_delta *st_log_reserve(st_revision_log *log);
 /* Replaces the reserved delta by one that was made elsewhere. */
 void st_log_lend(st_revision_log *log, he_delta *takes);
-/* Empties the reserved delta that was used but not added: a small one is kept, a large one
- * freed. */
+/* Empties the reserved delta that was used but not added to the log: a small one is kept, a large
+ * one freed. */
 void st_log_unreserve(st_revision_log *log);
-/* Does the reserved delta fit into the budget, so that it can be undone? */
+/* Returns true if the reserved delta fits into the budget, so that its edit can be undone. */
 bool st_log_fits(const st_revision_log *log);
 
 /* Adds the reserved delta as an edit, with one step on the undo stack. `content` is the mesh after
@@ -95,7 +97,7 @@ void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action actio
  * Returns ST_ELSEWHERE if the stack does not lead to it. */
 st_status st_log_steps_to(const st_revision_log *log, st_action which, uint64_t revision,
                           uint32_t *steps);
-/* Returns the bytes of that many steps' deltas, as a measure of the work to apply them. */
+/* Returns the bytes of the deltas of that many steps, as a measure of the work to apply them. */
 uint64_t st_log_steps_bytes(const st_revision_log *log, st_action which, uint32_t steps);
 /* Makes sure that this many steps, which the stack must have, can be added without allocating.
  * Returns false if memory is out; nothing is reserved then. `content` is the mesh before the
@@ -107,8 +109,8 @@ void st_log_unreserve_steps(st_revision_log *log);
 uint64_t st_log_top(const st_revision_log *log, st_action which);
 /* Lists the deltas that so many steps, which the stack must have, apply, in order. */
 void st_log_deltas(const st_revision_log *log, st_action which, uint32_t steps, he_delta **out);
-/* Moves the next of these steps to the other stack and adds its entry, after its delta was
- * applied. */
+/* Moves the next of these steps to the other stack and adds its entry. It must be called after the
+ * step's delta was applied. */
 void st_log_add_step(st_revision_log *log, uint64_t revision, st_action which, double time,
                      const he_mesh *content);
 /* Brings the log back within its budget after steps were added. Their deltas stay valid until the
@@ -118,24 +120,25 @@ void st_log_settle(st_revision_log *log);
  * more than when it was made, so the log is cut here only if it takes more than twice the budget,
  * which means that the budget was reduced; any other excess is cut by the next entries. */
 void st_log_limit(st_revision_log *log, uint64_t budget);
-/* Is nothing before a revision needed any more, neither for undo and redo nor for reading? */
+/* Returns true if nothing before a revision is needed any more, neither for undo and redo nor for
+ * reading. */
 bool st_log_stands_on(const st_revision_log *log, uint64_t revision);
 /* Drops the entries of revisions up to `reach`. */
 void st_log_drop(st_revision_log *log, uint64_t reach);
 
-/* Copies the i-th newest entry. Returns false past the end. */
+/* Copies the i-th newest entry of the log. Returns false past the end. */
 bool st_log_entry(const st_revision_log *log, size_t i, st_entry *out);
 /* Fills the record of a revision from the newest entry: its facts, and whether the history ends
  * with it; the texts are borrowed while the entry lives. A record of another kind gets only the
  * high-water marks and the reach. */
 void st_log_fill_record(const st_revision_log *log, st_record *record);
-/* Returns the newest revision. */
+/* Returns the newest revision of the log. */
 uint64_t st_log_head(const st_revision_log *log);
-/* Copies the facts of a revision from log->oldest to the head. */
+/* Copies the facts of a revision that the log has. */
 void st_log_point(const st_revision_log *log, uint64_t revision, st_point *out);
 
 /* Returns the bytes of the deltas between two revisions, as a measure of the work to bring a copy
- * from one to the other; UINT64_MAX if the log does not reach back to the older. */
+ * from one to the other; UINT64_MAX if the log does not reach back to the older one. */
 uint64_t st_log_distance(const st_revision_log *log, uint64_t from, uint64_t to);
 /* Brings `copy` from revision *at towards `to`, until the steps have cost more than `most` bytes;
  * *at is where it arrived.
@@ -148,7 +151,7 @@ HE_NODISCARD he_status st_log_walk(const st_revision_log *log, he_replay *copy, 
 /* Returns the step that led to a revision after log->oldest, with a reference: it may outlive the
  * log until it is released. */
 st_step *st_log_hold(const st_revision_log *log, uint64_t revision, st_action *action);
-/* Without the mesh's lock only the delta's words may be read. */
+/* Returns the delta of a step. Without the mesh's lock only the delta's words may be read. */
 const he_delta *st_step_delta(const st_step *step);
 void st_step_release(st_step *step); /* takes NULL */
 /* Returns the delta that led to a revision, forwards or backwards; NULL if it is not kept. */

@@ -6,7 +6,8 @@
 #include "system/lock.h"
 #include "system/memory.h"
 
-/* A reference to a copy that many callers may share, and the mesh's facts when the caller asked. */
+/* A snapshot: a reference to a copy that many callers may share, and the mesh's facts when the
+ * caller asked for it. */
 struct st_snapshot {
     st_copy *copy;
     st_mesh_info info;
@@ -21,7 +22,8 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Counts the bytes of the content now: the edits that bring the copy forward add little. */
+/* Counts the bytes of a copy as those of the content now, because the edits that bring the copy
+ * forward add little. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
     copy->counts = &mesh->followers->counts;
@@ -29,14 +31,16 @@ static void count_copy(st_copy *copy, const st_mesh *mesh)
     st_count(&copy->counts->copies, copy->bytes);
 }
 
-/* Under the snapshot lock no other thread can begin to use the cached copy. */
+/* Returns true if only the cache uses a copy. Under the snapshot lock no other thread can begin to
+ * use the cached copy. */
 static bool is_cached_alone(const st_copy *copy)
 {
     return atomic_load_explicit(&copy->uses, memory_order_acquire) == 1;
 }
 
-/* Replaying costs about one random access a record, copying is sequential: above half the mesh's
- * bytes the copy is cheaper. */
+/* Decides whether a copy is brought forward rather than made anew. Replaying costs about one random
+ * access for each record, copying is sequential: above half the mesh's bytes a new copy is
+ * cheaper. */
 static bool is_near(const st_mesh *mesh, uint64_t from, uint64_t to)
 {
     return st_log_distance(&mesh->log, from, to) <= he_mesh_bytes(mesh->content) / 2;
@@ -132,7 +136,8 @@ static st_status cache_past(st_mesh *mesh, he_replay *replay, uint64_t revision,
     return ST_OK;
 }
 
-/* Does the history in memory reach to the revision, and can the cached copy be moved there? */
+/* Decides whether the history in memory reaches back to the revision, and whether the cached copy
+ * can be moved there. */
 static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool *movable)
 {
     const st_copy *copy = mesh->past;
@@ -150,7 +155,8 @@ static st_status find_past(st_mesh *mesh, uint64_t revision, double *time, bool 
     return status;
 }
 
-/* Makes the copy from the history in memory. The caller holds the past lock. */
+/* Makes the copy of an earlier revision from the history in memory. The caller holds the past
+ * lock. */
 static st_status copy_from_history(st_mesh *mesh, uint64_t revision)
 {
     he_replay *replay = NULL;
@@ -212,7 +218,7 @@ st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out)
     st_lock_mutex(&mesh->past_lock);
     st_status status = seek_past(mesh, revision);
     if (status == ST_OK) {
-        /* The facts are the present ones, except for the revision and its time. */
+        /* The facts of the snapshot are the present ones, except for the revision and its time. */
         snapshot->copy = mesh->past;
         atomic_fetch_add_explicit(&snapshot->copy->uses, 1, memory_order_relaxed);
         (void)st_read_begin(mesh, &snapshot->info);
@@ -259,7 +265,7 @@ void st_copy_shed(st_mesh *mesh)
     shed(&mesh->copy);
     pthread_mutex_unlock(&mesh->snapshot_lock);
     st_queue_shed(&mesh->queue);
-    /* The lock is held while a copy is being made, and that copy is wanted. */
+    /* If the lock is held, a copy is being made and is wanted, so it is not freed. */
     if (pthread_mutex_trylock(&mesh->past_lock) == 0) {
         shed(&mesh->past);
         pthread_mutex_unlock(&mesh->past_lock);

@@ -11,7 +11,7 @@
 
 enum { MESH_BATCH = 64 };
 
-/* --- notices of the journal, on its own thread --- */
+/* --- notices of the journal, which come on its own thread --- */
 
 static void moved(void *context, uint64_t position)
 {
@@ -19,7 +19,8 @@ static void moved(void *context, uint64_t position)
     st_waits_moved(store->followers.waits, position);
 }
 
-/* The loss is noted first, so that answers made from a lost mesh are not sent any more. */
+/* Handles a loss that the journal reports. It is recorded first, so that answers made from a lost
+ * mesh are not sent any more. */
 static void lost(void *context, const st_loss *loss)
 {
     st_store *store = context;
@@ -212,7 +213,8 @@ size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit)
     return given;
 }
 
-/* An answer whose change was lost is not given again: the request is tried anew. */
+/* Returns true if the change of a kept answer was lost. Such an answer is not given again: the
+ * request is tried anew. */
 static bool is_lost(const st_store *store, const st_kept *kept)
 {
     const st_shown shown = {kept->position, kept->position - 1, kept->incarnation};
@@ -235,7 +237,7 @@ st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key
 
 /* --- notes --- */
 
-/* The journal of a test may store no notes. */
+/* Stores a note in the journal; the journal of a test may store no notes. */
 static st_status note(st_store *store, const st_note *what, uint64_t *position)
 {
     const st_journal *journal = &store->journal;
@@ -328,7 +330,7 @@ void st_store_health(const st_store *store, st_health *out)
     }
 }
 
-/* The sums may come from slightly different moments. */
+/* Measures the store. The sums may come from slightly different moments. */
 void st_store_measure(st_store *store, st_store_measures *out)
 {
     st_store_counts *counts = &store->followers.counts;

@@ -44,11 +44,11 @@ typedef struct st_keyed st_keyed;       /* a request with an Idempotency-Key, be
 typedef struct st_cause {
     const st_keyed *keyed; /* the request with an Idempotency-Key; NULL: none */
     const char *job;       /* the job that makes the change; NULL: none */
-    /* The holder of a mesh that it creates (holder/holders.h); "" or NULL: none. */
+    /* The holder of a mesh that the change creates (holder/holders.h); "" or NULL: none. */
     const char *holder;
 } st_cause;
 
-/* Plain facts about a stored mesh, copied out under its lock. */
+/* Facts about a stored mesh as plain data, copied under its lock. */
 typedef struct st_mesh_info {
     char id[ST_MESH_ID + 1];
     char name[ST_MESH_NAME + 1]; /* UTF-8, may be empty */
@@ -60,7 +60,8 @@ typedef struct st_mesh_info {
     double created, modified;    /* seconds since 1970 UTC */
     uint32_t undo, redo;         /* steps on the stacks */
     bool removed;
-    /* it has a change that will never be durable: the store has this mesh no more */
+    /* Whether the mesh has a change that will never be durable: it is then no longer in the
+     * store. */
     bool lost;
     st_status unreadable;    /* ST_OK, or ST_DAMAGED or ST_NEWER: it has no content, see st_load */
     bool busy;               /* a long edit has claimed it, see write.h */
@@ -77,8 +78,9 @@ typedef struct st_change {
     bool removed;              /* the mesh was deleted; no further change follows */
 } st_change;
 
-/* Renders a change as a message for listeners of the mesh. `bytes` is allocated by base/mem.h; the
- * caller frees it. Returns false if memory is out. Called under the mesh's write lock. */
+/* A function that renders a change as a message for listeners of the mesh. `bytes` is allocated by
+ * base/mem.h; the caller frees it. Returns false if memory is out. It is called under the mesh's
+ * write lock. */
 typedef bool st_render(const st_mesh_info *info, const st_change *change, char **bytes,
                        size_t *length);
 
@@ -93,22 +95,22 @@ typedef struct st_store_options {
     size_t mesh_listeners;
 } st_store_options;
 
-/* Returns NULL if memory is out or the journal cannot be read; the caller then still owns the
- * journal. */
+/* Makes a store. Returns NULL if memory is out or the journal cannot be read; the caller then still
+ * owns the journal. */
 st_store *st_store_new(const st_store_options *options);
 /* No handle may be left. */
 void st_store_free(st_store *store);
-/* Returns the journal's two random words. Hashes keyed with them cannot be foreseen by a client: of
- * names in tables, of requests that are remembered. */
+/* Returns the two random words that the journal keeps. They key hashes of names in tables and of
+ * requests that are remembered, so that clients cannot foresee these hashes. */
 const uint64_t *st_secret(const st_store *store);
 /* Returns the number of meshes, in memory or not. */
 uint64_t st_store_count(st_store *store);
-/* Are meshes kept on a disk? Then a request for a mesh that is not in memory, for the list, or for
- * a free id waits for the disk. */
+/* Returns true if meshes are kept on a disk. Then a request for a mesh that is not in memory, for
+ * the list, or for a free id waits for the disk. */
 bool st_store_waits_for_disk(const st_store *store);
-/* Tells whether changes are accepted. Does not wait. */
+/* Reports whether changes are accepted. Does not wait. */
 void st_store_health(const st_store *store, st_health *out);
-/* Sizes now, and counts since the start. */
+/* Sizes of the store now, and counts since its start. */
 typedef struct st_store_measures {
     uint64_t meshes, most_meshes; /* on the disk or in memory */
     uint64_t meshes_in_memory, vertices, edges, faces;
@@ -124,7 +126,8 @@ typedef struct st_store_measures {
     st_journal_measures journal; /* zero if the journal keeps nothing */
 } st_store_measures;
 
-/* Takes the locks of the table and of the journal for a moment; waits for nothing else. */
+/* Measures the store. Takes the locks of the table and of the journal for a moment, and waits for
+ * nothing else. */
 void st_store_measure(st_store *store, st_store_measures *out);
 /* Sets the store that this thread works for: before the thread is refused memory, unused meshes
  * that the journal can load again are evicted. NULL ends this. */
@@ -132,8 +135,8 @@ void st_store_serve(const st_store *store);
 /* Must be called about once a second. While less than an eighth of the memory budget is free, it
  * evicts meshes that were not used for a minute, the least recently used first. */
 void st_store_rest(st_store *store);
-/* Frees the cached copies and bodies of kept answers that no thread reads, and objects derived from
- * meshes. The caller must hold no lock. */
+/* Frees memory that can be made again: the cached copies and the bodies of kept answers that no
+ * thread reads, and objects derived from meshes. The caller must hold no lock. */
 void st_store_shed(st_store *store);
 
 /* --- holders of meshes --- (holder/holders.h) */
@@ -142,17 +145,18 @@ void st_store_shed(st_store *store);
  * already stays; a change beyond a limit is refused with ST_QUOTA.
  * Returns ST_NO_MEMORY if memory is out; the limits are then as they were. */
 st_status st_limit_holders(st_store *store, const st_holder_limit *limits, size_t count);
-/* Returns what a holder has, in memory or not, and may have; zeros for an unknown holder. */
+/* Returns the meshes and bytes that a holder has, in memory or not, and may have; zeros for an
+ * unknown holder. */
 void st_holder_usage(st_store *store, const char *name, st_usage *out);
 /* Returns the holder of the mesh, "" if it has none. Valid as long as the mesh. */
 const char *st_holder_of(const st_mesh *mesh);
 
 /* Returns the waits of answers that are not yet durable. */
 st_waits *st_store_waits(st_store *store);
-/* Returns what an answer shows that shows one mesh with these facts. */
+/* Returns the records that an answer shows if it shows one mesh with these facts. */
 st_shown st_shown_of(const st_mesh_info *info);
-/* Returns what an answer shows that may show any mesh, or that one does not exist. Everything up to
- * `since` was durable when the answer was begun (st_waits_durable). */
+/* Returns the records that an answer shows if it may show any mesh, or that one does not exist.
+ * Everything up to `since` was durable when the answer was begun (st_waits_durable). */
 st_shown st_shown_all(st_store *store, uint64_t since);
 
 /* --- the collection --- */
@@ -161,16 +165,16 @@ st_shown st_shown_all(st_store *store, uint64_t since);
  * Returns ST_ABSENT if there is no such mesh.
  * Returns ST_COLD if it is not in memory; only st_load finds out whether it exists. */
 st_status st_find(st_store *store, const char *id, st_mesh **out);
-/* st_find that loads a mesh which is not in memory, once for all threads that ask for it. Waits, so
- * only threads that may wait can call it, without a lock. A mesh that is damaged, or that a newer
- * release has written, is found with info.unreadable: it has no content, and can only be removed or
- * replaced (st_create_over).
+/* Finds a mesh like st_find, and loads one that is not in memory, once for all threads that request
+ * it. Waits, so only threads that may wait can call it, without a lock. A mesh that is damaged, or
+ * that a newer release has written, is found with info.unreadable: it has no content, and can only
+ * be removed or replaced (st_create_over).
  * Returns ST_ABSENT if there is no such mesh.
  * Returns ST_LOADING if another thread has been loading it for too long.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if it cannot be loaded. */
 st_status st_load(st_store *store, const char *id, st_mesh **out);
-/* Returns why a mesh has no content, ST_DAMAGED or ST_NEWER, else ST_OK; and a sentence about that,
- * else "". Both stay valid as long as the mesh. */
+/* Returns why a mesh has no content, ST_DAMAGED or ST_NEWER, else ST_OK; st_damage returns a
+ * sentence about that, else "". Both stay valid as long as the mesh. */
 st_status st_unreadable(const st_mesh *mesh);
 const char *st_damage(const st_mesh *mesh);
 /* Reads as much of a mesh as is intact, without putting it into the store, whose journal must be
@@ -192,13 +196,14 @@ void st_release(st_mesh *mesh);  /* takes NULL */
  * Returns ST_BUDGET, ST_NO_MEMORY, ST_BEHIND, ST_FULL or ST_FAILED if the mesh cannot be stored. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_cause *cause, st_mesh **out);
-/* st_create for a content that was made from what `from` (which may be NULL) shows; if those
- * records are lost, so is the new mesh.
+/* Creates a mesh like st_create, from a content that was made from the records that `from` (which
+ * may be NULL) shows; if those records are lost, so is the new mesh.
  * Returns ST_LOST if they are lost already. */
 st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
                          const st_cause *cause, const st_shown *from, st_mesh **out);
-/* Creates a mesh in place of a damaged one of that id, which is removed; both happen or neither.
- * Returns ST_ABSENT if the damaged one was removed before. */
+/* Creates a mesh in place of a damaged one of that id, which is removed; either both happen or
+ * neither.
+ * Returns ST_ABSENT if the damaged mesh was removed before. */
 st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he_mesh *content,
                          const st_cause *cause, st_mesh **out);
 /* Writes a large content to the disk before it replaces another (st_write_replace), so that the
@@ -218,9 +223,9 @@ st_status st_cards(st_store *store, const char *after, st_card *out, size_t limi
 
 /* --- a mesh that is not in memory, without loading it --- */
 
-/* The facts on a mesh's card: entity tags and preconditions are made of them. Whether the content
- * can be read is not known. From st_cold_begin to st_cold_end the caller has the lookup of the id:
- * no thread loads the mesh, and the facts do not change. */
+/* A mesh that is not in memory: the facts on its card, of which entity tags and preconditions are
+ * made. Whether the content can be read is not known. From st_cold_begin to st_cold_end the caller
+ * has the lookup of the id: no thread loads the mesh, and the facts do not change. */
 typedef struct st_cold {
     st_store *store;
     struct st_lookup *lookup;
@@ -235,14 +240,14 @@ typedef struct st_cold {
  * Returns ST_DAMAGED if the card is damaged; st_load then gives a mesh that can be removed.
  * Returns ST_LOADING, ST_NO_MEMORY or ST_FAILED if the card cannot be read. */
 st_status st_cold_begin(st_store *store, const char *id, st_mesh **mesh, st_cold *out);
-/* Removes the mesh; may be called once. Does not wait.
+/* Removes a mesh that is not in memory; may be called once. Does not wait.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY if the journal refuses. */
 st_status st_cold_remove(st_cold *cold);
 void st_cold_end(st_cold *cold);
 
 /* --- reading --- */
 
-/* Takes the shared lock and returns the content, never NULL. `info` may be NULL. */
+/* Takes the shared lock of a mesh and returns its content, never NULL. `info` may be NULL. */
 const he_mesh *st_read_begin(st_mesh *mesh, st_mesh_info *info);
 void st_read_end(st_mesh *mesh);
 /* Copies the facts of the mesh without its content, under the shared lock for a moment. Returns how
@@ -258,17 +263,17 @@ st_status st_snapshot_take(st_mesh *mesh, st_snapshot **out);
  * Returns ST_GONE if neither the history nor the records on the disk reach back to it.
  * Returns ST_NO_MEMORY, ST_BUDGET or ST_FAILED if the copy cannot be made. */
 st_status st_snapshot_at(st_mesh *mesh, uint64_t revision, st_snapshot **out);
-/* st_snapshot_take for a caller that holds the shared lock. */
+/* Makes a copy like st_snapshot_take, for a caller that holds the shared lock. */
 st_status st_snapshot_held(st_mesh *mesh, st_snapshot **out);
 const he_mesh *st_snapshot_content(const st_snapshot *snapshot, st_mesh_info *info);
 void st_snapshot_release(st_snapshot *snapshot); /* takes NULL */
-/* A value derived from one revision, such as its summary, which is kept until the revision changes.
- * get copies it and returns false if there is none; put replaces it. The caller holds the read
- * lock. */
+/* These functions keep a value that was derived from one revision, such as its summary, until the
+ * revision changes. st_cache_get copies it and returns false if there is none; st_cache_put
+ * replaces it. The caller holds the read lock. */
 bool st_cache_get(st_mesh *mesh, void *value, size_t size);
 void st_cache_put(st_mesh *mesh, const void *value, size_t size);
-/* st_cache_put without a lock: keeps nothing if the mesh has changed since it had the facts
- * `of`. */
+/* Keeps a value like st_cache_put, without a lock: keeps nothing if the mesh has changed since it
+ * had the facts `of`. */
 void st_cache_put_of(st_mesh *mesh, const st_mesh_info *of, const void *value, size_t size);
 
 /* Objects that handlers derive from a mesh and keep with it, one of each kind. */
@@ -278,7 +283,8 @@ typedef enum st_derived_kind {
     ST_DERIVED_COUNT
 } st_derived_kind;
 
-/* The longest that st_derived_wait waits, so that its caller can check for cancellation. */
+/* The most milliseconds that st_derived_wait waits, so that its caller can check for
+ * cancellation. */
 enum { ST_DERIVED_MILLIS = 50 };
 
 typedef struct st_derived {
@@ -286,17 +292,17 @@ typedef struct st_derived {
     void (*destroy)(void *value);
 } st_derived;
 
-/* The slot of a derived object. One thread has it from begin to end; it is taken after the read
- * lock or without it, one slot at a time, and never for longer than a worker may take. The store
- * destroys the object when memory is short, and with the mesh. */
+/* Takes the slot of an object derived from a mesh. One thread has the slot from begin to end. It is
+ * taken after the read lock or without it, one slot at a time, and never for longer than a worker
+ * may take. The store destroys the object when memory is short, and with the mesh. */
 st_derived *st_derived_begin(st_mesh *mesh, st_derived_kind kind);
 void st_derived_end(st_mesh *mesh, st_derived_kind kind);
 /* Lends the slot to other threads until one of them has ended, or for ST_DERIVED_MILLIS, then takes
- * it back. Must not be called on a worker, nor under a lock that another user of the slot may
- * want. */
+ * it back. It must not be called on a worker, nor under a lock that another user of the slot may
+ * need. */
 void st_derived_wait(st_mesh *mesh, st_derived_kind kind);
-/* Returns what the revision changed, in either direction; NULL if that is not kept. The caller
- * holds the read lock. */
+/* Returns the delta of a revision, in either direction; NULL if it is not kept. The caller holds
+ * the read lock. */
 const he_delta *st_revision_delta(st_mesh *mesh, uint64_t revision);
 
 /* --- keyed requests --- (idempotency.h) */
@@ -325,8 +331,8 @@ typedef struct st_kept {
     char etag[ST_KEPT_TAG];  /* "" for none */
     char id[ST_MESH_ID + 1]; /* the mesh it shows, which Location names with 201 */
     uint64_t incarnation, position;
-    /* The state that the answer's ETag names, if the answer was given before the server started, so
-     * that its tag is not kept. Else 0. */
+    /* The state that the answer's ETag names, if the answer was given before the server was last
+     * started, so that its tag is not kept; else 0. */
     uint64_t revision, metadata;
     const char *body; /* JSON; NULL with a length: omitted */
     size_t length;
@@ -335,24 +341,24 @@ typedef struct st_kept {
 /* Begins a keyed request, before it is tried, without a lock. If `mesh` is NULL the key is among
  * those of the store. With ST_KEYED_NEW all memory for the answer is allocated, so st_keyed_keep
  * cannot fail; with ST_KEYED_KEPT st_keyed_answer gives the answer. In both cases st_keyed_end ends
- * it, and forgets the key unless the answer was kept. Keys of a mesh go with the mesh, and every
- * key after a day or when newer ones need the room. */
+ * it, and forgets the key unless the answer was kept. Keys of a mesh are deleted with the mesh, and
+ * every key after a day or when newer ones need the room. */
 st_keyed_status st_keyed_begin(st_store *store, st_mesh *mesh, const st_key *key, st_keyed **out);
 const st_kept *st_keyed_answer(const st_keyed *keyed);
 void st_keyed_keep(st_keyed *keyed, const st_kept *answer);
 void st_keyed_end(st_keyed *keyed);
 
 /* Makes a request that changed nothing survive a restart; one that changed something is in its
- * records already. To be called before st_keyed_keep, with the mesh's facts that the answer shows.
- * *position is what the answer must wait for, 0 for nothing. If the journal refuses, the answer is
- * kept in memory only. */
+ * records already. It must be called before st_keyed_keep, with the facts of the mesh that the
+ * answer shows. *position is what the answer must wait for, 0 for nothing. If the journal refuses,
+ * the answer is kept in memory only. */
 void st_keyed_note(st_store *store, const st_keyed *keyed, const st_mesh_info *info,
                    uint64_t *position);
 
 /* --- jobs --- (api/job/job_table.h runs them) */
 
-/* Stores the state of a job, or removes it. *position is the position of that note, 0 if the
- * journal keeps nothing.
+/* Stores the state of a job, or removes it. *position is the position of that note in the journal,
+ * 0 if the journal keeps nothing.
  * Returns ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY if the journal refuses. */
 st_status st_job_keep(st_store *store, const st_job *job, uint64_t *position);
 st_status st_job_forget(st_store *store, const char *id, uint64_t *position);
@@ -381,7 +387,7 @@ typedef struct st_history {
     uint64_t bytes, budget; /* bytes that entries and deltas take, and may take */
 } st_history;
 
-/* Copies the i-th newest entry. Returns false past the end. */
+/* Copies the i-th newest entry of a mesh's history. Returns false past the end. */
 bool st_history_entry(st_mesh *mesh, size_t i, st_entry *out);
 void st_history_reach(st_mesh *mesh, st_history *out);
 

@@ -20,7 +20,7 @@ typedef enum st_loaded {
     ST_LOADED_COUNT
 } st_loaded;
 
-/* The memory of a mesh, by use. */
+/* The uses of a mesh's memory, which are counted separately. */
 typedef enum st_weight {
     ST_WEIGHT_MESHES, /* 1 */
     ST_WEIGHT_VERTICES,

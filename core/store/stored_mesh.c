@@ -10,7 +10,7 @@ static void copy_name(char *out, size_t size, const char *name)
     size_t length = strlen(name);
     if (length >= size) {
         length = size - 1;
-        /* Do not cut inside a UTF-8 sequence. */
+        /* The name must not be cut inside a UTF-8 sequence. */
         while (length > 0 && ((unsigned char)name[length] & 0xC0) == 0x80) {
             length--;
         }
@@ -19,7 +19,8 @@ static void copy_name(char *out, size_t size, const char *name)
     out[length] = '\0';
 }
 
-/* The lock prefers writers: a steady stream of readers must not starve one. */
+/* Initialises a lock that prefers writers, because a steady stream of readers must not starve
+ * one. */
 static int init_lock(pthread_rwlock_t *lock)
 {
     pthread_rwlockattr_t attributes;
@@ -220,7 +221,7 @@ st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cau
     return record;
 }
 
-/* A barrier that has a content is a base by itself. */
+/* Handles a record that is a base by itself: a barrier that has a content. */
 static void note_base(st_mesh *mesh, const st_record *record)
 {
     if (record->barrier && (record->kind == ST_RECORD_CONTENT || record->stage != NULL)) {
@@ -238,7 +239,8 @@ st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes)
     return status;
 }
 
-/* Counts the bytes that the newest record states, as the journal does when it is asked. */
+/* Counts the bytes that the newest record states for the mesh's holder, as the journal does when it
+ * is asked. */
 static void count_held(st_mesh *mesh, const st_record *record)
 {
     const bool removed = record->kind == ST_RECORD_REMOVE;
@@ -295,8 +297,8 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss)
     pthread_rwlock_unlock(&mesh->lock);
     if (found) {
         st_lock_write(&mesh->lock);
-        /* Checked again under the lock: the mesh may have been removed meanwhile, and the removal
-         * is lost too. */
+        /* This is checked again under the lock: the mesh may have been removed meanwhile, and the
+         * removal is lost, too. */
         if (is_lost(&mesh->info, loss)) {
             mesh->info.lost = true;
             st_queue_lose(&mesh->queue);
@@ -356,7 +358,8 @@ bool st_cache_get(st_mesh *mesh, void *value, size_t size)
     return found;
 }
 
-/* If memory is out nothing is kept, and the value is computed again next time. */
+/* Keeps a value derived from the mesh. If memory is out nothing is kept, and the value is computed
+ * again next time. */
 void st_cache_put(st_mesh *mesh, const void *value, size_t size)
 {
     pthread_mutex_lock(&mesh->cache_lock);

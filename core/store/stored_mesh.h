@@ -1,4 +1,4 @@
-/* stored_mesh.h - one mesh of the store: what store.c, mesh_write.c and snapshot.c share. */
+/* stored_mesh.h - one mesh of the store, for the files store.c, mesh_write.c and snapshot.c. */
 #ifndef HE_STORE_STORED_MESH_H
 #define HE_STORE_STORED_MESH_H
 
@@ -12,8 +12,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* A copy at a revision, with references from the cache and from each snapshot: while a snapshot of
- * it exists it does not change. */
+/* A copy of a mesh at a revision, with references from the cache and from each snapshot: while a
+ * snapshot of it exists, it does not change. */
 typedef struct st_copy {
     _Atomic uint32_t uses;
     uint64_t revision;
@@ -98,13 +98,13 @@ st_mesh *st_mesh_bare(const st_mesh_options *options, const st_card *card);
  * `content`. Returns NULL if memory is out. The holder's count does not include it yet. */
 st_mesh *st_mesh_new(const st_mesh_options *options, const char *id, const char *name,
                      const st_cause *cause, he_mesh *content);
-/* Notes that the mesh is used now, for the eviction of the least recently used. */
+/* Records that the mesh is used now, because the least recently used meshes are evicted first. */
 void st_mesh_use(st_mesh *mesh);
 st_counts st_counts_of(const he_mesh *content);
-/* Copies the facts. The caller holds the mesh's lock. */
+/* Copies the facts of a mesh. The caller holds the mesh's lock. */
 void st_mesh_facts(const st_mesh *mesh, st_mesh_info *out);
-/* Frees the cached copies and the bodies of kept answers, unless a thread reads them, and the
- * derived objects. */
+/* Frees memory of a mesh that can be made again: the cached copies and the bodies of kept answers,
+ * unless a thread reads them, and the derived objects. */
 void st_mesh_shed(st_mesh *mesh);
 /* Updates the count of the mesh's memory. The caller holds the exclusive lock, or is the only
  * thread that knows the mesh. */
@@ -125,19 +125,20 @@ typedef struct st_group {
     st_event *events;         /* one for each record, or NULL */
 } st_group;
 
-/* Returns the next record of the mesh, with its present facts; a revision must be in the log
- * already. The caller holds the exclusive lock. */
+/* Returns the next record of the mesh, with its present facts; if it is of a revision, that must be
+ * in the log already. The caller holds the exclusive lock. */
 st_record st_mesh_record(st_mesh *mesh, st_record_kind kind, const st_cause *cause);
 /* Returns the facts of the mesh's newest record, as a record of this kind. The caller holds either
  * lock. */
 st_record st_mesh_facts_record(const st_mesh *mesh, st_record_kind kind);
 /* Sets the bytes that the mesh counts for its holder. The caller holds the exclusive lock.
- * Returns ST_QUOTA if the holder may not have so much; nothing is changed. */
+ * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_mesh_grow(st_mesh *mesh, uint64_t bytes);
 /* Appends a group of records to the journal and informs the listeners. The caller holds the
  * exclusive lock. */
 void st_mesh_publish(st_mesh *mesh, const st_group *group);
-/* The part of st_mesh_publish that informs the listeners, after the position is known. */
+/* Informs the listeners of a group of records: the last part of st_mesh_publish, after the position
+ * is known. */
 void st_mesh_tell(st_mesh *mesh, const st_group *group);
 void st_event_write(const st_mesh *mesh, const st_mesh_info *info, const st_change *change,
                     st_event *out);
@@ -146,16 +147,16 @@ void st_mesh_lose(st_mesh *mesh, const st_loss *loss);
 /* Removes the mesh from the table. The caller holds the mesh's exclusive lock. */
 void st_store_take_out(st_store *store, st_mesh *mesh);
 
-/* Notes that a group of records was appended, after which a new base may be due (rebase.c). The
+/* Counts a group of records that was appended, after which a new base may be due (rebase.c). The
  * caller holds the exclusive lock. */
 void st_rebase_note(st_mesh *mesh, const st_group *group);
 /* Returns about how many bytes a record takes on the disk. */
 uint64_t st_rebase_bytes(const st_record *record);
-/* Drops a snapshot that has not become the base yet. */
+/* Drops a snapshot of the mesh that has not become its base yet. */
 void st_rebase_drop(st_mesh *mesh);
 
 void st_copy_release(st_copy *copy);
-/* Frees the cached copy, unless a thread reads it. */
+/* Frees the cached copy of a mesh, unless a thread reads it. */
 void st_copy_shed(st_mesh *mesh);
 
 #endif

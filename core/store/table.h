@@ -26,12 +26,12 @@ struct st_store {
     st_holders holders;
 };
 
-/* Returns the settings that the store passes to its meshes. */
+/* Returns the settings that the store gives to its meshes. */
 st_mesh_options st_store_mesh_options(st_store *store);
-/* Returns the index of the first mesh whose id is not below `id`; *found says whether it has that
- * id. The caller holds the table's lock. */
+/* Returns the index in the table of the first mesh whose id is not below `id`; *found says whether
+ * it has that id. The caller holds the table's lock. */
 size_t st_table_place(const st_store *store, const char *id, bool *found);
-/* Adds a mesh, with its use. The caller holds the table's exclusive lock.
+/* Adds a mesh to the table, which thereby uses it. The caller holds the table's exclusive lock.
  * Returns ST_TAKEN if a mesh has the id.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_table_insert(st_store *store, st_mesh *mesh);
@@ -40,8 +40,8 @@ st_status st_table_insert(st_store *store, st_mesh *mesh);
  * meshes that the journal can load again, the least recently used first. Frees nothing for more
  * than the budget could ever hold. The caller may hold no lock but `past`. */
 void st_make_room(st_store *store, uint64_t bytes);
-/* Makes a memory giver that evicts such meshes, for a thread that may hold locks: without it that
- * thread would be refused memory which could be freed. */
+/* Makes a memory giver (memory.h) that evicts unused meshes, for a thread that may hold locks:
+ * without it that thread would be refused memory which could be freed. */
 void st_store_giver(st_store *store, st_memory_giver *out);
 
 #endif

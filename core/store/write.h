@@ -1,4 +1,4 @@
-/* write.h - changing a stored mesh: every change is one write.
+/* write.h - changes a stored mesh: every change is one write.
  *
  *     st_write_begin --+-- the content is changed, st_write_changes ---+
  *     (the lock)       +-- st_write_step: undo, redo                   +-- st_write_commit
@@ -31,7 +31,7 @@ typedef enum st_write_kind {
     ST_WRITE_REMOVE
 } st_write_kind;
 
-/* In the caller's storage, from a successful begin to the commit or abort. */
+/* A write. It is in the caller's storage, from a successful begin to the commit or abort. */
 typedef struct st_write {
     st_mesh *mesh;      /* NULL: no write is under way */
     he_mesh *content;   /* to be changed, recording; for a claim the copy, NULL until it is made */
@@ -55,14 +55,15 @@ typedef struct st_write {
     size_t from_count;
 } st_write;
 
-/* Takes the exclusive lock. `cause` is the reason for the write, or NULL; its records store it. If
- * info.busy, a long edit has claimed the mesh, which can then only be removed. On failure the lock
- * is not held, and `info` is filled in too.
+/* Begins a write and takes the exclusive lock of the mesh. `cause` is the reason for the write, or
+ * NULL; its records store it. If info.busy, a long edit has claimed the mesh, which can then only
+ * be removed. On failure the lock is not held, and `info` is filled in too.
  * Returns ST_ABSENT if the mesh was removed.
  * Returns ST_LOST if the mesh has a change that was lost.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);
-/* Claims the mesh for a long edit. `info` is filled in on failure too.
+/* Claims the mesh for a long edit, which then works on a copy without the lock. `info` is filled in
+ * on failure, too.
  * Returns ST_ABSENT or ST_LOST if the store no longer has the mesh.
  * Returns ST_DAMAGED or ST_NEWER if it has no content.
  * Returns ST_BUSY if a long edit has claimed it.
@@ -72,23 +73,25 @@ st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
 const he_mesh *st_write_claimed(const st_write *write);
 /* Makes the copy that a claim works on; a copy made before is replaced. */
 HE_NODISCARD he_status st_write_copy(st_write *write, he_watch *watch, he_error *err);
-/* Frees the copy with its changes; the claim goes on. */
+/* Frees the copy that the claim works on, with its changes; the claim goes on. */
 void st_write_discard_copy(st_write *write);
 
-/* Says that the change is made from what `shown` shows, which must outlive the write. If one of
- * these is lost, the change is lost too, or is refused if it is not committed yet. */
+/* Declares that the change is made from the records that `shown` shows, which must outlive the
+ * write. If one of these is lost, the change is lost, too, or is refused if it is not committed
+ * yet. */
 void st_write_from(st_write *write, const st_shown *shown, size_t count);
-/* Computes the net changes of the recorded edit. */
+/* Computes the net changes of the edit that was recorded. */
 HE_NODISCARD he_status st_write_changes(st_write *write, he_error *err);
-/* After st_write_changes: could the edit be undone if it were committed? False if it is larger than
- * the undo budget or changes the meaning of ids; committing it then ends the history. */
+/* Returns true if the edit could be undone if it were committed; must be called after
+ * st_write_changes. It is false if the edit is larger than the undo budget or changes the meaning
+ * of ids; committing it then ends the history. */
 bool st_write_undoable(const st_write *write);
-/* Undoes or redoes that many steps, at least one, and computes the net changes: each step will be a
+/* Undoes or redoes `steps` steps, at least one, and computes the net changes: each step will be a
  * revision of its own.
  * Returns ST_NOTHING if the stack has fewer steps.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_write_step(st_write *write, st_action which, uint32_t steps);
-/* Replaces the content (PUT). Takes `stage` too, which st_store_stage made, or NULL. */
+/* Replaces the content (PUT). Takes `stage`, too, which st_store_stage made, or NULL. */
 void st_write_replace(st_write *write, he_mesh *takes, st_stage *stage);
 /* Renames the mesh. `name` must outlive the write; it is cut to ST_MESH_NAME bytes. */
 void st_write_rename(st_write *write, const char *name);
@@ -104,11 +107,11 @@ void st_write_remove(st_write *write);
  * Returns ST_LOST if it was lost meanwhile, or what the change was made from is lost
  * (st_write_from). */
 st_status st_write_commit(st_write *write, const char *ops);
-/* Ends the write; the mesh is as it was. */
+/* Ends the write without a change; the mesh is as it was. */
 void st_write_abort(st_write *write);
 
-/* Sets the id of the job that has claimed the mesh, which other requests find in `info`. Without a
- * lock. */
+/* Sets the id of the job that has claimed the mesh, which other requests find in `info`. It takes
+ * no lock. */
 void st_claimed_by(st_mesh *mesh, const char *id);
 /* Finds how many steps undo (redo) takes to the content of a revision, 0 if the mesh has it now,
  * and the bytes of all their deltas. If `revision` is 0, `steps` is read and only the bytes are

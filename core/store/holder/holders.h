@@ -20,7 +20,7 @@
 
 enum { ST_HOLDER_HEADS = 256 };
 
-/* Made when its name first occurs, and never freed before the store. */
+/* A holder of meshes. It is made when its name first occurs, and not freed before the store. */
 typedef struct st_holder {
     struct st_holder *next;
     uint64_t meshes, bytes;
@@ -38,7 +38,7 @@ typedef struct st_holders {
 void st_holders_init(st_holders *holders, const uint64_t secret[2]);
 void st_holders_clear(st_holders *holders);
 
-/* Finds or makes the holder of this name; *out is NULL for "", no holder.
+/* Finds or makes the holder of this name; *out is NULL for "", which stands for no holder.
  * Returns ST_NO_MEMORY if memory is out. */
 st_status st_holders_find(st_holders *holders, const char *name, st_holder **out);
 
@@ -49,9 +49,10 @@ typedef struct st_holding {
 } st_holding;
 
 /* Changes what a mesh counts for from *gone to *come.
- * Returns ST_QUOTA if the holder may not have so much; nothing is changed. */
+ * Returns ST_QUOTA if the holder may not have so much; then nothing is changed. */
 st_status st_holders_move(st_holders *holders, const st_holding *gone, const st_holding *come);
-/* st_holders_move that ignores the limits, for changes that are made already. */
+/* Changes what a mesh counts for like st_holders_move, but ignores the limits, for changes that are
+ * made already. */
 void st_holders_note(st_holders *holders, const st_holding *gone, const st_holding *come);
 
 typedef struct st_holder_limit {
@@ -64,7 +65,7 @@ typedef struct st_usage {
     uint64_t most_meshes, most_bytes; /* 0: any number */
 } st_usage;
 
-/* st_limit_holders and st_holder_usage of store.h. */
+/* The functions st_limit_holders and st_holder_usage of store.h. */
 st_status st_holders_limit(st_holders *holders, const st_holder_limit *limits, size_t count);
 void st_holders_usage(st_holders *holders, const char *name, st_usage *out);
 
