@@ -22,8 +22,8 @@ void st_copy_release(st_copy *copy)
     }
 }
 
-/* Counts the bytes of a copy as those of the content now, because the edits that bring the copy
- * forward add little. */
+/* Counts the memory of a cached copy as the bytes of the mesh's content now. Edits that bring the
+ * copy forward later add little, so the count is not updated. */
 static void count_copy(st_copy *copy, const st_mesh *mesh)
 {
     copy->counts = &mesh->followers->counts;

@@ -35,8 +35,9 @@ static void lost(void *context, const st_loss *loss)
             st_release(batch[i]);
         }
     }
-    /* Lost changes no longer count. No write is accepted until the last loss was reported, and then
-     * the disk has everything there is. If it cannot be read, the counts stay as they were. */
+    /* Lost changes no longer count for the holders of meshes, so the journal's counts are read
+     * again. No write is accepted until the last loss was reported, and then the disk has
+     * everything there is. If it cannot be read, the counts stay as they were. */
     (void)st_holders_count(&store->holders, &store->journal);
 }
 

@@ -9,6 +9,13 @@
  * `lost` true: no write changes it, its listeners are cut off, and answers made from it are never
  * sent. A request for its id then loads the mesh as it was before the lost changes.
  *
+ * WORDS. A record is one change of a mesh in the journal, and a position its number among all
+ * records of the store. A base is the content from which a mesh is loaded; the records after it are
+ * then applied. A card has the facts of a mesh without its content. A content is staged when it is
+ * written to the disk before it is published. A claim reserves a mesh for a long edit, which works
+ * on a copy without the lock (write.h). A change is lost when the journal reports that it will
+ * never be durable. A holder is the name of the token that made a mesh.
+ *
  * Locks are held while computing, never while waiting for a client. They are taken in this order:
  *     past      the mesh's cached copy of an earlier revision; not on a worker
  *     mesh      one mesh, shared by readers or held by one writer; writers come first

@@ -69,7 +69,8 @@ typedef struct srv_deadlines srv_deadlines;
 
 enum { SRV_CLOSES = 16, SRV_LOOKS = 64 };
 
-/* One open socket. The worker that serves it sets its stage; the thread reads it. */
+/* One open socket. The worker that serves it sets its stage; the thread of this module reads the
+ * stage. */
 typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
