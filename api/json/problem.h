@@ -13,7 +13,7 @@
 
 /* Each row: X(constant, slug, HTTP status, title, explanation) */
 #define API_CODE_MAP(X)                                                                            \
-    /* the body */                                                                                 \
+    /* refusals because of the body */                                                             \
     X(MALFORMED_JSON, "malformed_json", 400, "The body is not the JSON it should be",              \
       "The body must be one JSON value in UTF-8, as RFC 8259 defines it: no trailing commas, "     \
       "comments, leading zeros, raw control characters, lone surrogates, null characters or "      \
@@ -43,7 +43,7 @@
       "kind.")                                                                                     \
     X(REPEATED_NAME, "repeated_name", 400, "A name is given twice in one list",                    \
       "Each \"as\" name may be used for one operation of a list.")                                 \
-    /* the request line and headers */                                                             \
+    /* refusals because of the request line and its headers */                                     \
     X(BAD_PATH, "bad_path", 400, "The path is not well formed",                                    \
       "Percent escapes must be two hexadecimal digits and decode to UTF-8 without a null "         \
       "character or a slash.")                                                                     \

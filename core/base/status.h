@@ -22,7 +22,7 @@
     X(IDS_EXHAUSTED, "ids_exhausted", "No ids are left in this mesh")                         \
     X(LIMIT, "limit_exceeded", "A configured limit was exceeded")                             \
     X(CANCELLED, "cancelled", "The work was cancelled")                                       \
-    /* input that is wrong by itself */                                                       \
+    /* refusals of input that is wrong by itself */                                           \
     X(SYNTAX, "syntax", "The input is not well formed")                                       \
     X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                         \
     X(NOT_FINITE, "not_finite", "A number is not finite")                                     \
@@ -30,11 +30,11 @@
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
     X(BEYOND_FLOAT, "beyond_float", "A coordinate is beyond the floats of the format")        \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
-    /* elements that the caller names */                                                      \
+    /* refusals because of the elements that the caller names */                              \
     X(NO_SUCH_ELEMENT, "no_such_element", "No such element was ever issued")                  \
     X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                          \
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
-    /* shapes that a half-edge mesh cannot represent */                                       \
+    /* refusals of shapes that a half-edge mesh cannot represent */                           \
     X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
     X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
     X(REPEATED_CORNER, "repeated_corner", "A face would visit a vertex twice")                \
@@ -43,7 +43,7 @@
     X(NOT_ORIENTABLE, "not_orientable", "Faces cannot be turned so that all agree")           \
     X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
     X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
-    /* preconditions of an edit on the elements around it */                                  \
+    /* refusals because of the elements around an edit */                                     \
     X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
     X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
     X(INTERIOR_VERTEX, "interior_vertex", "The vertex has no room for another face")          \
@@ -74,7 +74,7 @@
     X(RIM_MEETS_ITSELF, "rim_meets_itself", "The rim of the faces passes a vertex twice")     \
     X(NO_NORMAL, "no_normal", "The face has no area, so it faces nowhere")                    \
     X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of one name differ in type")            \
-    /* edits that marks forbid (marks.h) */                                                   \
+    /* refusals because of marks (marks.h) */                                                 \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")
 

@@ -364,7 +364,7 @@ void he_touched_clear(he_touched *touched)
     he_ids_clear(&touched->moved);
 }
 
-/* The steps of work that were taken, and the most allowed. */
+/* The number of steps of work that are still allowed. */
 typedef struct budget {
     uint64_t left;
 } budget;

@@ -285,8 +285,8 @@ he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *
                         uint32_t groups, he_budget *budget, he_boxes *out, he_error *err)
 {
     builder b = {.boxes = boxes, .group = group, .budget = budget};
-    /* This is about the number of nodes of the tree if most leaves are full, and one more, because
-     * a search prefetches a node too far. */
+    /* The first capacity is about the number of nodes of the tree if most leaves are full, and a
+     * few more. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);

@@ -29,8 +29,8 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
         }
-        /* Clockwise of this half-edge is a hole or another fan, so this fan begins here; the rest
-         * of it is walked from the other side of the edge. */
+        /* This half-edge ends the fan: a hole, or other fans, follow it counter-clockwise. The fan
+         * begins where turning clockwise from the edge ends, so the walk goes on from there. */
         out->gap = out->ring.count;
         h = along;
         while (!he_is_boundary_halfedge(m, he_twin(h))) {

@@ -68,7 +68,8 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
         h = he_turn_ccw(m, h);
-        /* On this side of a cut edge the edge may be the new one, which is not locked. */
+        /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; then
+         * the lock of the old edge does not matter. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
             status = he_require_unlocked(&p->marks, HE_EDGE, he_edge_of(h).i, err);
         }

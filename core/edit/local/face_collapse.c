@@ -3,8 +3,8 @@
 #include "edit/local/collapse.h"
 #include "mesh/write.h"
 
-/* Returns the side that leaves corner `a`, of what is left of the face; if the face is deleted
- * already, the half-edge from `a` to `last`. */
+/* Returns the half-edge that runs from the next corner to corner `a`, along the side of what is
+ * left of the face; if the face is deleted already, the half-edge from `last` to `a`. */
 static he_halfedge next_side(const he_mesh *m, he_face f, he_vertex a, he_vertex last)
 {
     if (!he_face_is_live(m, f)) {

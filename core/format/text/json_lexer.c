@@ -241,8 +241,8 @@ static bool is_plain(char c)
     return (unsigned char)c >= 0x20 && (unsigned char)c < 0x80 && c != '"' && c != '\\';
 }
 
-/* Returns how far a string may be read: to the end of the piece, or to where its name becomes too
- * long. */
+/* Returns how far a string may be read at once: to the end of the piece, for at most HE_JSON_STRING
+ * bytes, or to where its name becomes too long. */
 static const char *string_stop(const he_lexer *x)
 {
     size_t most = HE_JSON_STRING, left = (size_t)(x->end - x->at);
