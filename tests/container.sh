@@ -1,9 +1,9 @@
 #!/bin/sh
 # container.sh - builds the image of the Dockerfile and tries it, with buildah as root.
 #
-# Where the registry cannot be reached, the base image is made with debootstrap. Behind a proxy with a
-# certificate of its own, NODE_EXTRA_CA_CERTS is what npm is to trust while the page is built. Where
-# the image cannot be tried, the script fails: it has shown nothing.
+# If the registry cannot be reached, the base image is made with debootstrap. Behind a proxy with a
+# certificate of its own, NODE_EXTRA_CA_CERTS is the file that npm must trust while the page is
+# built. If the image cannot be tried, the script fails, because nothing was shown.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . tests/bare.sh
@@ -79,7 +79,7 @@ builds() {
     echo "note: the image has $(size_of "$image"), of which the base is $(size_of "$base")"
 }
 
-# config TEMPLATE: something of the image's configuration
+# config TEMPLATE: prints a part of the image's configuration
 config() {
     buildah inspect --type image --format "{{$1}}" "$image"
 }
@@ -105,7 +105,7 @@ has_no_tools() {
     done
 }
 
-# inside VARIABLES COMMAND...: in a container of the image, as its user
+# inside VARIABLES COMMAND...: runs a command in a container of the image, as the image's user
 inside() {
     variables=$1
     shift
@@ -113,13 +113,13 @@ inside() {
     buildah run --isolation chroot $variables "$container" -- "$@"
 }
 
-# Beyond loopback only when told.
+# The daemon must listen beyond the loopback interface only if an option says so.
 refuses_to_be_open() {
     inside '' sh -c 'hedged 2>/tmp/said'
     says $? 2 && grep 'set --insecure' "$root/tmp/said"
 }
 
-# Read log lines until the daemon is ready; `base` is then where it is.
+# Reads lines of the log until the daemon is ready; sets `base` to its address.
 wait_until_ready() {
     base=
     while [ -z "$base" ] && read -r line <&4; do
@@ -131,7 +131,7 @@ wait_until_ready() {
     [ -n "$base" ]
 }
 
-# A token of the image's own making, and the file of it.
+# Makes a token with the image's own program, and a file with its line.
 makes_a_token() {
     inside '' hedged --new-token alice write >"$work/token" || return 1
     token=$(head -n 1 "$work/token")
@@ -152,7 +152,8 @@ creates_and_edits() {
     get "$base/v1/meshes/box" | grep -q '"vertices":9,'
 }
 
-# The mesh that creates_and_edits made, by a daemon that has stopped, and its undo.
+# Requires that the mesh made by creates_and_edits is still there after the daemon was stopped and
+# started, with its undo.
 is_still_there() {
     get "$base/v1/meshes/box" | grep -q '"vertices":9,' || return 1
     get -X POST "$base/v1/meshes/box/undo" | grep -q '"revision":3,' || return 1
@@ -168,8 +169,9 @@ is_not_healthy() {
     says $? 1
 }
 
-# What buildah or unshare has started: the last of the chain of their children. buildah's own end is
-# harsher than an engine's, so that a stop is told to the daemon itself.
+# Finds the process that buildah or unshare has started: the last one in the chain of their
+# children. buildah's own way to stop a container is harsher than an engine's, so the signal is sent
+# to the daemon itself.
 find_first() {
     first=$daemon
     while child=$(cat /proc/"$first"/task/*/children | cut -d ' ' -f 1) && [ -n "$child" ]; do
@@ -186,7 +188,7 @@ stops() {
     says "$status" 0
 }
 
-# As buildah runs it.
+# Starts the container with buildah.
 start_in_container() {
     inside '--env HEDGE_TOKENS=/tokens --env HEDGE_LISTEN=0.0.0.0:0' hedged --log off 2>"$work/log" &
     daemon=$!
@@ -194,8 +196,8 @@ start_in_container() {
     wait_until_ready && find_first
 }
 
-# As an engine runs it with --read-only and a volume: the first process of its own, on a root nobody
-# can write to but for /data.
+# Starts the container as an engine does with --read-only and a volume: the daemon is the first
+# process, and its root folder cannot be written to, except for /data.
 start_read_only() {
     install -d -o 10001 -g 10001 -m 700 "$work/data" || return 1
     env -i HEDGE_TOKENS=/tokens HEDGE_LISTEN=0.0.0.0:0 HEDGE_STORE=sqlite:/data \

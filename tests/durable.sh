@@ -1,6 +1,6 @@
 #!/bin/sh
-# durable.sh - a few rounds of each proof of `make durable` (tests/durable/run.py), one of each seed
-# that `make test` is given or draws.
+# durable.sh - runs a few rounds of each proof of `make durable` (tests/durable/run.py), with the
+# seed that `make test` is given or draws.
 set -u
 
 built=$(dirname "$HEDGED")/tests/durable

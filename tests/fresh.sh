@@ -1,20 +1,21 @@
 #!/bin/sh
-# fresh.sh - does each command of the README's table work on a machine where nothing was done before?
+# fresh.sh - checks that each command in the README's table works on a machine where nothing was
+# done before.
 #
-# A bare Debian is made with debootstrap; make is all that is added. It stays in build/fresh/bare, where
-# it serves for a day. For each command in turn it is copied, the last commit of this tree is put
-# inside, and the command runs there alone, as root, with the few rounds below. TARGETS narrows, as in
-# TARGETS="lint bench-http"; TESTS narrows what make test runs. Each command leaves
-# build/fresh/NAME.log. The copies, of 1 to 4 GB, are made in FRESH_DIR or beside the logs, and removed.
-# The last line is `N passed, N failed`.
+# A bare Debian is made with debootstrap; make is all that is added. It stays in build/fresh/bare,
+# where it is used for a day. For each command it is copied, the last commit of this tree is put
+# inside, and the command runs there alone, as root, with the few rounds below. TARGETS selects
+# commands, as in TARGETS="lint bench-http"; TESTS selects what make test runs. Each command leaves
+# build/fresh/NAME.log. The copies, of 1 to 4 GB, are made in FRESH_DIR or beside the logs, and
+# removed. The last line is `N passed, N failed`.
 #
-# What this machine needs to reach its mirrors is taken along: the sources and settings of apt,
-# the settings of npm, and the proxies and certificates that the environment names.
+# The copy gets what this machine needs to reach its mirrors: the sources and settings of apt, the
+# settings of npm, and the proxies and certificates that the environment names.
 set -u
 
 # --- inside, where the copy is the root folder -----------------------------------------------
 
-# `make run` ends when it is told to, as its reader would.
+# Runs `make run` until the daemon is ready, then stops it as a user would.
 run_until_ready() {
     mkfifo /tmp/said
     setsid make run RUN_FLAGS='--listen 127.0.0.1:0' >/tmp/said 2>&1 &
@@ -34,7 +35,7 @@ run_until_ready() {
 
 if [ "${1-}" = --inside ]; then
     cd /src/hedge || exit 1
-    # A few rounds, for those that take rounds.
+    # Commands that run in rounds get few of them.
     case $2 in
     run) run_until_ready ;;
     bench) make bench RUNS=1 SCALE=0.1 ;;
@@ -55,7 +56,7 @@ if [ "${1-}" = --enter ]; then
     root=$2
     name=$3
     downloads=$4
-    # Programs that change mounts want the root folder to be one.
+    # Programs that change mounts require that the root folder is a mount of its own.
     mount --bind "$root" "$root" && mount -t proc proc "$root/proc" && mount --rbind /sys "$root/sys" &&
         mount --rbind /dev "$root/dev" &&
         mount --bind "$downloads/apt" "$root/var/cache/apt/archives" &&
@@ -84,15 +85,15 @@ give_up() {
 command -v debootstrap >/dev/null || give_up 'there is no debootstrap (apt-get install debootstrap)'
 command -v git >/dev/null || give_up 'there is no git (apt-get install git)'
 
-# What the table's first column names, each as its target: fuzz for `make fuzz FUZZ_SECONDS=20`, and
-# .ci/run as it is. This script does not try itself.
+# Prints the targets that the first column of the README's table names: fuzz for `make fuzz
+# FUZZ_SECONDS=20`, and .ci/run as it is. This script itself is left out.
 table() {
     awk -F'|' '/^\| command \|/ { rows = 1; next } rows && !/^\|/ { exit } rows { print $2 }' \
         README.md | grep -o '`[^`]*`' | tr -d '`' |
         awk '$1 == "make" { print ($2 == "" ? "all" : $2); next } { print $1 }' | grep -vx fresh
 }
 
-# settings FOLDER: what the machine needs to reach mirrors
+# settings FOLDER: copies what the machine needs to reach its mirrors
 settings() {
     bare_sources >"$1/etc/apt/sources.list"
     apt-config dump Acquire >"$1/etc/apt/apt.conf.d/90machine"
@@ -120,7 +121,8 @@ work=$(mktemp -d -p "${FRESH_DIR:-$logs}" tree.XXXXXX) || give_up 'there is no p
 trap 'rm -rf --one-file-system "$work"' EXIT
 trap 'exit 1' INT TERM
 
-# The date of bare.made tells that the folder is whole and how old it is. No command runs in it.
+# The date of bare.made shows that the folder is complete, and how old it is. No command runs in
+# this folder.
 bare=$logs/bare
 if [ -z "$(find "$bare.made" -mtime -1 2>/dev/null)" ]; then
     rm -rf --one-file-system "$bare" "$bare.made"

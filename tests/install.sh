@@ -1,5 +1,6 @@
 #!/bin/sh
-# install.sh - `make install` to a folder of its own: is everything there, and does it hold together?
+# install.sh - runs `make install` into a folder of its own, and checks that everything is there and
+# fits together.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 unset MAKEFLAGS MAKELEVEL MAKEOVERRIDES
@@ -28,7 +29,7 @@ hedged=$root/usr/bin/hedged
 man=$root/usr/share/man/man8/hedged.8
 unit=$root/usr/lib/systemd/system/hedged.service
 
-# modes FILE...: who may do what with them
+# modes FILE...: prints the permissions of files
 modes() {
     (cd "$root/usr" && stat -c '%a %n' "$@")
 }
@@ -44,7 +45,7 @@ installs() {
         diff - "$work/modes"
 }
 
-# The program finds the page from where it is, and stops when told.
+# The installed program must find the page from where it lies, and stop when it is told to.
 runs_from_there() {
     mkfifo "$work/log" || return 1
     "$hedged" --listen 127.0.0.1:0 --store memory --log off 2>"$work/log" &
@@ -63,7 +64,8 @@ PY
     return $status
 }
 
-# Each option and variable of --help is in the page, and nothing is left to fill in.
+# Each option and variable of --help must be in the manual page, and no placeholder may be left in
+# it.
 man_is_whole() {
     "$hedged" --help | grep -oE '^  --[a-z-]+|HEDGE_[A-Z_]+' | tr -d ' ' >"$work/names"
     [ "$(wc -l <"$work/names")" -gt 30 ] || return 1
@@ -84,13 +86,14 @@ unit_is_whole() {
     grep -qx 'ExecStart=/usr/bin/hedged' "$unit" && grep -qx 'StateDirectory=hedge' "$unit" && ! grep -n '@[A-Z]*@' "$unit"
 }
 
-# systemd grades what a service may do from 0 (nothing) to 100.
+# systemd grades what a service is permitted to do from 0 (nothing) to 100: the unit must have a low
+# grade.
 unit_is_hard() {
     systemd-analyze security --offline=yes --root="$root" --threshold=15 --no-pager \
         hedged.service
 }
 
-# What others keep in these folders is theirs.
+# Uninstalling must leave files of others in the same folders.
 uninstalls() {
     touch "$root/usr/bin/other" && make uninstall DESTDIR="$root" PREFIX=/usr || return 1
     left=$(cd "$root" && find . -type f)
@@ -98,7 +101,7 @@ uninstalls() {
     [ "$left" = ./usr/bin/other ]
 }
 
-# The commit is that of the sources, where git knows it.
+# --version must name the commit of the sources, if git knows it.
 version_is_named() {
     commit=$(git describe --always --exclude '*' --abbrev=12 --dirty=+ 2>/dev/null)
     said=$("$hedged" -V) && [ "$said" = "$("$hedged" --version)" ] || return 1

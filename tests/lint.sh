@@ -1,8 +1,8 @@
 #!/bin/sh
-# lint.sh - does make lint see what it is there for? Plants one fault of each kind in a copy of the
-# sources and runs the check that must find it. The last line is `N passed, N failed`.
+# lint.sh - checks that `make lint` finds what it must find: plants one fault of each kind in a copy
+# of the sources, and runs the check that must find it. The last line is `N passed, N failed`.
 #
-# Needs the libraries of a build, whose folder is BUILD (build).
+# The libraries of a build are needed; BUILD (build) is its folder.
 set -u
 
 build=$(cd "${BUILD:-build}" && pwd) || exit 1
@@ -19,7 +19,8 @@ sources() {
     find core api server -name '*.[ch]' | sort
 }
 
-# verdict NAME STATUS OUTPUT WORDS: must the check have failed (WORDS given) or passed?
+# verdict NAME STATUS OUTPUT WORDS: requires that the check failed with WORDS in its output or,
+# without WORDS, that it passed
 verdict() {
     if { [ -z "$4" ] && [ "$2" -eq 0 ]; } ||
         { [ -n "$4" ] && [ "$2" -ne 0 ] && printf '%s' "$3" | grep -q -- "$4"; }; then
@@ -30,7 +31,7 @@ verdict() {
     fi
 }
 
-# expect NAME WORDS COMMAND...
+# expect NAME WORDS COMMAND...: runs a check, and calls verdict with its result
 expect() {
     name=$1
     words=$2
@@ -59,7 +60,7 @@ echo '#include "op/op.h"' >>core/mesh/mesh.h
 expect 'an include against the order is found' 'core/mesh is below core/op' includes
 cp "$OLDPWD/core/mesh/mesh.h" core/mesh/mesh.h
 
-# Two rooms that include each other: one of the two includes must run upward.
+# Two rooms include each other, so one of the two includes must run upward.
 echo '#include "api/write/edit_cost.h"' >>api/read/elements.h
 echo '#include "api/read/elements.h"' >>api/write/edit_cost.h
 expect 'a circle between rooms is found' 'api/read is below api/write' includes
@@ -84,7 +85,7 @@ plain() { sh .ci/lint-words core/mesh/walk.h; }
 expect 'comments that name what they are about pass' '' plain
 for words in '/* The same for the other end. */' '/* Of both ends. */' '/* For callers. */' \
     '// Likewise for faces' '/*\n * Of both ends. */'; do
-    # shellcheck disable=SC2059 # the words have a line feed
+    # shellcheck disable=SC2059 # the words contain a line feed
     printf "\n$words\n" >>core/mesh/walk.h
     expect "a comment that begins '$words' is found" 'names what it is about' plain
     cp "$OLDPWD/core/mesh/walk.h" core/mesh/walk.h
@@ -98,7 +99,7 @@ for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c
 
-# The pages need only the names of tests, and the copy has no tests.
+# The check of pages needs only the names of the tests, which are not in the copy.
 for file in $(cd "$OLDPWD" && find tests -type f -not -path '*/.*'); do
     mkdir -p "$(dirname "$file")" && : >"$file"
 done

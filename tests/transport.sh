@@ -1,6 +1,6 @@
 #!/bin/sh
-# transport.sh - $TRANSPORTED, the quickest programs of tests/e2e, over TLS and on a Unix socket. All
-# of them go there by `make test TESTS=e2e TRANSPORT=tls`.
+# transport.sh - runs $TRANSPORTED, the quickest programs of tests/e2e, over TLS and on a Unix
+# socket. `make test TESTS=e2e TRANSPORT=tls` runs all of them over TLS.
 set -u
 
 passed=0
@@ -8,7 +8,7 @@ failed=0
 said=$(mktemp)
 trap 'rm -f "$said"' EXIT
 
-# sum WORD: the tests that cmocka counts under it
+# sum WORD: adds up the numbers of tests that cmocka reports with this word
 sum() {
     sed -n "s/^\[  $1 *\] \([0-9][0-9]*\) test(s).*/\1/p" "$said" | awk '{ n += $1 } END { print n + 0 }'
 }
@@ -19,7 +19,7 @@ for transport in tls unix; do
         status=$?
         p=$(sum PASSED)
         f=$(sum FAILED)
-        # A program that ends badly, or runs nothing, is one failure.
+        # A program that fails without a report, or that runs no test, counts as one failure.
         [ "$f" -gt 0 ] || { [ "$status" -eq 0 ] && [ "$p" -gt 0 ]; } || f=1
         passed=$((passed + p))
         failed=$((failed + f))

@@ -1,13 +1,14 @@
-// compare.mjs - the kernel beside its peers: every row of rows.mjs by each side in turn, so often
-// as `--runs` says, and a table of medians, spread, ratios and what falls short of its target.
+// compare.mjs - benchmarks the kernel together with its peers (other mesh libraries): every row of
+// rows.mjs is run by each program in turn, `--runs` times; the table has medians, spread and
+// ratios, and says which rows miss their target.
 //
 //     node compare.mjs --programs FOLDER [--only build,files] [--runs 5] [--scale 1]
 //         [--picture build/growth.svg]
 //
-// The sides are programs that wait for the name of a row (side/side.h). Only one of them works at a
-// time. What they compute must agree: where it does not, or a side breaks, the exit is 1. Falling
-// short is told and is no failure. `--scale 0.1` makes inputs of a hundredth of the faces, to try
-// things out.
+// Each program waits for the name of a row (side/side.h), and only one of them works at a time. The
+// results that they compute must agree: if they do not, or if a program fails, the exit status is
+// 1. A missed target is reported and is no failure. `--scale 0.1` makes inputs of a hundredth of
+// the faces, for trying things out.
 
 import { execFileSync, spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -40,7 +41,7 @@ const names = {
     alone: 'one thread',
     plain: 'no list',
 };
-// Our own program beside itself.
+// These rows compare our own program with itself.
 const own = ['alone', 'plain'];
 const packages = {
     openmesh: 'libopenmesh-dev',
@@ -49,7 +50,7 @@ const packages = {
 };
 const problems = [];
 
-// A side: a program in its folder, or node's part.
+// One program of the benchmark, started in a folder of its own, or the part that runs in node.
 class Side {
     constructor(name, { input, order }, side, folder, env = {}) {
         this.name = name;
@@ -65,7 +66,7 @@ class Side {
         this.child.stdin.on('error', () => {});
     }
 
-    // What it measured, or null where it does not know the row.
+    // Returns the measurement of a row; null if the program does not have it.
     async run(row) {
         this.child.stdin.write(`${row}\n`);
         const { value: line, done } = await this.lines.next();
@@ -110,7 +111,8 @@ function agree(row, part, name, ours, theirs) {
     }
 }
 
-// One run of a row by each side. Results are described by a row of ours where it has `after`.
+// Runs a row once in each program. If the row has `after`, the result is described by that row of
+// our program.
 async function round(row, part, start, sides, figures) {
     const results = {};
     const others = row.sides ?? part.sides;
@@ -155,10 +157,12 @@ const shown = (figure) => {
     return figure >= 100 ? figure.toFixed(0) : digits(figure);
 };
 
-// How often ours is the other: more is better, for a figure where less is, too.
+// Returns how many times better our figure is than theirs: for most figures the larger is better,
+// with `less` the smaller.
 const ratio = (row, ours, theirs) => (row.less ? theirs / ours : ours / theirs);
 
-// What is met by less than a twentieth may fall short in another run: it is explained too.
+// A target that is met by less than a twentieth may be missed in another run, so such a row is
+// explained like one that misses it.
 const EDGE = 0.95;
 
 function verdict(row, part, medians) {

@@ -1,9 +1,10 @@
 # shellcheck shell=sh
-# daemon.sh - sourced by the measuring scripts: a daemon of one's own on a free port.
+# daemon.sh - sourced by the scripts that measure: starts a daemon of the script
+# on a free port.
 #
-# daemon_start HEDGED FLAGS... sets $daemon (its process) and $base (its address), and no variable that
-# a script may have for itself; what the daemon logs is read away. daemon_stop ends it and the
-# processes in $others, and removes $work.
+# daemon_start HEDGED FLAGS... sets $daemon (its process) and $base (its address), and no variable
+# that a script may use for itself; the daemon's log is read and dropped. daemon_stop ends the
+# daemon and the processes in $others, and removes $work.
 work=$(mktemp -d)
 daemon=""; drain=""; others=""
 

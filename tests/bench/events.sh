@@ -1,5 +1,6 @@
 #!/bin/sh
-# A thousand listeners on one mesh: what they cost, and how long an edit takes to reach them all.
+# A thousand listeners of one mesh: the memory that they take, and the time until an edit has
+# reached all of them.
 #
 #   events.sh HEDGED LISTENERS_PROGRAM [LISTENERS [ROUNDS]]
 set -eu

@@ -1,14 +1,16 @@
 #!/bin/sh
-# Clients within their rate, beside one that floods: what they wait for, and what it is answered.
+# Clients that keep their rate, together with one that floods the daemon: how long the first ones
+# wait, and what the other is answered.
 #
 #   flood.sh HEDGED PACED [SECONDS]
 #
-# A calm token asks for a vertex 500 times a second over 8 connections; its rate allows that. A second
-# token may ask 500 times a second and asks 5,000 times over 64 connections: the rest is refused 429
-# with the seconds after which to come again. Then the same beside 10,000 connections that were used
-# once and rest, and last beside 1,000 clients as well who read what needs no token, the OpenAPI
-# document, at 6 bytes a second (slowhttptest -X). The first row is of the calm client alone. Allowed is twice the quiet 99th
-# percentile, or 2 ms more than it, whichever is more; the exit status is 1 where a row has more.
+# A calm token requests a vertex 500 times a second over 8 connections, which its rate allows. A
+# second token, which may also send 500 requests a second, sends 5,000 over 64 connections: the rest
+# is refused with 429 and the number of seconds to wait. Then the measurement is repeated together
+# with 10,000 connections that were used once and are idle, and at last also with 1,000 clients that
+# read the OpenAPI document, for which no token is needed, at 6 bytes a second (slowhttptest -X).
+# The first row is of the calm client alone. In the other rows its 99th percentile may be twice as
+# long as alone, or 2 ms longer, whichever is more; otherwise the exit status is 1.
 set -eu
 hedged=$1 paced=$2 seconds=${3:-8}
 for program in slowhttptest curl ss; do
@@ -16,7 +18,7 @@ for program in slowhttptest curl ss; do
 done
 . "$(dirname "$0")/daemon.sh"
 
-# new NAME ROLE LIMITS: a line of the file of tokens; the token itself in $work/NAME
+# new NAME ROLE LIMITS: adds a line to the file of tokens; $work/NAME gets the token itself
 new() {
     "$hedged" --new-token "$1" "$2" >"$work/said"
     sed -n 1p "$work/said" >"$work/$1"

@@ -1,34 +1,38 @@
-// growth.mjs - how our cost grows: nanoseconds an element on meshes of 10k, 100k, 1M and 10M faces,
-// as tables and as a picture, build/growth.svg. The one of the README is tests/bench/growth.svg.
-// The rows are those of tests/bench/ours on the bumpy torus.
+// growth.mjs - how the cost of operations grows: nanoseconds per element on meshes of 10k, 100k, 1M
+// and 10M faces, as tables and as a picture, build/growth.svg. The picture in the README is
+// tests/bench/growth.svg. The rows are those of tests/bench/ours on the bumpy torus.
 //
-// Nothing in the kernel costs more an element because there are more of them: the lines bend where
-// the machine does. Three tables beside the first tell which bend is which. The figures are those
-// of the picture: an EPYC with 1 MiB of L2 a core and 32 MiB of L3, other programs running.
+// No operation of the kernel costs more per element because there are more elements: the lines bend
+// where the caches and the pages of the machine do. Three tables beside the first show which bend
+// has which cause. The figures below belong to the picture: an EPYC with 1 MiB of L2 cache per core
+// and 32 MiB of L3, while other programs ran.
 //
-// Caches. A face takes 66 bytes, so 10k faces are 0.7 MB and in L2, 100k are 7 MB and in L3, 1M and
-// 10M are 66 MB and 660 MB and in neither. `random read` reads words all over a block of that size
-// and has its steps there and nowhere else: 1.1, 1.8, 8.9 and 9.7 ns. Flips, collapses, decimation
-// and everything whose ids are shuffled read and write a few dozen such places an element and rise
-// with it: flips 54, 94, 364, 394 ns, collapses 140, 241, 699, 820. One-rings in natural order read
-// forwards, which the machine foresees, and stay flat: 1.0 to 1.2 ns. So do normals, 9.1 to 9.6.
+// Caches. A face takes 66 bytes, so 10k faces are 0.7 MB and fit into L2, 100k are 7 MB and fit
+// into L3, 1M and 10M are 66 MB and 660 MB and fit into neither. The row `random read` reads words
+// all over a block of that size and has its steps there and nowhere else: 1.1, 1.8, 8.9 and 9.7 ns.
+// Flips, collapses, decimation and everything with shuffled ids read and write a few dozen such
+// places per element and rise with it: flips 54, 94, 364, 394 ns, collapses 140, 241, 699, 820.
+// One-rings in natural order read forward, which the processor prefetches, and stay flat: 1.0 to
+// 1.2 ns. So do normals, 9.1 to 9.6.
 //
-// Translation of addresses. Columns of 4 MiB and more ask for huge pages, which is from 100k to 1M
-// faces on. Without, at 10M a random read costs 12 ns for 9.7, building shuffled faces 266 for 235,
-// one-rings of them 51 for 43, their normals 93 for 84.
+// Address translation. Columns of 4 MiB and more request huge pages, which is from 100k to 1M faces
+// on. Without huge pages, at 10M faces a random read costs 12 ns instead of 9.7, building shuffled
+// faces 266 instead of 235, their one-rings 51 instead of 43, their normals 93 instead of 84.
 //
-// Pages touched for the first time. What makes new columns (build, split, compact, Loop, import)
-// has the system find and clear their pages. Build rises from 10k to 100k (56 to 67 ns) because
-// its columns of over 1 MiB become mappings of their own: 1,934 small pages, one for 52 faces; it
-// falls at 1M (52), where huge pages make that one for 190. So do Loop (33, 39, 24) and import of
-// OBJ (134, 223, 176). At 10M the system has the greater part of compact (129 of 158 ns) and of
-// Loop, which makes 40M faces (112 of 128). It is not clearing that takes so long: a compact of 10M
-// faces measured apart took 217 ns with huge pages and 69 without, 44 of them in the system, for
-// 180,950 small pages in place of 6,188. On a machine where blocks of 2 MiB are hard to find, huge
-// pages cost writers what they give readers.
+// Pages that are touched for the first time. Operations that make new columns (build, split,
+// compact, Loop, import) have the system find and clear their pages. Build rises from 10k to 100k
+// (56 to 67 ns) because its columns of over 1 MiB become mappings of their own: 1,934 small pages,
+// one for 52 faces; it falls at 1M (52), where huge pages make that one for 190. Loop (33, 39, 24)
+// and import of OBJ (134, 223, 176) behave in the same way. At 10M the system has the greater part
+// of compact (129 of 158 ns) and of Loop, which makes 40M faces (112 of 128). It is not the
+// clearing that takes so long: a compact of 10M faces measured separately took 217 ns with huge
+// pages and 69 without, 44 of them in the system, for 180,950 small pages in place of 6,188. On a
+// machine where blocks of 2 MiB are hard to find, huge pages cost writers as much as they give
+// readers.
 //
-// Import of OBJ bends at 10M by that part, too (80 of 216 ns): its soup grows beside the columns.
-// Splits are both: random places, and columns that grow by half when they are full (252 of 824).
+// Import of OBJ bends at 10M because of this, too (80 of 216 ns): its soup grows beside the
+// columns. Splits have both causes: random places, and columns that grow by half when they are full
+// (252 of 824).
 
 import { readFileSync, writeFileSync, mkdirSync } from 'node:fs';
 import os from 'node:os';
@@ -36,7 +40,8 @@ import path from 'node:path';
 
 import { plot } from './plot.mjs';
 
-// Sides of the torus, which has twice their square in faces, and how often a row is run.
+// The sides of the torus, which has twice the square of this number in faces, and how often a row
+// is run.
 const SIZES = [
     { side: 71, runs: 15 },
     { side: 224, runs: 7 },
@@ -44,7 +49,8 @@ const SIZES = [
     { side: 2236, runs: 1 },
 ];
 
-// Row of tests/bench/ours, title, element. Lines of a colour are one row in two orders.
+// For each line of the picture: its row in tests/bench/ours, its title and its element. Two lines
+// of one colour are the same row in natural and in shuffled order.
 const NATURAL = [
     ['gather', 'random read', 'read', '#8a8a8a'],
     ['build', 'build', 'face', '#2f7fc1'],
@@ -61,14 +67,14 @@ const NATURAL = [
     ['check_obj', 'import OBJ', 'face', '#4a6fd8'],
 ];
 const SHUFFLED = ['build', 'one_ring', 'face_normals'];
-// Those in which every element is somewhere else show what pages cost.
+// The rows that show the cost of pages: those whose elements are read at random places.
 const BY_PAGES = { natural: ['gather', 'split', 'loop'], shuffled: SHUFFLED };
-// The system counts its time in ticks: of less it tells nothing.
+// The system counts its time in ticks, so a shorter measurement says nothing about it.
 const LEAST_SECONDS = 0.04;
 
 const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
 
-// Nanoseconds an element, of which in the system, and pages that had to be found.
+// Returns the nanoseconds per element, the part of them spent in the system, and the page faults.
 async function time(side, row, runs) {
     const list = [];
     for (let i = 0; i < runs; i++) {

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Requests a second of hedged beside a bare libmicrohttpd program that sends the same bytes, in turn
-# and in one run: each server with one worker, wrk with one thread and 64 connections.
+# Requests a second of hedged and of a bare libmicrohttpd program that sends the same bytes, in turn
+# and in one run: each server has one worker, wrk has one thread and 64 connections.
 #
 #   http.sh HEDGED BARE [ROUNDS [SECONDS]]
 set -eu
@@ -9,14 +9,14 @@ command -v wrk >/dev/null || { echo "http.sh: wrk is not installed" >&2; exit 1;
 . "$(dirname "$0")/daemon.sh"
 mkfifo "$work/stdin" "$work/port"
 
-# The access log is on: it is what a user has.
+# The access log is on, as it is by default.
 daemon_start "$hedged" --workers 1
 curl -sf -o /dev/null -H 'Content-Type: application/json' "$base/v1/meshes?id=bench" \
     -d '{"shape":"icosphere","subdivisions":4}'
 element=$base/v1/meshes/bench/faces/1000
 adjacency=$base/v1/meshes/bench/vertices/100/faces
 
-# A server with tokens; requests carry one of them.
+# A second daemon requires tokens, and the requests carry one.
 "$hedged" --new-token bench write >"$work/token"
 tail -n 1 "$work/token" >"$work/tokens"
 bearer="Authorization: Bearer $(head -n 1 "$work/token")"
@@ -80,7 +80,8 @@ row "GET an adjacency" adjacency 0.8
 row "POST an edit" edit 0.5
 awk -v with="$(median token-element)" -v without="$(median element)" 'BEGIN {
     printf "%-28s %8.2f us a request   target 1.00\n", "a token costs", 1e6 / with - 1e6 / without }'
-# Both make one recvfrom and one sendmsg a request, no other call; two thirds of our time are those.
+# For each request both servers call recvfrom once and sendmsg once, and nothing else; these two
+# calls take two thirds of hedged's time.
 cat <<'NOTE'
 Not measured here: what hedged does for a GET beyond the bare program is six header fields for one,
 admission, the element with its shortest doubles, and the access log, whose thread shares the cores.

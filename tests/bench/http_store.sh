@@ -1,8 +1,8 @@
 #!/bin/sh
-# Edits a second through the daemon with meshes in memory and on disk, in turn: 1, 8 and 64 writers, on
-# 64 meshes and on one.
+# Edits a second through the daemon with meshes in memory and on a disk, in turn: 1, 8 and 64
+# writers, on 64 meshes and on one.
 #
-#   http_store.sh HEDGED FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk that is meant
+#   http_store.sh HEDGED FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk to be measured
 set -eu
 hedged=$1 folder=$2 rounds=${3:-3} seconds=${4:-2}
 . "$(dirname "$0")/daemon.sh"

@@ -34,7 +34,7 @@ step "split an edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","ed
 step "undo" 200 -X POST "$meshes/m/undo"
 step "split another edge" 200 -H "$json" "$meshes/m/edits" -d '{"op":"edge_split","edge":777}'
 step "undo" 200 -X POST "$meshes/m/undo"
-# Each splits an edge that the one before made.
+# Each edge split of the batch splits an edge that the one before made.
 batch() {
     awk -v head="${1-}" 'BEGIN { printf "{%s\"ops\":[{\"op\":\"edge_split\",\"edge\":0,\"as\":\"s0\"}", head
         for (i = 1; i < 10000; i++)
@@ -48,8 +48,9 @@ step "the same, made" 200 -H "$json" "$meshes/m/edits" -H 'Idempotency-Key: one'
 step "the same, asked for again" 200 -H "$json" "$meshes/m/edits" -H 'Idempotency-Key: one' \
     -d "@$work/batch"
 step "undo" 200 -X POST "$meshes/m/undo"
-# An undo costs its edit: a thousand of them take as long on a small mesh. So does reading what was,
-# once the first reader has paid for the copy.
+# The time of an undo depends on its edit and not on the size of the mesh: undoing a thousand edits
+# takes as long on a small mesh. So does reading an earlier state, once the first read has made the
+# copy.
 step "create a small mesh" 201 -X PUT -H "$json" "$meshes/small" \
     -d '{"shape":"torus","major_segments":32,"minor_segments":32}'
 for mesh in small m; do
@@ -69,7 +70,7 @@ step "summary, computed" 200 "$meshes/m"
 step "summary, kept" 200 "$meshes/m"
 step "all neighbours as octets" 200 -H "$json" -H 'Accept: application/octet-stream' \
     -H 'Prefer: wait=60' "$meshes/m/query" -d '{"queries":[{"relation":"vertices","of":{"vertices":"all"}}]}'
-# word OFFSET: a number of eight bytes in the last answer
+# word OFFSET: prints a number of eight bytes in the last answer
 word() { od -An -tu8 -j "$1" -N 8 "$work/answer" | tr -d ' '; }
 step "arrays to draw, first" 200 "$meshes/m/geometry"
 step "arrays to draw, again" 200 "$meshes/m/geometry"
@@ -82,7 +83,8 @@ step "what both changed" 200 "$meshes/m/geometry?$query"
 printf '%-34s %8d bytes\n' "" "$(wc -c <"$work/answer")"
 step "check" 200 "$meshes/m/check"
 step "export JSON" 200 "$meshes/m/content"
-# As a job: values of progress a listener gets, and from the wish to cancel to the memory's return.
+# The upload as a job: how many values of progress a listener gets, and how long it takes from the
+# request to cancel until the memory is free.
 start() { curl -s -o /dev/null -w '%header{location}' -X PUT -H "$json" -H 'Prefer: respond-async' \
     "$meshes/$1" -d "{\"shape\":\"torus\",\"major_segments\":$2,\"minor_segments\":$2}"; }
 job=$(start j "$side")
@@ -91,5 +93,5 @@ printf '%-34s %8d values of progress\n' "create as a job" "$values"
 job=$(start k $((side * 4)))
 until curl -s "$base$job" | grep -q '"state":"running"'; do :; done
 step "cancel a larger one" 202 -X DELETE "$base$job"
-# The connection stays: this waits for the end alone.
+# The listener keeps its connection, so this measures only the time until the job has ended.
 curl -s -N -o /dev/null -w "until it has ended                 %{time_total} s\n" "$base$job/events"

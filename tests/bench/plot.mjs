@@ -1,4 +1,4 @@
-// plot.mjs - lines on two logarithmic axes, each with its name at its end.
+// plot.mjs - draws lines on two logarithmic axes, each with its name at its end.
 
 const WIDTH = 900;
 const HEIGHT = 600;
@@ -7,7 +7,7 @@ const LABEL_STEP = 17;
 
 const escape = (text) => text.replace(/[&<>]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 
-// Places of labels: as near to their lines as they can be without touching.
+// Returns the positions of labels: as near to their lines as possible without touching each other.
 function spread(wanted) {
     const order = wanted.map((y, i) => [y, i]).sort(([a], [b]) => a - b);
     const places = [];
@@ -21,7 +21,8 @@ function spread(wanted) {
     return order.reduce((all, [, i], k) => Object.assign(all, { [i]: places[k] }), {});
 }
 
-// An SVG of `lines`, {title, colour, dashed, values}, over `sizes`, which are called `names`.
+// Returns an SVG of `lines`, each {title, colour, dashed, values}, over `sizes`, whose names on the
+// axis are `names`.
 export function plot({ sizes, names, caption, lines }) {
     const values = lines.flatMap((line) => line.values);
     const [low, high] = [Math.floor(Math.log10(Math.min(...values))),

@@ -1,10 +1,10 @@
-// report.mjs - writes down what a benchmark printed: its section of tests/bench/README.md and, of
+// report.mjs - writes down what a benchmark printed: its section of tests/bench/README.md and, for
 // `make bench`, six rows in README.md. `make report` calls it after each benchmark.
 //
-//     node report.mjs NAME COMMAND < what it printed
+//     node report.mjs NAME COMMAND < OUTPUT
 //
-// NAME is one of the sections below, COMMAND what was run. Pictures that the run left in build/ are
-// copied beside the page.
+// NAME is one of the sections below, COMMAND is what was run. Pictures that the run left in build/
+// are copied beside the page.
 
 import { execFileSync } from 'node:child_process';
 import { copyFileSync, existsSync, readFileSync, writeFileSync } from 'node:fs';
@@ -15,7 +15,8 @@ const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 const page = here('README.md');
 const root = here('../../README.md');
 
-// In the order of the page: what each is about, and the picture it leaves in build/.
+// The sections in the order of the page: what each benchmark is about, and the picture that it
+// leaves in build/.
 const sections = {
     bench: {
         about:
@@ -44,7 +45,8 @@ const sections = {
     },
 };
 
-// Rows of `make bench` that README.md shows: what a user of a mesh library would ask first.
+// The rows of `make bench` that README.md shows, because a user of a mesh library would ask for
+// them first.
 const chosen = [
     'build from arrays, triangles',
     'sum over one-rings',
@@ -67,7 +69,7 @@ function commit() {
     return git('rev-parse', '--short=10', 'HEAD') + (git('status', '--porcelain', '-uno') ? '+' : '');
 }
 
-// The text of each section that the page has, by name.
+// Returns the text of each section that the page has, by name.
 function readPage() {
     const text = existsSync(page) ? readFileSync(page, 'utf8') : '';
     const parts = text.split(/^## /m).slice(1);
@@ -98,7 +100,7 @@ function section(name, command, printed) {
     return `${lines.join('\n')}\n`;
 }
 
-// The columns of compare.mjs, of the rows that the list above names.
+// Returns the columns of compare.mjs for the rows in the list above.
 function rowsOf(printed) {
     return chosen.flatMap((title) => {
         const row = printed.split('\n').find((line) => line.startsWith(title.padEnd(41) + 'natural'));

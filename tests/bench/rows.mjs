@@ -1,28 +1,29 @@
 // rows.mjs - what `make bench` measures: the rows of the table, in parts.
 //
-// A part has an input (tests/bench/side/input.h) and the rows that are run on it. A row:
+// A part has an input (tests/bench/side/input.h) and the rows that are run on it. A row has these
+// members:
 //
-//     title    what stands in the table
-//     ours     the row of our program; of the others' unless `theirs` names another
-//     unit     of the figure, with `per`: by how much AMOUNT / VALUE is divided
+//     title    its name in the table
+//     ours     its name in our program, and in the others' unless `theirs` names another
+//     unit     of the figure, with `per`: AMOUNT / VALUE is divided by this
 //     whole    the figure is VALUE itself
-//     less     less is better: the figure is VALUE / AMOUNT
-//     near     tolerance, relative, of what the sides compute; 0 where only `exact` is compared
-//     drawn    what they compute is a count of edges drawn by lot, not the same ones: the tolerance
-//              is that of the usual input, and wider as there are fewer
-//     target   [peer, ratio]: so many times the peer's figure; or a limit of our own where `less`
-//     runs     of each side, where not as many as the rest
-//     fresh    each run in a process of its own
-//     meter    what is measured, where not seconds (tests/bench/side/side.h)
-//     limit    what it may be at most, where no peer is compared; with `guard` a bound of our own
-//              that no design asks for
-//     why      said where the row falls short or hardly does not: what holds it back
-//     sides    those beside ours, where not those of the part
-//     note     said instead, where there is nothing to measure
-//     after    a row of ours that describes what a side has left in the folder, compared instead
-//     slow     sides that run but once
-//     errors   rows whose figures are told by one of ours, `by`, of what each side has left in the
-//              folder; `of` says which of its numbers. As far as told, less is better
+//     less     the smaller figure is better: it is VALUE / AMOUNT
+//     near     relative tolerance of the results; 0 if only `exact` is compared
+//     drawn    the result counts edges drawn at random, not the same ones in each program: the
+//              tolerance is that of the usual input, and wider if there are fewer edges
+//     target   [peer, ratio]: how many times the peer's figure; or a limit of our own with `less`
+//     runs     the number of runs of each side, if it is not that of the other rows
+//     fresh    each run has a process of its own
+//     meter    the quantity measured, if it is not seconds (tests/bench/side/side.h)
+//     limit    the largest allowed figure, if no peer is compared; with `guard` it is a limit of
+//              our own that no design asks for
+//     why      printed if the row misses its target or hardly meets it: the reason
+//     sides    the programs besides ours, if they are not those of the part
+//     note     printed instead of a figure, if there is nothing to measure
+//     after    a row of ours that describes what a program has left in the folder, for comparison
+//     slow     programs that run only once
+//     errors   rows whose figures come from a row of ours, `by`, about what each program has left
+//              in the folder; `of` says which of its numbers; the smaller one is better
 
 const M = 1e6;
 const rate = (unit, per = M) => ({ unit, per });
@@ -62,7 +63,7 @@ const waits = (deep, lines, work) => {
 };
 const whys = { split: waits(2, 26, 115), flip: waits(4, 40, 53), collapse: waits(4, 70, 141) };
 
-// CGAL's collapses go elsewhere from some point on: cgal_edits.cc tells.
+// From some point on CGAL collapses other edges than we do: cgal_edits.cc says why.
 const edit = (title, ours, target, theirs = ours) => ({
     title,
     near: 0.01,
@@ -90,8 +91,8 @@ const file = (title, ours, target, more = {}) => ({
     ...more,
 });
 
-// In the unit of the coordinates, of which the torus is 8 wide. The farthest of a million points on
-// either surface.
+// The distances are in the unit of the coordinates, of which the torus is 8 wide: the farthest of a
+// million points on either surface from the other.
 const error = (title, of, more) => ({
     title,
     of,
@@ -106,7 +107,8 @@ const farthest =
     'the farthest point is told within a few hundredths: 421 by 250,000 points a side, 441 by a ' +
     "million; CGAL's 439 and 425";
 
-// By what the heap has given out, or the most that was resident beyond what was before: input.
+// Rows of memory: what was allocated on the heap, or the largest resident memory beyond that before
+// the row.
 const memory = (meter, title, ours, more) => ({
     title: `bytes a face ${title}`,
     ours,
@@ -119,8 +121,8 @@ const memory = (meter, title, ours, more) => ({
     ...more,
 });
 
-// The mesh and its edits as bytes, of ours alone: the bounds are of the design of the store where they
-// are of edits.
+// Rows of our program alone, about the mesh and its edits as bytes; the limits for edits come from
+// the design of the store.
 const stored = (title, ours, unit, per, limit) => ({
     title: `stored: ${title}`,
     ours,
@@ -132,7 +134,8 @@ const stored = (title, ours, unit, per, limit) => ({
     guard: true,
 });
 
-// Ours on two threads, beside ours on one; a third more is the least that pays.
+// Rows of our program with two threads, compared with one; a speedup of a third is the least that
+// is worth a thread.
 const scaling = (input, order, rows, why, more) => ({
     part: 'scaling',
     input,
@@ -200,7 +203,8 @@ export const parts = [
                     guard: true,
                 }),
             ),
-            // How many vertices will be one is told before the first byte: a table of positions.
+            // STL export must know how many vertices will be merged before it writes the first
+            // byte, so it makes a table of positions.
             memory('peak', 'at most, exporting STL', 'export_stl', { limit: 24, guard: true }),
             {
                 ...memory('heap', 'a split, mesh alone', 'split', { target: [['best', 1.5]] }),
@@ -246,7 +250,7 @@ export const parts = [
                 target: [['cgal', 2]],
             },
             {
-                // CGAL weighs faces in a way of its own.
+                // CGAL weights the normals of faces in its own way, so only the time is compared.
                 title: 'vertex normals',
                 why: order === 'natural' ? normals : scattered,
                 ours: 'vertex_normals',

@@ -1,15 +1,17 @@
 #!/bin/sh
-# A thousand clients who take an answer at 6 bytes a second (slowhttptest -X): what others wait for
-# beside them, what they make the daemon hold, and when the last of them is closed.
+# A thousand clients that read an answer at 6 bytes a second (slowhttptest -X): how long other
+# clients wait meanwhile, how much memory the daemon holds, and when the last slow client is closed.
 #
 #   slow.sh HEDGED BARE [CLIENTS [SIDE]]
 #
-# They ask for SIDE x SIDE quads as OBJ: 200 is more than a socket keeps, 30 is less. Others read a
-# vertex through 8 connections. The first row is of the daemon alone. In the next ones the same clients
-# are at BARE, a program that does nothing but libmicrohttpd's work: what others wait for then is the
-# share of the clients themselves, who take a processor from the daemon. BARE keeps them until it ends,
-# which closes them all at once. Each wait is told as a multiple of that alone, and at the end the median
-# beside the daemon's clients as a multiple of that beside BARE's, for the three stages of their life.
+# The slow clients request SIDE x SIDE quads as OBJ: for 200 that is more than a socket's buffer
+# holds, for 30 less. Other clients read a vertex through 8 connections. The first row is of the
+# daemon without slow clients. In the next rows the same slow clients are connected to BARE, a
+# program that does only libmicrohttpd's work: the waits in these rows are caused by the clients
+# themselves, which take a processor from the daemon. BARE keeps the clients until it ends, which
+# closes all of them at once. Each wait is printed as a multiple of that in the first row and, at
+# the end, the median with the daemon's slow clients as a multiple of that with BARE's, for the
+# three stages of their life.
 set -eu
 hedged=$1 bare=$2 clients=${3:-1000} side=${4:-200}
 for program in slowhttptest wrk curl ss; do
@@ -31,8 +33,8 @@ connected() {
     ss -tnH state established "( sport = :$1 )" | wc -l
 }
 
-# row WHERE SECONDS PORT: a row, and $open connections at PORT after it. Its stage is told by how many
-# were open before and after.
+# row WHERE SECONDS PORT: measures a row, and counts the connections at PORT after it in $open. The
+# stage of the row follows from how many were open before and after it.
 row() {
     before=$open
     wrk -t1 -c8 -d2s --latency "$base/v1/meshes/m/vertices/0" >"$work/wrk"
@@ -89,8 +91,8 @@ until [ "$open" -eq 0 ]; do
     row hedged "$(since)" "$port"
 done
 
-# The median and the greatest of each stage. On two processors, which the clients share with the daemon,
-# one row is as much the scheduler's as the daemon's: the medians are what compares.
+# The median and the maximum of each stage. On two processors, which the clients share with the
+# daemon, a single row depends on the scheduler as well: the medians can be compared.
 sort -k1,1 -k2,2 -k3,3n "$work/rows" | awk '
     { key = $1 " " $2; p99[key, ++count[key]] = $3 }
     function median(key, n) {

@@ -30,7 +30,8 @@ READS = 0.9          # of the memory store's
 LOADED = 6           # large meshes that take turns in memory
 LOAD_BUDGET = 512 << 20
 LOAD_SECONDS = 20
-# A record as large as the content of its mesh: after the second one a new base is due.
+# This edit makes a record as large as the content of its mesh: after the second one, a new base (a
+# record with the whole content) is due.
 MOVE = {'op': 'transform', 'matrix': [1, 0, 0, .1, 0, 1, 0, .1, 0, 0, 1, .1, 0, 0, 0, 1]}
 PATIENTLY = {'Prefer': 'wait=600'}
 
@@ -120,7 +121,7 @@ def beside_snapshots(bench):
         made.append(percentile(edits_while(daemon, lambda other: bench.make(other, 'made')), .99))
         expect(client.send('DELETE', '/v1/meshes/made').status, 204, '')
         moved.append(percentile(edits_while(daemon, move), .99))
-        # Its base is due by then, and is written after the answer.
+        # The mesh's base is due by then, and is written after the answer.
         rebased.append(percentile(edits_while(daemon, write_base), .99))
     bench.end(daemon, 'snapshots')
     base = statistics.median(quiet)

@@ -14,7 +14,7 @@ import peers
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ALL = ('uv', 'normal', 'color')
-# Attributes of corners; materials are compared where the file has some.
+# The attributes of corners that each format keeps; materials are compared if the file has some.
 EXPORTS = [('obj', '', ALL + ('material',)), ('glb', '', ALL + ('material',)),
            ('ply', '', ('uv', 'color')), ('ply', 'ascii', ('uv', 'color')),
            ('ply', 'binary_big_endian', ('uv', 'color')), ('stl', '', ()), ('stl', 'ascii', ())]
@@ -94,7 +94,8 @@ def run(daemon, program, folder, tally):
     files = [(path, kind, parts, wanted(text)) for name, text in texts.items()
              for path, kind, parts in export_all(daemon, text, name, folder)]
     out = os.path.join(folder, 'blender.json')
-    # Blender's Python takes for its home where the first python3 of the PATH lies.
+    # Blender's Python takes the folder of the first python3 in PATH for its home, so PATH names
+    # only the system's.
     system = {'PATH': '/usr/bin:/bin', 'HOME': folder}
     said = subprocess.run([shutil.which(program) or program, '-b', '--factory-startup', '-noaudio', '-P',
                            os.path.join(HERE, 'blender_read.py'), '--', out] +

@@ -11,7 +11,7 @@ import sys
 import bpy
 import numpy
 
-# A name that the reader of glTF in Blender 3.4 uses and the numpy of Debian 12 no longer has.
+# The glTF reader of Blender 3.4 uses a name that the numpy of Debian 12 no longer has.
 numpy.bool = bool
 
 READ = {

@@ -81,7 +81,7 @@ def run_assimp(form, path, out):
     return os.path.exists(out)
 
 
-# What each format holds of corners, colours being those of vertices.
+# What each format keeps of the values of corners; colours are those of vertices.
 EXPORTS = [('obj', '', ('uv', 'normal', 'color')), ('glb', '', ('uv', 'normal', 'color')),
            ('ply', '', ('uv', 'normal', 'color')), ('ply', 'ascii', ('uv', 'normal', 'color')),
            ('ply', 'binary_big_endian', ('uv', 'normal', 'color')), ('off', '', ('color',))]
@@ -120,12 +120,12 @@ def check_theirs(tally, daemon, folder, name, text, kept):
                     (status, answer.get('counts', {}).get('vertices')))
         if status == 201:
             said = corners_of(export(daemon, answer['id'], 'obj').decode(), kept)
-            # a weld leaves colours at corners only where they differ, and OBJ has none there
+            # a weld leaves colours at corners only where they differ, and OBJ cannot have any there
             tally.check('corners of ' + path, corners_of(text, kept), said)
             daemon.delete(answer['id'])
 
 
-# Base colour and opacity of materials by name.
+# The base colour and the opacity of materials, by name.
 LOOKS = {'red one': (1, 0.25, 0, 1), 'green': (0, 0.75, 0.125, 0.5), 'blue': (0, 0, 1, 1)}
 
 
@@ -197,7 +197,8 @@ def check_materials(tally, daemon, folder):
         status, answer = daemon.create('glb', open(theirs, 'rb').read(), ['weld'])
         tally.check('daemon of ' + theirs, 201, status)
         if status == 201:
-            # from GLB to GLB assimp 5.2 multiplies an opacity with itself
+            # if assimp 5.2 reads a GLB and writes a GLB, it multiplies an opacity with itself, so
+            # this is not compared
             numbers = 4 if kind == 'obj' else 3
             back = painted(export(daemon, answer['id'], 'obj').decode(),
                            export(daemon, answer['id'], 'mtl').decode(), numbers)
@@ -218,7 +219,7 @@ def check_edited(tally, daemon, folder, mesh, name):
     tally.check('edits of ' + name, 200, status)
     text = export(daemon, mesh, 'obj').decode()
     kept = corners_of(text, ['uv']) & corners_of(grid(True, False), ['uv'])
-    # all but the four at the vertex that moved
+    # all corners except the four at the vertex that moved
     tally.check('corners that edits left', (SIDE // 2 * 3) ** 2 - 4, len(kept))
     check_ours(tally, daemon, folder, mesh, name + '-edited', text, ['uv'])
 

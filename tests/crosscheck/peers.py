@@ -109,7 +109,7 @@ def check_exports(tally, daemon, reference, program, paths, summary):
             tally.check('reference of ' + path, (counts['vertices'], split if flat else counts['faces']),
                         (len(v), len(f)))
         _, again = daemon.read(kind, body)
-        # of GLB its polygons come back, of STL triangles
+        # a GLB comes back with its polygons, an STL as triangles
         whole = kind != 'stl'
         tally.check('daemon of ' + path, (counts['vertices'], counts['faces'] if whole else split),
                     (again['counts']['vertices'], again['counts']['faces']))
@@ -131,7 +131,7 @@ def check_theirs(tally, daemon, program, folder, path, summary):
     for who, ext, file in files:
         if ext in ('stl', 'glb') and not flat:
             continue  # each triangulates in its own way
-        # assimp writes a vertex for each corner
+        # assimp writes one vertex for each corner, so the vertices must be welded
         repair = ['weld'] if who == 'assimp' else None
         status, answer = daemon.read(ext, open(file, 'rb').read(), repair)
         want = (201, counts['vertices'], counts['edges'], counts['faces'])

@@ -416,7 +416,7 @@ def change_bytes(b, r):
 def changed(b, kind, r):
     for _ in range(r.choice([0, 1, 1, 1, 2, 3])):
         text = kind in ('obj', 'off') or b'\0' not in b[:2000]
-        # the header of a binary PLY is text
+        # the header of a binary PLY is text, so it is changed as text
         head = re.search(rb'end_header\r?\n', b) if kind == 'ply' else None
         if kind in ('glb', 'gltf') or not b:
             if not b or r.random() < 0.7:
@@ -466,7 +466,8 @@ def facts_differ(kind, facts, answer):
     return out
 
 
-# Differences that are chosen: the format, who refuses, in which words, and why.
+# Differences between the two readers that are intended: the format, which one refuses, with which
+# words, and why.
 KNOWN = [
     ('stl', 'daemon', 'facets that are announced', 'a count that lies may hide facets'),
     ('stl', 'daemon', 'in(side)? a facet|the fourth of a facet|ends with', 'the reference drops it'),
@@ -522,7 +523,7 @@ def compare(ref, daemon, kind, body):
         m, why = None, str(e)
     except Exception as e:  # of whatever kind: it is not the program under test
         return 'unjudged', 'the reference fails: %s' % e
-    # what Python takes for white space, and no file format does
+    # some characters are white space for Python and for no file format
     if kind != 'glb' and re.search(rb'[\v\f\x1c-\x1f\x85\xa0]', body[:500]):
         return 'unjudged', 'other white space'
     if kind == 'stl' and any(len(STL_WORDS.findall(line)) > 1 for line in re.split(b'[\r\n]', body)):

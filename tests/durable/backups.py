@@ -156,7 +156,7 @@ def prove_restore(run):
     calls = counted_calls(run, folder, file)
     new = views(run, folder)
     run.judge('the backup is older', new[0] != old[0])
-    # The last calls are those that matter most: files are moved.
+    # The last calls of a restore matter most, because they move files, so these are always tried.
     numbers = range(1, calls + 1) if run.rounds >= calls else \
         sorted({*run.chance.sample(range(1, calls + 1), run.rounds), *range(calls - 20, calls + 1)})
     run.count('calls', calls)

@@ -76,7 +76,8 @@ class Daemon:
         if faults is not None:
             environment.update({name: str(value) for name, value in faults.items()})
             environment['LD_PRELOAD'] = library
-            # A sanitizer wants to be the first library; it need not be.
+            # A sanitizer requires to be the first library; this option makes it accept another one
+            # before it.
             environment['ASAN_OPTIONS'] = (environment.get('ASAN_OPTIONS', '')
                                            + ':verify_asan_link_order=0')
         self.process = subprocess.Popen(

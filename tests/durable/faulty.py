@@ -98,8 +98,8 @@ class Patient(Writer):
     def refuse(self, change, answer):
         if answer.code() not in DISK_CODES:
             self.log.strange.append(f'{change!r}: {answer.status} {answer.body[:200]!r}')
-        # One that found no space is not there. One whose sync failed may have come to the disk, and
-        # what is said of a job is not what becomes of its change.
+        # A change that found no space must not be there. A change whose sync failed may have
+        # reached the disk; and what is reported of a job is not proof about its change.
         if answer.code() != 'store_full' or change.job:
             self.log.open.append(change)
         self.refusals += 1
@@ -118,7 +118,8 @@ def try_one(run, way, n):
     run.judge(f'{name}: nothing strange', not attempt.log.strange, attempt.log.strange[:2])
     done, flying = attempt.log.take()
     if daemon is not None:
-        # It goes on: reads show what will be there, no more and no less.
+        # After the failure the daemon must answer reads, which show what will be there after a
+        # restart, no more and no less.
         client = daemon.client()
         seen = client.get(f'/v1/meshes/{MESH}')
         if way in ('full', 'short') and len(done) < EDITS and attempt.fired():
@@ -154,7 +155,8 @@ def prove(run):
     run.count('writes', totals['writes'])
     for way, (call, _) in WAYS.items():
         many = totals[call]
-        # No two runs make quite as many calls: a sample is taken of those that all make.
+        # Two runs may differ by a few calls, so the points of failure are taken from those calls
+        # that every run makes.
         points = range(1, many + 1) if run.rounds >= many else \
             sorted(run.chance.sample(range(1, many * 9 // 10), run.rounds))
         for n in points:

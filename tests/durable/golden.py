@@ -171,7 +171,8 @@ def prove_one(run, packed):
         run.judge(f'{release}: {mesh} can be edited', answer.status == 200, answer.body)
     again = client.send('POST', '/v1/meshes?id=edited&name=first', {'shape': 'cube'},
                         {'Idempotency-Key': 'made'})
-    # The key is known for a day; after that the id is taken.
+    # A key is remembered for a day; after that, the repeated request is refused because the id is
+    # taken.
     run.judge(f'{release}: a key is known or forgotten', again.status == 409
               or again.headers.get('Idempotency-Replayed') == 'true',
               f'{again.status} {again.headers}')

@@ -19,7 +19,7 @@ LARGE = 'large'
 LARGE_SHAPE = {'shape': 'grid', 'columns': 170, 'rows': 170}
 MOST_TRIES = 10
 MOST_KEYS = 3  # of a mesh, whose requests are sent again after a kill
-# What a moment counts when the kill came in time.
+# The name under which a kill is counted if it came in time, for each moment at which it is aimed.
 AIM = {'writing': 'kills while writing', 'snapshot': 'kills in a snapshot',
        'loading': 'kills while loading', 'starting': 'kills while starting'}
 LARGE_KINDS = [('put', 1), ('whole_move', 8)]

@@ -21,7 +21,7 @@ def prove(run):
                       refused)
         edit = client.send('POST', path + '/edits', {'op': 'face_poke', 'face': 0})
         run.judge('the first one goes on', edit.status == 200, edit.body)
-        # What writes to the folder is one process more, which is no daemon's business.
+        # A second daemon may run at the same time, if it has another folder.
         other = Daemon(run.hedged, ['--store', 'sqlite:' + run.folder('other')])
         run.judge('another folder is another store',
                   other.client().get(path).status == 404 and other.stop() == 0, other.log())

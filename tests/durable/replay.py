@@ -188,7 +188,8 @@ class Replay:
         deleted = max((c.sent if c in flying else c.answered
                        for c in done + flying if c.deletes()), default=0)
         if not any(c.deletes() for c in flying):
-            # Those that were sent after the last deletion was answered made a mesh.
+            # Of the creations of a mesh, only those sent after the last deletion was answered can
+            # have made the present one.
             for change in made:
                 if change.sent > deleted:
                     raise Wrong(f'{mesh}: {change!r} was acknowledged after the last deletion')

@@ -32,7 +32,7 @@ import traces
 from daemon import Daemon
 from replay import Wrong
 
-# Name: the function, the rounds without --rounds.
+# Each proof by its name: its function, and the number of rounds if --rounds is not given.
 PROOFS = {
     'self': (self_test.prove, 3),
     'kill': (kill.prove, 20),

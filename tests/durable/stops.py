@@ -29,7 +29,8 @@ def prove(run):
                               {'op': 'vertex_move', 'vertex': 0, 'to': [i, i, i]}).version()
         with open(switch, 'w', encoding='ascii'):
             pass
-        # The change hangs in its sync; who looks for a mesh on the disk waits behind it.
+        # A change hangs in its sync, and a request that looks for a mesh on the disk waits behind
+        # it.
         answers, threads = [], []
         for request in (('POST', '/v1/meshes/m/undo', {}), ('GET', '/v1/meshes/none')):
             threads.append(threading.Thread(target=ask, args=(daemon.client(), answers, *request)))
@@ -49,7 +50,7 @@ def prove(run):
         run.count('stops with work under way', status == 1)
         daemon = run.start()
         now = daemon.client().get('/v1/meshes/m').version()
-        # The undo was not answered: it may be there.
+        # The undo was not answered, so it may be there or not.
         run.judge('what was answered is there', now in (tag, (*tag[:2], tag[2] + 1)), (tag, now))
         run.count('edits', edits)
         daemon.process.send_signal(signal.SIGTERM)

@@ -246,7 +246,8 @@ class Verdict:
         removed = [self.trace.came.get(n) for n, mesh in traffic.removals
                    if n == name or mesh == seen.gone]
         for came in removed:
-            # A 404 is explained by the latest removal before it; the mesh may have been made since.
+            # A 404 is explained by the latest removal before it; the mesh may have been created
+            # again since.
             if came is not None and came < sent and seen.kind in ('delete', '404') and came == max(
                     r for r in removed if r is not None and r < sent):
                 written = next((at for at, _ in self.trace.written if at > came), None)
@@ -279,7 +280,8 @@ def trace_round(run, number):
     run.count('syncs', len(trace.syncs))
     run.judge('no answer was early', not verdict.early,
               f'{len(verdict.early)} were: {verdict.early[:5]}')
-    # Would it be seen? As if each sync that covers something had been the next one.
+    # Checks that the test would notice early answers: if each change is taken to be durable only
+    # one sync later than it is, many answers must count as early.
     run.count('seen as early with the next sync', len(Verdict(run, traffic, trace, 1).early))
     os.remove(path)
 

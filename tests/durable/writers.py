@@ -16,8 +16,8 @@ SHAPES = [{'shape': 'icosphere', 'subdivisions': 1}, {'shape': 'cube'},
           {'shape': 'torus', 'major_segments': 8, 'minor_segments': 6},
           {'shape': 'uv_sphere', 'segments': 8, 'rings': 6}]
 WRITTEN = (200, 201, 202, 204)
-# What an edit answers that found nothing to do, such as the dual of no faces, and made no revision; or
-# a list whose operations undo each other, which did.
+# The counts in the answer to an edit that found nothing to do, such as the dual of a mesh without
+# faces, and made no revision; or to a list whose operations undo each other, which did make one.
 NOTHING = b'"created":%s,"deleted":%s,"modified":%s' % (3 * (
     b'{"vertices":[],"edges":[],"faces":[]}',))
 
@@ -129,7 +129,8 @@ class Draw:
     def change_name(self, mesh):
         name = self.name()
         return Change(mesh, 'PATCH', '', {'name': name},
-                      # Minimal: the summary would be that of a later change, where there is one.
+                      # The minimal answer is requested, because the summary could already show a
+                      # later change of another client.
                       {'Content-Type': 'application/merge-patch+json', 'Prefer': 'return=minimal'},
                       revisions=0, names=1, name=name)
 
@@ -168,7 +169,7 @@ class Draw:
         kind = self.chance.choices([k for k, _ in kinds], [w for _, w in kinds])[0]
         change = getattr(self, 'change_' + kind)(mesh)
         change.kind = kind
-        # Keys are for what may be sent twice; a job has one too.
+        # Requests that may be sent twice need a key; one that becomes a job has one, too.
         if kind not in ('put', 'delete', 'attribute', 'no_attribute') and self.chance.random() < .5:
             change.key = self.name()
         return change
@@ -217,7 +218,7 @@ class Writer(threading.Thread):
     def step(self):
         mesh = self.draw.chance.choice(self.meshes)
         change = self.draw.next(mesh, self.kinds)
-        # What grew too large to be compared often begins anew.
+        # A mesh that has grown too large to be compared quickly is often replaced by a new one.
         if self.sizes.get(mesh, 0) > 1500:
             self.sizes[mesh] = 0
             change = self.draw.change_put(mesh)

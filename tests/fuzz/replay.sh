@@ -1,6 +1,6 @@
 #!/bin/sh
-# FUZZ=FOLDER replay.sh - each target in FOLDER goes through its inputs in tests/fuzz/seeds and
-# tests/fuzz/found. The last line is `N passed, N failed`, an input each.
+# FUZZ=FOLDER replay.sh - runs each target in FOLDER on its inputs in tests/fuzz/seeds and
+# tests/fuzz/found. The last line is `N passed, N failed`, counting inputs.
 set -u
 
 passed=0
@@ -13,7 +13,7 @@ for source in tests/fuzz/fuzz_*.c; do
     if "$FUZZ/$program" "$@" >"$FUZZ/$target.said" 2>&1; then
         passed=$((passed + $#))
     else
-        # the last one that it named
+        # the input that was named last has failed
         failed=$((failed + 1))
         passed=$((passed + $(grep -c '^tests/fuzz/' "$FUZZ/$target.said") - 1))
         echo "FAILED $program"

@@ -1,19 +1,20 @@
 #!/bin/sh
-# run.sh SECONDS [TARGET...] - libFuzzer on each target for so many seconds, FUZZ_JOBS (2) at a time.
+# run.sh SECONDS [TARGET...] - runs libFuzzer on each target for this many seconds, FUZZ_JOBS (2) at
+# a time.
 #
-# The targets were built by `make fuzz`; without names all of them run. Each begins from
-# tests/fuzz/seeds/TARGET, from what it found worth keeping before (build/fuzz/corpus/TARGET, which
-# grows), and from the files of its kind in FUZZ_FILES (../shared/corpus/files), where that exists.
-# FUZZ_SEED repeats a run; without it each is another.
-# build/fuzz/logs/TARGET.log is libFuzzer's own account. An input that goes wrong is left in
-# build/fuzz/found; it is a regression test once it lies, made small by -minimize_crash=1, in
-# tests/fuzz/found/TARGET. The last line is `N passed, N failed`, a target each.
+# The targets were built by `make fuzz`; without names all of them are run. Each begins from
+# tests/fuzz/seeds/TARGET, from inputs that earlier runs kept (build/fuzz/corpus/TARGET, which
+# grows), and from the files of its kind in FUZZ_FILES (../shared/corpus/files), if that exists.
+# FUZZ_SEED repeats a run; without it each run is another. build/fuzz/logs/TARGET.log has
+# libFuzzer's output. An input that fails is left in build/fuzz/found; made small by
+# -minimize_crash=1 and put into tests/fuzz/found/TARGET, it is a regression test. The last line is
+# `N passed, N failed`, counting targets.
 set -u
 
 programs=build/fuzz/tests/fuzz
 files=${FUZZ_FILES:-../shared/corpus/files}
 
-# Second role: one target.
+# With --one the script runs a single target; the other call of this script below uses that.
 if [ "${1-}" = --one ]; then
     seconds=$2
     target=$3
@@ -26,7 +27,8 @@ if [ "${1-}" = --one ]; then
     set -- "$corpus" "tests/fuzz/seeds/$target" build/fuzz/files/"$target"
     dictionary=tests/fuzz/seeds/$target.dict
     [ ! -f "$dictionary" ] || set -- -dict="$dictionary" "$@"
-    # guard.c counts the memory and the seconds that an input itself takes; these catch the rest.
+    # guard.c limits the memory and the seconds of a single input; the limits here catch everything
+    # else.
     ASAN_OPTIONS="${ASAN_OPTIONS:-quarantine_size_mb=16:detect_leaks=1}" \
         "$programs/fuzz_$target" -max_total_time="$seconds" -seed="${FUZZ_SEED:-0}" -max_len=4096 -timeout=20 \
         -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target-" \

@@ -50,10 +50,10 @@ def edit(op, statuses=(200, 202), **arguments):
     return Ask(op, 'POST', '/edits', {'op': op, **arguments}, statuses)
 
 
-# Done, refused by a rule with its name, or too much.
+# The statuses that a row may end with: done, or refused by a rule that has a name.
 ENDS = (200, 202, 400, 409, 413, 422)
 
-# What a job is offered for may become one.
+# A request that may become a job may be answered with 202.
 CHECK = get('check', '/check', 200, 202)
 CROSSINGS = get('crossings', '/check?self_intersections=true', 200, 202, 413)
 STL = get('STL', '/content?format=stl')
@@ -62,7 +62,7 @@ PACKED = get('packed GLB', '/content?format=glb&compress=meshopt')
 JSON = get('JSON', '/content?format=json')
 ASCII = get('PLY text', '/content?format=ply&encoding=ascii')
 GEOMETRY = get('geometry', '/geometry')
-# The mesh has triangles only.
+# A progressive mesh must consist of triangles.
 PROGRESSIVE = get('progressive', '/progressive', 200, 202, 413, 422)
 RAY = query('ray', {'ray': {'origin': [0.3, 0.2, -1e5], 'direction': [0, 0, 1]}})
 RAYS = query('500 rays', *[{'ray': {'origin': [i % 25 * 999 - 9000.0, i // 25 * 999 - 9000.0, -1e5],
@@ -100,7 +100,7 @@ TABLES = [get('a page of vertices', '/vertices?limit=10000'), get('summary', '')
 POLYGON = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, RAY, CLOSEST, *MEASURES[3:5],
            edit('triangulate'), Ask('undo', 'POST', '/undo'),
            edit('dual', (200, 202, 422)), edit('face_poke', face=0)]
-# The mesh has large faces and is not changed.
+# Requests for a mesh with large faces, which do not change it.
 FACETS = [CHECK, STL, GLB, GEOMETRY, RAY, CLOSEST,
           edit('triangulate', ENDS, dry_run=True), edit('dual', ENDS, dry_run=True)]
 SURFACE = [CHECK, CROSSINGS, STL, GLB, GEOMETRY, PROGRESSIVE, RAYS, SIDEWAYS, CLOSEST, CROSS,
@@ -124,7 +124,8 @@ def listed(name, ops):
     return Ask(name, 'POST', '/edits', {'dry_run': True, 'ops': kept}, ENDS)
 
 
-# The mesh is a fan around vertex 0; triangle i is (0, i + 1, i + 2), edge 0 and even edges are spokes.
+# Edits of a fan around vertex 0: triangle i is (0, i + 1, i + 2); edge 0 and the even edges are the
+# spokes.
 AT_HUB = [
     listed('the hub split at each spoke', ({'op': 'vertex_split', 'vertex': 0, 'left': i,
                                             'right': i + 1, 'to': [0, 0, 1]}
@@ -153,7 +154,7 @@ ZIP = ('Content-Encoding: gzip',)
 REPAIRS = '&repair=weld,drop_degenerate,drop_duplicates,orient,split,fill'
 
 ROWS = [
-    # fans: everything meets in one vertex, in one plane
+    # fans: all triangles meet in one vertex, in one plane
     Row('flat fan of 2,500', lambda: meshes.fan(2500), SURFACE, quick=True),
     Row('flat fan of 10,000', lambda: meshes.fan(10000), SURFACE),
     Row('flat fan of 60,000', lambda: meshes.fan(60000), SURFACE),
@@ -209,7 +210,7 @@ ROWS = [
     *[Row(f'two rows of {count:,}', lambda count=count: meshes.rows_far_apart(count),
           [edit('delaunay', ENDS)], quick=count == 1000) for count in (700, 1000, 10000, 30000)],
 
-    # polygons: what has to be triangulated
+    # polygons that are hard to triangulate
     Row('4 combs of 15,000', lambda: meshes.combs(4, 15000), POLYGON),
     Row('40 combs of 1,500', lambda: meshes.combs(40, 1500), POLYGON, quick=True),
     Row('convex disc of 60,000', lambda: meshes.disc(60000), POLYGON),
@@ -220,7 +221,7 @@ ROWS = [
         [*SURFACE, edit('triangulate'), edit('dual', (200, 202, 422)),
          edit('subdivide', steps=1)]),
 
-    # soups
+    # soups, in which faces cross each other
     Row('5,000 needles through a point', lambda: meshes.needles(5000), SURFACE),
     Row('20,000 needles through a point', lambda: meshes.needles(20000), [CROSSINGS, CROSS, RAYS]),
     Row('10,000 triangles, every box in every other', lambda: meshes.stack(10000), SURFACE),
@@ -239,7 +240,7 @@ ROWS = [
         [get('check with merge', '/check?merge=3', 200, 202),
          edit('weld', (200, 202, 413, 422), tolerance=3)]),
 
-    # what repair has to mend
+    # files that are hard to repair
     Row('a book of 60,000 pages', lambda: meshes.book(60000), statuses=(422,)),
     Row('a book of 60,000 pages, split', lambda: meshes.book(60000), [CHECK], (201, 202, 422),
         query='&repair=split'),
@@ -250,7 +251,7 @@ ROWS = [
     Row('flat fan of 60,000, repaired', lambda: meshes.fan(60000), [CHECK], (201, 202),
         query=REPAIRS + '&tolerance=1&hole_edges=100000'),
 
-    # text and coding
+    # JSON texts and compressed bodies
     Row('400,000 brackets', lambda: meshes.nested(400000), statuses=(400, 413), quick=True),
     Row('a number of 900,000 digits', lambda: meshes.long_number(900000), statuses=(400, 413),
         quick=True),
@@ -273,7 +274,7 @@ ROWS = [
     Row('20 MB of brackets in gzip', lambda: zipped(lambda: meshes.nested(20000000)),
         statuses=(400, 413), headers=ZIP),
 
-    # several files, and what is packed in one
+    # bodies of several files, and compressed parts of a file
     Row('900,000 carriage returns between two delimiters',
         lambda: meshes.parts(('a.bin', b'\r' * 900000)), statuses=(422,), quick=True),
     Row('64 files', lambda: meshes.parts(*((f'{i}.obj', b'v 0 0 0\n' * 1500) for i in range(64))),
@@ -283,7 +284,7 @@ ROWS = [
     Row('12 MB of corners packed in 200 KB, 20 times', lambda: meshes.packed_zeros(3 << 18, 20),
         statuses=(413,)),
 
-    # whole meshes from a few bytes
+    # short requests that create large meshes
     Row('a torus of 300,000 faces', lambda: ('application/json', json.dumps(
         {'shape': 'torus', 'major_segments': 600, 'minor_segments': 500}).encode()),
         [edit('dual'), Ask('undo', 'POST', '/undo', statuses=(200, 409)), CHECK, CROSSINGS, STL, GLB, PACKED, GEOMETRY,
@@ -293,8 +294,8 @@ ROWS = [
         'application/json', b'{"shape":"icosphere","subdivisions":6}'),
         [PROGRESSIVE, CROSS_OFTEN, RAYS, CLOSEST, edit('decimate', faces=10),
          edit('delaunay')], (201, 202)),
-    # A file is sent at once however large the mesh is: the manual says what that takes. A ray and nearest
-    # points are quick where a job before them has made the tree before it was cancelled.
+    # A file is sent at once however large the mesh is; the manual says what that costs. A ray and
+    # nearest points are quick if an earlier job built the tree of boxes before it was cancelled.
     Row('a torus of a million faces', lambda: ('application/json', json.dumps(
         {'shape': 'torus', 'major_segments': 1000, 'minor_segments': 1000}).encode()),
         [get('packed GLB', '/content?format=glb&compress=meshopt', most=2000),

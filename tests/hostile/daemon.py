@@ -134,8 +134,8 @@ class Prober(threading.Thread):
             slept = time.monotonic()
             if self.ending.wait(PROBE):
                 return
-            # Woken late on a busy machine, it does not count what the worker did in the meantime: that
-            # held nobody up.
+            # If this thread is woken late on a busy machine, it does not count what the worker did
+            # in the meantime, because that has delayed no request.
             late = time.monotonic() - slept > 5 * PROBE
             before = self.target.spent(WORKERS) if late else self.seen
             self.ask()

@@ -1,4 +1,4 @@
-// draw.mjs - memory by the minute as a picture.
+// draw.mjs - draws the memory of each minute as a picture.
 
 const WIDTH = 760;
 const HEIGHT = 340;
@@ -10,7 +10,8 @@ const LINES = [
     ['counted', 'counted at rest', '#3a9a4b'],
 ];
 
-// A step of 1, 2 or 5 times a power of ten, about five of them up to `most`.
+// Returns a step of the axis, 1, 2 or 5 times a power of ten, so that about five steps reach
+// `most`.
 function stepFor(most) {
     const rough = most / 5;
     const power = 10 ** Math.floor(Math.log10(rough));

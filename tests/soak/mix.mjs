@@ -1,25 +1,27 @@
-// mix.mjs - what one client of the soak does: everything, in an order that follows from a seed.
+// mix.mjs - what one client of the soak test does: requests of all kinds, in an order that follows
+// from a seed.
 //
-// It has a keeper, a mesh that stays, and up to GUESTS meshes that come and go. A round is so many
-// steps, and then everything is as before it: the guests are deleted, the keeper is undone to what
-// it was and compacted. What the daemon then holds is what it held after every round before.
+// A client has a keeper, a mesh that stays, and up to GUESTS meshes that come and go. A round has a
+// number of steps; at its end everything is as it was before: the guests are deleted, and the
+// keeper is undone to its first state and compacted. So the daemon must hold as much memory as
+// after every earlier round.
 
 import { countIssued, numbersFrom, randomEdit } from '../web/random.mjs';
 
 const GUESTS = 4;
-// The mesh of the keeper; an edit of it stays undoable.
+// The mesh that the keeper is made from; an edit of all of it can still be undone.
 const KEEPER = { shape: 'torus', major_segments: 60, minor_segments: 60 };
 const FORMATS = ['obj', 'off', 'ply', 'ply&encoding=ascii', 'stl', 'stl&encoding=ascii', 'glb', 'json'];
 // Formats that keep polygons, and so the number of faces.
 const EXACT = ['obj', 'off', 'ply', 'json'];
 const CODINGS = ['identity', 'gzip', 'zstd'];
-// Files that are kept for uploading, at most so large and so many.
+// The largest number and size of the files that a client keeps for uploading.
 const SHELF = 12;
 const SHELF_BYTES = 8 * 1024 * 1024;
 
 const minimal = { Prefer: 'return=minimal' };
 
-// Requests that are refused, whatever the mesh is like.
+// Requests that must be refused, whatever the mesh is like.
 const REFUSED = [
     ['POST', '/edits', { op: 'edge_split', edge: 4e9 }, [422]],
     ['POST', '/edits', { op: 'edge_splt', edge: 0 }, [400]],
@@ -36,7 +38,7 @@ const REFUSED = [
     ['GET', '/faces?cursor=nothing', undefined, [400]],
 ];
 
-// Bodies that are no mesh.
+// Bodies that must be refused because they are no mesh.
 const BROKEN = [
     ['model/obj', 'v 0 0 0\nf 1 2 3\n', [400, 422]],
     ['model/ply', 'ply\nformat ascii 1.0\nelement vertex 4294967295\nproperty float x\nend_header\n',
@@ -49,7 +51,7 @@ const BROKEN = [
 ];
 
 export class Mix {
-    // `most` faces at once, in all guests together.
+    // `most` is the number of faces that all guests together may have at once.
     constructor(client, name, seed, most) {
         this.client = client;
         this.name = name;
@@ -71,7 +73,8 @@ export class Mix {
         return list[this.below(list.length)];
     }
 
-    // The keeper more often than a guest, for it is undone to the first of its revisions.
+    // Returns a mesh for the next step: the keeper more often than a guest, because it is undone to
+    // the first of its revisions.
     mesh() {
         return this.guests.length === 0 || this.below(3) === 0 ? this.keeper : this.pick(this.guests);
     }
@@ -80,7 +83,8 @@ export class Mix {
         return `/v1/meshes/${mesh.id}${rest}`;
     }
 
-    // What is known of a mesh from its summary: ids are issued up to its counts where it was just made.
+    // Notes what is known of a new mesh from its summary: the ids that it has issued are those
+    // below its counts.
     describe(id, summary) {
         const { counts: { vertices, edges, faces } = {}, revision } = summary ?? {};
         return { id, faces, revision, clean: true, issued: { vertices, edges, faces } };
@@ -103,13 +107,13 @@ export class Mix {
         await this.pick(this.steps).call(this, mesh);
     }
 
-    // Back to where every round begins.
+    // Returns everything to the state in which a round begins.
     async settle() {
         while (this.guests.length > 0) {
             await this.delete();
         }
         const { keeper, client } = this;
-        // A redo of nothing, and a look at it as a file, leave the same behind every time.
+        // A redo of nothing and an export bring the keeper into the same state each time.
         await client.send('POST', this.path(keeper, '/undo'), [204, 409], {
             body: { to_revision: keeper.revision },
             headers: minimal,
@@ -129,7 +133,7 @@ export class Mix {
     // --- meshes that come and go ---
 
     shape() {
-        // From ten faces to the most, each size as often as its double.
+        // Sizes from ten faces to `most`; each size is as frequent as its double.
         const faces = Math.floor(10 * (this.most / 10) ** (this.below(1000) / 1000));
         const side = Math.max(3, Math.floor(Math.sqrt(faces)));
         return this.pick([
@@ -190,7 +194,7 @@ export class Mix {
             body: { id },
             headers: { Prefer: 'wait=600' },
         });
-        // It has as many dead ids.
+        // A copy of a mesh has as many deleted ids as the mesh.
         const { issued } = mesh; // the dead ones, too
         this.guests.push({ ...this.describe(id, value), issued: { ...issued }, clean: false });
     }
@@ -214,7 +218,7 @@ export class Mix {
         await this.edited(mesh, randomEdit(this.below, mesh.issued));
     }
 
-    // What hardly ever is refused, so that most lists are done as a whole.
+    // A list of edits that are hardly ever refused, so that most lists are done as a whole.
     async batch(mesh) {
         const ops = [];
         for (let i = this.below(60) + 2; i > 0; i--) {
@@ -267,7 +271,7 @@ export class Mix {
         });
     }
 
-    // A guest as a whole; its counts are asked for afterwards.
+    // An edit of a whole guest; its counts are requested afterwards.
     async whole() {
         const mesh = this.guests.at(-1);
         if (mesh === undefined) {
@@ -293,7 +297,7 @@ export class Mix {
         if (status === 204) {
             const { value } = await this.client.json('GET', this.path(mesh), [200]);
             Object.assign(mesh, { ...this.describe(mesh.id, value), clean: false });
-            // Ids do not go back where nothing was compacted.
+            // The numbers of issued ids must not decrease, unless the mesh was compacted.
             for (const kind of Object.keys(mesh.issued)) {
                 mesh.issued[kind] += 100;
             }
@@ -312,7 +316,7 @@ export class Mix {
         }
     }
 
-    // A mesh made by a job that somebody watches, or that is given up.
+    // Makes a mesh by a job, to whose events a client listens, or which is cancelled.
     async job() {
         await this.make(this.most / 10);
         const id = `${this.name}-${this.made++}`;
@@ -334,7 +338,8 @@ export class Mix {
 
     // --- reading ---
 
-    // Some are kept to be uploaded: of clean meshes, which every format can hold.
+    // Exports a mesh. Some files are kept to be uploaded: those of meshes without defects, which
+    // every format can hold.
     async export(mesh) {
         const format = this.pick(FORMATS);
         const { headers, body } = await this.client.send(
@@ -356,7 +361,7 @@ export class Mix {
         }
     }
 
-    // Goes away in the middle of an answer.
+    // Disconnects in the middle of an answer.
     async leave(mesh) {
         await this.client.send('GET', this.path(mesh, `/content?format=${this.pick(FORMATS)}`), [200], {
             cut: true,
@@ -364,7 +369,8 @@ export class Mix {
         });
     }
 
-    // Faces that cross everywhere take more steps than a request has: a job looks for them.
+    // If faces cross each other everywhere, the search takes more steps than a request may, so a
+    // job does it.
     async check(mesh) {
         const path = this.path(mesh, '/check');
         const { value } = await this.client.json('GET', path, [200]);
@@ -380,7 +386,8 @@ export class Mix {
         }
     }
 
-    // The job of a read, whose result would be kept for an hour.
+    // Reads the result of a job and deletes the job, whose result would otherwise be kept for an
+    // hour.
     async outcome({ headers: { location } }, expected) {
         await this.client.send('GET', `${location}/events`, [200]);
         await this.client.send('GET', `${location}/result`, expected);
@@ -415,7 +422,8 @@ export class Mix {
         }
     }
 
-    // The mesh of a guest: a feed goes on collecting for a while when its listeners have gone.
+    // Listens to a guest, because the queue of events goes on collecting for a while when its
+    // listeners are gone; the guest is deleted with its queue.
     async listen() {
         const mesh = this.guests[0];
         if (mesh !== undefined) {

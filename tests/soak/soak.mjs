@@ -1,24 +1,26 @@
-// soak.mjs - a daemon under everything its clients do, for an hour: is its memory flat?
+// soak.mjs - runs a daemon under requests of all kinds for an hour, and checks that its memory does
+// not grow.
 //
 //     node soak.mjs --minutes 60 [--load 0.5] [--faces 400000] [--clients 2] [--seed N]
 //     node soak.mjs --rounds 8 --faces 20000
 //
-// Each client goes through rounds of steps (mix.mjs). After a round everything is as it was before
-// it, so that what the daemon holds then can be compared. Each minute has a line:
+// Each client runs rounds of steps (mix.mjs). After a round everything is as it was before it, so
+// that the memory that the daemon then holds can be compared. Each minute has a line:
 //
-//     minute, requests so far and those answered by a refusal; meshes and faces held now
-//     loaded   MiB resident, the mean of the minute, and the most in it
-//     at rest  after a round: MiB resident, MiB the daemon itself counts, open descriptors
+//     minute, requests so far and how many of them were refused; meshes and faces held now
+//     loaded   MiB resident: the mean of the minute, and the maximum
+//     at rest  after a round: MiB resident, MiB that the daemon itself counts, open descriptors
 //
-// At rest no client asks for anything; what the C library kept of freed blocks the daemon gives back
-// a second later, and a run of minutes waits for that, every ten seconds.
+// At rest no client sends requests. The daemon returns freed memory to the system a second later,
+// and a run of minutes waits for that, every ten seconds.
 //
-// Judged is the second half: the slope of what is resident and of what is counted at rest, by least
-// squares; how far rest is above its level after the first quarter; the slope of the loaded means
-// where there are ten of them; descriptors; that every request was answered as expected; that the
-// daemon ends well. Less than ten minutes, as `make test` has it, knows wider bounds. `--load 0.5`
-// pauses for as long as requests take. What came out by the minute goes to soak.csv and soak.svg in
-// build/; the slowest requests are told of, and the last line is `N passed, N failed`.
+// The second half of the run is judged: the slopes of resident and of counted memory at rest, by
+// least squares; how far memory at rest is above its level after the first quarter; the slope of
+// the loaded means, if there are ten of them; descriptors; whether every request was answered as
+// expected; whether the daemon ended well. A run of less than ten minutes, as in `make test`, has
+// wider limits. `--load 0.5` pauses for as long as requests take. The figures of each minute go to
+// soak.csv and soak.svg in build/; the slowest requests are listed, and the last line is `N passed,
+// N failed`.
 
 import { mkdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
@@ -45,10 +47,12 @@ const { values: options } = parseArgs({
 
 const STEPS = 60; // of a round
 const SAMPLES = 250; // milliseconds between two looks at what is resident under load
-// Budget of a mesh; soon full, for entries of what was undone and compacted stay in a history.
+// The memory for undo of a mesh: it is soon full, because undone and compacted entries stay in a
+// history.
 const UNDO_BUDGET = '512K';
-// What is flat: MiB, or a share of the level where that is more. In a shorter run heaps still find
-// their size, and the histories of the keepers come up to their budgets.
+// How far memory may rise and still count as flat: MiB, or a part of the level if that is more. In
+// a shorter run heaps still find their size, and the histories of the keepers still fill their
+// budgets.
 const STARTING = options.minutes === undefined ? 0.25 : 1;
 const BOUNDS =
     Number(options.minutes ?? 0) < 10
@@ -86,7 +90,7 @@ function sample() {
     loaded.push(daemon.memory().resident);
 }
 
-// Until as little is resident as at any rest before.
+// Waits until no more memory is resident than at any earlier rest.
 async function settled() {
     const lowest = Math.min(...rests.map(({ resident }) => resident));
     const until = seconds() + MOST_REST;
@@ -145,7 +149,7 @@ function minuteEnds() {
     print([minute, requests, refused, meshes, faces, ...shown, files]);
 }
 
-// By least squares: how much `of` grows over all of the list.
+// Returns how much `of` grows over the whole list, by least squares.
 function growth(list, of) {
     const mean = (value) => list.reduce((all, one) => all + value(one), 0) / list.length;
     const time = mean((one) => one.time);

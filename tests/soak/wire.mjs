@@ -1,4 +1,5 @@
-// wire.mjs - the daemon under soak, seen from outside: requests to it, and what it takes of memory.
+// wire.mjs - the daemon of the soak test, seen from outside: requests to it, and the memory that it
+// takes.
 
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -17,7 +18,7 @@ export class Daemon {
         this.ended = once(child, 'exit');
     }
 
-    // On a free port.
+    // Starts the daemon on a free port.
     static async start(program, flags) {
         const child = spawn(program, ['--listen', '127.0.0.1:0', '--store', 'memory', '--log', 'off', ...flags], {
             stdio: ['ignore', 'ignore', 'pipe'],
@@ -33,7 +34,8 @@ export class Daemon {
         throw new Error(`${program} ended before it listened`);
     }
 
-    // MiB: resident now, the most since the last call with `anew`, and open descriptors.
+    // Returns MiB that are resident now, the maximum since the last call with `anew`, and the
+    // number of open descriptors.
     memory(anew = false) {
         const folder = `/proc/${this.child.pid}`;
         const status = readFileSync(`${folder}/status`, 'utf8');
@@ -48,14 +50,14 @@ export class Daemon {
         };
     }
 
-    // Seconds of processor time so far, of all threads.
+    // Returns the seconds of processor time that all threads have used so far.
     processor() {
         const line = readFileSync(`/proc/${this.child.pid}/stat`, 'latin1');
         const [user, system] = line.slice(line.lastIndexOf(')') + 2).split(' ').slice(11, 13);
         return (Number(user) + Number(system)) / TICKS;
     }
 
-    // Its exit status.
+    // Stops the daemon; returns its exit status.
     async stop() {
         this.child.kill('SIGTERM');
         const [status] = await this.ended;
@@ -63,7 +65,7 @@ export class Daemon {
     }
 }
 
-// One connection that is kept. Every answer must have one of the statuses that are expected.
+// A client with one connection that is kept. Every answer must have one of the expected statuses.
 export class Client {
     constructor(daemon, load) {
         const { hostname, port } = new URL(daemon.url);
@@ -77,7 +79,8 @@ export class Client {
         this.slowest = []; // {time, processor, what} in seconds, the slowest first
     }
 
-    // The processor time of the daemon includes what the other clients asked for meanwhile.
+    // Notes a slow request. The processor time of the daemon includes the requests of other clients
+    // at that time.
     timed(began, processor, what) {
         const time = (performance.now() - began) / 1000;
         if (this.slowest.length < SLOWEST || time > this.slowest.at(-1).time) {
@@ -94,8 +97,8 @@ export class Client {
         }
     }
 
-    // {status, headers, body} of an answer. With `cut` the connection is closed after its first piece,
-    // and with `type` an object is sent as it is, else as JSON.
+    // Sends a request; returns {status, headers, body}. With `cut` the connection is closed after
+    // the first piece of the answer. With `type` the body is sent as it is, otherwise as JSON.
     async send(method, path, expected, { body, type, headers = {}, cut = false } = {}) {
         const began = performance.now();
         const processor = this.daemon.processor();
@@ -138,13 +141,13 @@ export class Client {
         return { ...result, value };
     }
 
-    // Expectations that are about more than a status.
+    // Notes that an expectation about more than a status was not met.
     strange(what) {
         this.problems.push(what);
     }
 
-    // Listens to a mesh, does `act`, and goes when as many edits have been told. It closes without
-    // a word, as listeners do.
+    // Listens to a mesh, calls `act`, and disconnects when this many edits have been received, as
+    // listeners do.
     async listen(path, act) {
         const asked = request({ ...this.to, path, agent: false });
         asked.end();

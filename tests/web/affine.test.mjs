@@ -1,4 +1,4 @@
-// Numbers as people put them in, and the matrix put together of steps.
+// Numbers as people type them, and the matrix made from scaling, rotation and translation.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -32,7 +32,8 @@ test('quarter turns are exact, and counter-clockwise seen from the tip of the ax
 
 test('a mesh is scaled, then turned around x, y and z, then moved', () => {
     const steps = { scale: [2, 3, 4], rotate: [90, 0, 90], translate: [10, 20, 30] };
-    // (1, 1, 1) -> (2, 3, 4) -> (2, -4, 3) -> (4, 2, 3)
+    // The point (1, 1, 1) is scaled to (2, 3, 4), rotated to (2, -4, 3) and (4, 2, 3), and then
+    // moved.
     assert.deepEqual(mapped(steps, [1, 1, 1]), [14, 22, 33]);
 });
 

@@ -1,4 +1,4 @@
-// Files that refer to others go to the server with them, in one request.
+// Files that refer to other files are sent to the server together with these, in one request.
 import assert from 'node:assert/strict';
 import { File } from 'node:buffer'; // no global of node 18
 import { test } from 'node:test';
@@ -27,10 +27,10 @@ async function grouped(...files) {
 test('a mesh takes what it names', async () => {
     assert.deepEqual(await grouped(['a.bin'], ['a.gltf'], ['b.bin']), ['a.gltf a.bin b.bin']);
     assert.deepEqual(await grouped(['A.OBJ'], ['a.mtl']), ['A.OBJ a.mtl']);
-    // images stay behind, other meshes go alone
+    // images are not sent, and other meshes are sent by themselves
     assert.deepEqual(await grouped(['a.gltf'], ['a.png'], ['b.stl'], ['a.bin']),
         ['a.gltf a.bin', 'b.stl']);
-    // of two, each what it names; what neither names goes alone
+    // of two meshes, each gets the files that it names; a file that neither names is sent by itself
     assert.deepEqual(
         await grouped(['a.gltf', gltf('the%20first.bin')], ['b.obj', OBJ], ['a.mtl'],
             ['the first.bin'], ['c.bin']),

@@ -1,4 +1,4 @@
-// browser.mjs - Chromium, the page in it, and what its canvas shows.
+// browser.mjs - Chromium with the page in it, and what the page's canvas shows.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -11,24 +11,25 @@ import { DIRECTION, FIELD_OF_VIEW, UP, fitDistance, pixelAtOne } from '../../web
 import { get, getGeometry } from './daemon.mjs';
 import { readPng } from './png.mjs';
 
-// The packages are the page's: they live in web/node_modules.
+// The packages belong to the page, so they are in web/node_modules.
 const require = createRequire(new URL('../../web/package.json', import.meta.url));
 const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-// How often a page answers, at least a second apart, until its test fails: a guard against what never
-// comes. It counts answers and not seconds, so that a machine that is slow or stands still for a while
-// fails no test. What hangs without an answer is ended by the runner of the tests.
+// How often a page answers, at least a second apart, until its test fails: a limit for waits that
+// would never end. It counts answers and not seconds, so that no test fails because a machine is
+// slow or stands still for a while. If a page does not answer at all, the runner of the tests ends
+// the test.
 const MOST_ANSWERS = 600;
 const APART = 1000;
 
 const pause = () => new Promise((resolve) => setTimeout(resolve, APART).unref());
 
-// Close a page that lives for too long: whoever waits for it then hears why.
+// Closes a page that lives for too long, so that the wait for it fails with a reason.
 async function guard(page) {
     for (let answers = 0; answers < MOST_ANSWERS; answers++) {
         await pause();
-        // A page that is just navigating fails, which is an answer too.
+        // A page that is navigating refuses the call, which is an answer, too.
         await page.evaluate(() => {}).catch(() => {});
         if (page.isClosed()) {
             return;
@@ -37,7 +38,8 @@ async function guard(page) {
     await page.context().close({ reason: `the page answered ${MOST_ANSWERS} times, and still waits` });
 }
 
-// The graphics of the page are drawn by software: what puts its layers together need not be.
+// WebGL is drawn by software (SwiftShader), and the layers of the page are put together without the
+// GPU process.
 const FLAGS = [
     '--no-sandbox',
     '--use-angle=swiftshader',
@@ -59,7 +61,7 @@ export function launch() {
     });
 }
 
-// Open the page in a fresh profile. When the test ends the page must have had no error, no breach
+// Opens the page in a fresh profile. When the test ends, the page must have had no error, no breach
 // of its content security policy and no request to another host. `allowed` are expressions for
 // console errors that the test provokes.
 export async function openPageIn(
@@ -102,7 +104,7 @@ export async function openPageIn(
     return page;
 }
 
-// In the page: what messages of success said, which disappear after some seconds.
+// Runs in the page: keeps the texts of success messages, which disappear after some seconds.
 function keepTold() {
     window.told = [];
     new MutationObserver((changes) => {
@@ -114,7 +116,7 @@ function keepTold() {
     }).observe(document, { childList: true, subtree: true });
 }
 
-// Wait until the page has told of a success, whether or not it still shows that.
+// Waits until the page has shown a success message, whether or not the message is still there.
 export function waitForTold(page, pattern) {
     return page.waitForFunction(
         ([source, flags]) => window.told.some((text) => new RegExp(source, flags).test(text)),
@@ -122,8 +124,8 @@ export function waitForTold(page, pattern) {
     );
 }
 
-// Wait for a frame of a revision with a selection such as 'face:3', and what faces looked like at a
-// revision.
+// Waits for a frame of a revision with a selection such as 'face:3' and, if given, with the
+// materials of a revision.
 export function waitForFrame(page, { mesh, revision, selection, materials }) {
     return page.waitForFunction(
         (wanted) => {
@@ -136,7 +138,8 @@ export function waitForFrame(page, { mesh, revision, selection, materials }) {
     );
 }
 
-// How many bytes have come over the network since, as a function; heads and streams count too.
+// Returns a function that returns how many bytes have come over the network since now, including
+// heads and event streams.
 export async function countBytes(page) {
     const session = await page.context().newCDPSession(page);
     let bytes = 0;
@@ -150,14 +153,16 @@ export async function countBytes(page) {
     return () => bytes;
 }
 
-// No rule of axe is broken in the page as it is, or in a part of it.
+// Requires that the page in its present state, or a part of it, breaks no rule of axe (a checker of
+// accessibility).
 export async function checkAccessible(page, state, part = 'html') {
-    // Not a script of the page: the policy does not apply to what the protocol evaluates.
+    // The page's content security policy does not apply to code that the debugging protocol
+    // evaluates.
     if (!(await page.evaluate(() => 'axe' in window))) {
         await page.evaluate(axe);
     }
     const { violations } = await page.evaluate(
-        // Without the others it need not say where each element is that passes.
+        // Without the other results axe need not find where each element is that passes.
         (within) => window.axe.run(within, { resultTypes: ['violations'] }),
         part,
     );
@@ -165,8 +170,8 @@ export async function checkAccessible(page, state, part = 'html') {
     assert.deepEqual(found, [], state);
 }
 
-// Where elements of a mesh just opened are on the canvas, from the API's numbers and a camera put
-// where view.js says.
+// Returns functions that say where elements of a mesh are on the canvas, computed from the API's
+// numbers and from a camera that is put where view.js says.
 export async function projector(page, daemon, mesh) {
     const geometry = unpack(await getGeometry(daemon, mesh));
     const { width, height } = await page.locator('#canvas').boundingBox();
@@ -186,16 +191,16 @@ export async function projector(page, daemon, mesh) {
     const middle = (ids) =>
         ids.reduce((sum, id) => sum.add(placeOf(id)), new Vector3()).divideScalar(ids.length);
     return {
-        // The pixel of the mean of some vertices.
+        // Returns the pixel of the mean of some vertices.
         at(ids) {
             return toCanvas(middle(ids));
         },
-        // The pixel of a place in the mesh's own coordinates.
+        // Returns the pixel of a place in the mesh's own coordinates.
         atPlace(position) {
             const { origin, scale } = geometry.frame;
             return toCanvas(new Vector3(...position.map((x, i) => (x - origin[i]) * scale)));
         },
-        // The pixel in the middle of a half-edge's arrow.
+        // Returns the pixel in the middle of a half-edge's arrow.
         async arrow(id) {
             const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
             const { face: across } = await get(daemon, `/${mesh}/halfedges/${halfedge.twin}`);
@@ -204,7 +209,7 @@ export async function projector(page, daemon, mesh) {
             const scale = (MOST_PIXELS * pixelAtOne(height) * depth) / drawn.size;
             return toCanvas(new Vector3(...middleOf(drawn, Math.min(scale, 1))));
         },
-        // Does a face of a convex mesh turn its front to the camera?
+        // Returns whether a face of a convex mesh turns its front to the camera.
         isSeen({ vertices: ids }) {
             const [a, b, c] = ids.map(placeOf);
             const normal = b.clone().sub(a).cross(c.clone().sub(a));
@@ -213,13 +218,13 @@ export async function projector(page, daemon, mesh) {
     };
 }
 
-// What the canvas shows: colour(x, y) -> [red, green, blue].
+// Returns the pixels of the canvas: colour(x, y) is [red, green, blue].
 export async function readCanvas(page) {
     const clip = await page.locator('#canvas').boundingBox();
     return readPicture(await page.screenshot({ clip }));
 }
 
-// Reads the pixels of any picture.
+// Returns the pixels of any picture.
 export function readPicture(png) {
     const { width, channels, pixels } = readPng(png);
     const count = pixels.length / channels;
@@ -237,7 +242,7 @@ export function readPicture(png) {
             }
             return found;
         },
-        // The mean of the places where a test is true.
+        // Returns the mean of the places whose colours pass the test.
         centreOf(test) {
             const sum = { x: 0, y: 0, count: 0 };
             for (let pixel = 0; pixel < count; pixel++) {
@@ -252,7 +257,7 @@ export function readPicture(png) {
     };
 }
 
-// The colours of gl/marks.js and gl/shaders.js, loosely.
+// The colours of gl/marks.js and gl/shaders.js, with a tolerance.
 export const isBackground = ([r, g, b]) => r < 20 && g < 24 && b < 30;
 export const isChosen = ([r, g, b]) => r > 90 && r > g + 25 && g > b + 25;
 export const isBoundary = ([r, g, b]) => r < 100 && g > 150 && b > 170;

@@ -1,7 +1,8 @@
-// check-traffic.mjs FOLDER - did every exchange in the files of FOLDER say what the daemon's own
-// OpenAPI document promises, and was every operation of it reached? The document is the one that a
-// test fetched. Exchanges of one method, path and status are one test, since how many there are
-// depends on how threads and frames fell; the last line is `N passed, N failed`.
+// check-traffic.mjs FOLDER - checks that every recorded exchange in the files of FOLDER agrees with
+// the daemon's own OpenAPI document, and that every operation of the document was reached. The
+// document is one that a test fetched. Exchanges with one method, path and status count as one
+// test, because their number depends on how threads and frames happened to run; the last line is `N
+// passed, N failed`.
 
 import { createReadStream } from 'node:fs';
 import { readdir } from 'node:fs/promises';

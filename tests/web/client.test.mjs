@@ -1,4 +1,5 @@
-// client.test.mjs - a TypeScript client, generated from what the daemon serves, talks to it.
+// client.test.mjs - a TypeScript client, generated from the OpenAPI document that the daemon
+// serves, sends requests to the daemon.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -22,7 +23,7 @@ async function run(program, ...words) {
     }
 }
 
-// tests/web/client.ts with the types of this daemon, compiled; the module it exports.
+// Compiles tests/web/client.ts with the types of this daemon; returns the module that it exports.
 async function compileClient(t, daemon) {
     const work = await mkdtemp(path.join(tmpdir(), 'hedge-client-'));
     t.after(() => rm(work, { recursive: true }));

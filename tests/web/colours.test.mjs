@@ -1,5 +1,5 @@
-// Faces are drawn in the colours of their materials, which a legend names: read with a file, changed
-// by this page and by others, undone, and switched off.
+// Faces are drawn in the colours of their materials, which a legend names: they are read with a
+// file, changed by this page and by other clients, undone, and switched off.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -30,7 +30,7 @@ newmtl unused
 Kd 1 1 0
 `;
 
-// Eight squares side by side in the plane that the camera looks down on.
+// The materials of eight squares, side by side in a plane that the camera looks down on.
 const NAMES = ['red', 'green', 'lamp', 'glass', 'unheard_of', '', 'red', 'red'];
 const BANDS = [
     'mtllib bands.mtl',
@@ -47,7 +47,8 @@ const isGreen = ([r, g, b]) => g > 90 && r < 60 && b < 90;
 const isBlue = ([r, g, b]) => b > 180 && r < 60 && g < 60;
 const isLight = ([r, g, b]) => Math.min(r, g, b) > 110 && Math.max(r, g, b) - Math.min(r, g, b) < 12;
 
-// What is in the middle of each face of the page's mesh, with some pixels about it.
+// Returns a function that reads the colours in the middle of each face of the page's mesh, a few
+// pixels each.
 async function looker({ page, daemon, mesh }) {
     const [project, faces] = [await projector(page, daemon, mesh), await getAll(daemon, mesh, 'faces')];
     return async () => {
@@ -77,12 +78,12 @@ test('an OBJ file and its library show their colours and names', async (t) => {
     await waitForFrame(page, { mesh, revision: 1, materials: 1 });
     const look = await looker({ page, daemon, mesh });
     const seen = await look();
-    // the face without a material is the file's first
+    // a face without a material has the colour of a surface without materials
     const wanted = [isSurface, isRed, isGreen, isBlue, null, isSurface, isRed, isRed];
     wanted.forEach((isIt, face) => {
         assert.ok(isIt === null || seen.get(face)(isIt) === 64, `face ${face}`);
     });
-    // half of what is behind the glass comes through
+    // half of the pixels behind the glass must be visible
     assert.equal(seen.get(4)(isBackground), 32);
     assert.equal(seen.get(4)(isLight), 32);
     assert.deepEqual(await legend(page), [
@@ -98,7 +99,8 @@ test('an OBJ file and its library show their colours and names', async (t) => {
     assert.equal(red, 'rgb(231, 39, 39)'); // 0.8 and 0.02 in sRGB
     await checkAccessible(page, 'materials');
 
-    // a face that is selected shows which it has, and is drawn as selected; glass is picked too
+    // a selected face must be drawn as selected, and show its material; a face of glass can be
+    // picked, too
     const project = await projector(page, daemon, mesh);
     const pick = async (face) => {
         const { vertices } = await get(daemon, `/${mesh}/faces/${face}`);
@@ -149,14 +151,14 @@ test('what is changed here or elsewhere is drawn, and undone', async (t) => {
     seen = await step('undo', {});
     assert.equal(seen.get(0)(isSurface), 64);
 
-    // both sides of it show once it is said to have two
+    // both sides of a face must show its colour once its material is two-sided
     seen = await step('edits', { op: 'reverse' });
     assert.equal(seen.get(1)(isGreen), 0);
     seen = await step('edits', { op: 'material_set', name: 'red', two_sided: true });
     assert.equal(seen.get(1)(isGreen), 64);
     assert.deepEqual(await legend(page), [['red', 'two-sided']]);
 
-    // new faces have what the one they came from has
+    // new faces must have the material of the face that they came from
     const { vertices } = await get(daemon, `/${mesh}/faces/1`);
     await step('edits', { op: 'face_poke', face: 1 });
     const picture = await readCanvas(page);
@@ -165,7 +167,7 @@ test('what is changed here or elsewhere is drawn, and undone', async (t) => {
     const beside = project.at([a, a, b, b, vertices[2]]);
     assert.ok(isGreen(picture.colour(beside.x, beside.y)));
 
-    // all of it is replaced
+    // the whole mesh is replaced
     const answer = await fetch(`${daemon.url}/v1/meshes/${mesh}`, {
         method: 'PUT',
         headers: { 'Content-Type': 'application/json' },

@@ -1,8 +1,9 @@
-// contract.mjs - does an exchange say what an OpenAPI document promises? Compiled with Ajv from the
-// document itself: paths, parameters, statuses, headers, media types, and bodies.
+// contract.mjs - checks whether an exchange agrees with an OpenAPI document, with schemas that Ajv
+// compiles from the document: paths, parameters, statuses, headers, media types, and bodies.
 //
-// Answers are held to more than clients may rely on: a member without a place in its schema is one
-// that nobody documented, so every object is closed here, though a later version may add to it.
+// Answers must satisfy more than clients may rely on: a member that is not in the schema is
+// undocumented, so every object counts as closed here, although a later version of the API may add
+// members.
 
 import { createRequire } from 'node:module';
 import { gunzipSync } from 'node:zlib';
@@ -11,18 +12,19 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const Ajv = require('ajv/dist/2020').default;
 const addFormats = require('ajv-formats').default;
 
-// Headers that an answer has only where the document lists them.
+// Headers that an answer may have only if the document lists them.
 const LISTED = [
     'etag', 'location', 'link', 'allow', 'retry-after', 'export-warnings', 'accept-encoding',
     'content-encoding',
 ];
-// What may be found wrong before the path is looked at.
+// The statuses of faults that are found before the path is looked at.
 const BEFORE_ROUTING = [400, 403, 413, 414, 421, 429, 431, 501, 503, 505];
 const PROBLEM = 'application/problem+json';
 
 // --- closed schemas ---
 
-// A part of an allOf sees only its own members, so the whole is closed and its parts stay open.
+// Closes a schema to unknown members. A part of an allOf sees only its own members, so the whole is
+// closed and its parts stay open.
 function closed(schema, open) {
     if (Array.isArray(schema)) {
         return schema.map((each) => closed(each, open));
@@ -77,7 +79,8 @@ function newAjv({ components }) {
 
 // --- messages ---
 
-// The headers of a message by name in small letters; only the last of several start lines counts.
+// Returns the headers of a message by their names in lower case; if there are several start lines,
+// only the last one counts.
 function parseHead(head) {
     const block = head.trimEnd().split('\r\n\r\n').at(-1);
     const headers = new Map();
@@ -90,7 +93,8 @@ function parseHead(head) {
     return headers;
 }
 
-// A body in a coding is looked into when all of it is there and the coding is one that node knows.
+// Parses a message. A compressed body is decompressed if all of it is there and node knows the
+// coding.
 function parseMessage({ head, body, length }) {
     const headers = parseHead(head);
     const sent = Buffer.from(body ?? '', 'base64');
@@ -140,17 +144,17 @@ export class Contract {
             }
             return path;
         });
-        // Literal segments win over variables.
+        // Paths with literal segments come before those with variables.
         this.paths.sort((a, b) => variables(a) - variables(b));
     }
 
-    // Operations that no exchange reached with success.
+    // Returns the operations that no exchange has reached with success.
     unreached() {
         return this.operations.filter(({ hits }) => hits === 0).map(({ name }) => name);
     }
 
-    // What an exchange is an example of, such as "GET /v1/meshes 200", and everything that is wrong
-    // with it, as sentences.
+    // Returns what an exchange is an example of, such as "GET /v1/meshes 200", and everything that
+    // is wrong with it, as sentences.
     check(exchange) {
         const { method, target, status } = exchange;
         const [path, query] = target.split(/\?(.*)/s);
@@ -185,7 +189,8 @@ export class Contract {
             wrong.push(`status ${status} is not declared`);
             return wrong;
         }
-        // What was not kept of a keyed request's first answer cannot be given again.
+        // If the body of the first answer to a request with a key was not kept, it cannot be
+        // repeated.
         if (!answer.headers.has('idempotency-replayed') || answer.bytes.length > 0) {
             this.checkHeaders(response, answer, wrong);
             this.checkBody(exchange, response, answer, wrong);
@@ -211,7 +216,7 @@ export class Contract {
             : value.$ref.slice(2).split('/').reduce((at, name) => at[name], this.document);
     }
 
-    // What is wrong with a value, or null.
+    // Returns what is wrong with a value, or null.
     validate(schema, value) {
         const key = JSON.stringify(schema);
         if (!this.compiled.has(key)) {
@@ -232,7 +237,7 @@ export class Contract {
         }
     }
 
-    // A slash too many at the end leads to a path of the document.
+    // A path with an extra slash at its end is redirected to a path of the document.
     checkRedirect(path, answer, wrong) {
         const base = `http://host${path}`;
         const { pathname } = new URL(answer.headers.get('location') ?? '', base);
@@ -337,7 +342,7 @@ export class Contract {
         }
     }
 
-    // A request that was accepted.
+    // Checks the parameters of a request that was accepted.
     checkParameters({ template, parameters }, operation, path, query, { headers }, wrong) {
         const values = variablesOf(template, path);
         for (const { name, schema } of parameters) {
@@ -404,15 +409,16 @@ export class Contract {
 
 const READS_AS_JOBS = /\/(query|walk)$/;
 
-// What programs call any bytes: curl says nothing with -T, and that they are a form with --data-binary.
+// Media types that programs send for any bytes: curl sends none with -T, and that of a form with
+// --data-binary.
 const standsForAny = (media) =>
     [undefined, 'text/plain', 'application/x-www-form-urlencoded'].includes(media);
 
-// Does ?format= say that a body is of another format than its Content-Type?
+// Returns whether ?format= names another format for the body than its Content-Type does.
 const namesFormat = (query) =>
     !['json', null].includes(new URLSearchParams(query ?? '').get('format'));
 
-// What a schema cannot say: a header that goes with a member.
+// Checks what a schema cannot say: that a header agrees with a member.
 function besides(value, status, response, headers) {
     const paged = response.headers?.Link !== undefined;
     if (paged && (value.next !== null) !== headers.has('link')) {
@@ -427,7 +433,8 @@ function besides(value, status, response, headers) {
     return null;
 }
 
-// A bad question among many is answered by a problem in its place: the others are what was taken.
+// A bad question among several is answered by a problem in its place; returns the body of the
+// request without such questions.
 function takenOf(bytes, { media, whole, bytes: answer }) {
     if (media !== 'application/json' || !whole) {
         return bytes;
@@ -446,7 +453,7 @@ function variables({ template }) {
     return template.split('{').length;
 }
 
-// The values of a template's variables, null where a path is not of it.
+// Returns the values of the variables in a template, null if a path does not fit it.
 function variablesOf(template, path) {
     const wanted = template.split('/');
     const given = path.split('/');
@@ -473,7 +480,8 @@ function decode(text) {
     }
 }
 
-// A choice is a part of the path; other values are looked at later.
+// Returns whether a segment is allowed: a choice is a part of the path, and other values are
+// checked later.
 function allowed({ schema }, value) {
     return schema.enum === undefined || schema.enum.includes(value);
 }

@@ -1,5 +1,5 @@
-// contract.test.mjs - the comparison of traffic with the OpenAPI document passes what a daemon
-// really said, and finds every kind of lie told about it.
+// contract.test.mjs - the comparison of recorded traffic with the OpenAPI document accepts what a
+// daemon really answered, and finds every kind of change made to it.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -35,7 +35,7 @@ function message(headers, body) {
     return { head, body: bytes.toString('base64'), length: bytes.length };
 }
 
-// What a request and its answer leave in a file of traffic.
+// Sends a request, and returns the exchange as it is in a file of traffic.
 async function ask(method, target, body, headers = {}) {
     const all = body === undefined ? headers : { 'content-type': 'application/json', ...headers };
     const plain = { ...all, 'accept-encoding': 'identity' }; // fetch would hide a coding
@@ -49,7 +49,7 @@ async function ask(method, target, body, headers = {}) {
     };
 }
 
-// The exchange with another body, given by a function of its text or of its JSON value.
+// Returns the exchange with another body, given by a function of its text or of its JSON value.
 function rewrite(part, change) {
     const text = Buffer.from(part.body, 'base64').toString();
     const body = Buffer.from(change(text));
@@ -72,7 +72,7 @@ function answeringHead(change) {
     return ({ answer, ...rest }) => ({ ...rest, answer: { ...answer, head: change(answer.head) } });
 }
 
-// The exchange as it would be in gzip.
+// Returns the message as it would be in gzip.
 function gzipped({ head, body }) {
     const packed = gzipSync(Buffer.from(body, 'base64'));
     return {
@@ -120,7 +120,7 @@ test('what it says in gzip is what it promises', async () => {
     }
 });
 
-// A title, a request, what is told about its exchange, and what must be said of that.
+// Each row: a title, a request, how its exchange is falsified, and what the comparison must say.
 const lies = [
     ['a status that is not declared', HALFEDGE, (e) => ({ ...e, status: 202 }), /202 is not decl/],
     ['a media type that is not declared', HALFEDGE,
@@ -221,7 +221,7 @@ for (const [title, request, lie, expected] of lies) {
     });
 }
 
-// What the last step of `make test` says of a folder.
+// Returns the output of the last step of `make test` for a folder.
 async function checkFolder(t, exchanges) {
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-traffic-'));
     t.after(() => rm(folder, { recursive: true }));

@@ -1,9 +1,9 @@
-// cuttable.mjs - a way to a daemon that a test can cut, as a network does.
+// cuttable.mjs - a proxy to a daemon that a test can cut, as a network failure does.
 
 import { connect, createServer } from 'node:net';
 
-// {url, cut(), mend(), closers, stop()}: cut() ends all connections and lets none through until
-// mend(). What runs beside the page still reaches the daemon itself.
+// Returns {url, cut(), mend(), closers, stop()}: cut() ends all connections and lets none through
+// until mend(). The test itself still reaches the daemon directly.
 export async function cuttable(t, daemon) {
     const { hostname, port } = new URL(daemon.url);
     const sockets = new Set();

@@ -1,6 +1,6 @@
-// daemon.mjs - the real daemon, started by a test on a free port and stopped when the test ends.
+// daemon.mjs - starts the real daemon for a test on a free port, and stops it when the test ends.
 //
-// HEDGED is the program and HEDGE_PAGE the built page; without them those of `make`.
+// HEDGED is the program and HEDGE_PAGE the built page; without them those of `make` are used.
 
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -14,8 +14,9 @@ const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..')
 export const program = process.env.HEDGED ?? path.join(root, 'build/hedged');
 const page = process.env.HEDGE_PAGE ?? path.join(root, 'build/web');
 
-// {url, stop(), closers}; `t` is the context of the test, `flags` are more of hedged's. When it ends the closers are called, then
-// the daemon is stopped: a page that is open would miss it.
+// Returns {url, stop(), closers}; `t` is the context of the test, `flags` are further options of
+// hedged. When the test ends, the closers are called first and then the daemon is stopped, because
+// an open page would report a lost connection.
 export async function startDaemon(t, ...flags) {
     const child = spawn(program, ['--listen', '127.0.0.1:0', '--store', 'memory', '--web', page, ...flags], {
         stdio: ['ignore', 'ignore', 'pipe'],
@@ -62,12 +63,12 @@ async function call(url, options) {
     return body;
 }
 
-// What the API says, beside the page.
+// Returns an answer of the API, requested by the test and not by the page.
 export function get(daemon, path) {
     return call(`${daemon.url}/v1/meshes${path}`);
 }
 
-// The arrays to draw a mesh from, as they came.
+// Returns the bytes of the arrays from which a mesh is drawn.
 export async function getGeometry(daemon, mesh) {
     const answer = await fetch(`${daemon.url}/v1/meshes/${mesh}/geometry`);
     if (!answer.ok) {
@@ -84,7 +85,7 @@ export function post(daemon, path, body, type = 'application/json') {
     });
 }
 
-// All elements of a kind.
+// Returns all elements of a kind.
 export async function getAll(daemon, mesh, kind) {
     const { items, next } = await get(daemon, `/${mesh}/${kind}?limit=10000`);
     if (next !== null) {

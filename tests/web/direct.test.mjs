@@ -1,5 +1,5 @@
-// Tools used in the view: armed by a key or a button, then a drag or a click, in Chromium against
-// the real daemon.
+// The tools of the view: a key or a button selects a tool, and a drag or a click uses it, in
+// Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ import { openMesh } from './visit.mjs';
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 2, rows: 2 };
 
-// Where the drag begins does not matter: what is selected moves.
+// A drag may begin anywhere: the selected elements move.
 const START = { x: 60, y: 60 };
 
 async function dragBy(page, x, y, during = () => {}) {
@@ -175,7 +175,7 @@ test('a tool that fits nothing selected shows its form, a button arms as a key d
     await page.getByRole('button', { name: 'Inset', exact: true }).click();
     await expectArmed(page, 'Inset', false);
     await page.getByRole('button', { name: 'Move', exact: true }).click();
-    // A click moves nothing.
+    // A click without a drag must move nothing.
     await clickView(page);
     await expectArmed(page, 'Move', false);
     await waitForFrame(page, { revision: 1, selection: 'face:1' });

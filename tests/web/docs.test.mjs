@@ -1,4 +1,4 @@
-// docs.test.mjs - the manual at /docs in Chromium, under the daemon's own policy.
+// docs.test.mjs - the manual at /docs in Chromium, under the daemon's own content security policy.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

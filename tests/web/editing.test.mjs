@@ -1,4 +1,4 @@
-// Half-edges, arrows, boundaries, operations, keys and links, in Chromium against the real daemon.
+// Half-edges, arrows, boundaries, operations, keys and links, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -68,7 +68,7 @@ test('arrows show the half-edge selected, next, prev and twin, then are gone', a
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const place = await projector(page, daemon, mesh);
-    // An edge between two faces.
+    // The edge must lie between two faces.
     const { halfedges: [id] } = (await getAll(daemon, mesh, 'edges')).find((e) => !e.boundary);
     const halfedge = await get(daemon, `/${mesh}/halfedges/${id}`);
     const { next, prev, twin } = halfedge;
@@ -172,7 +172,7 @@ test('rings, lengths, angles and areas are those of the API', async (t) => {
     for (const name of ['outgoing', 'vertices', 'faces']) {
         assert.deepEqual(await ring(name), (await get(daemon, `/${mesh}/vertices/6/${name}`)).ids);
     }
-    // Rings are links too.
+    // The ids of neighbours are links, too.
     const [first] = await ring('outgoing');
     await page.locator('[data-ring="outgoing"] button').first().click();
     await waitForFrame(page, { selection: `halfedge:${first}` });
@@ -219,7 +219,7 @@ test('keys pick modes and follow links, only while the view has the focus', asyn
         await press(page, key);
         halfedge = await checkInspector(context, 'halfedge', halfedge[link]);
     }
-    // Elsewhere a key is no command.
+    // Outside of the view a key must not act as a command.
     await page.getByRole('button', { name: 'Refresh' }).press('3');
     assert.equal(await mode(), 'halfedge');
 });
@@ -260,7 +260,7 @@ test('an operation takes its elements from the selection', async (t) => {
     const context = await openMesh(t, CUBE);
     const { daemon, mesh, page } = context;
     const face = await pickFace(context);
-    // Until one is chosen the panel shows an operation on what is selected.
+    // Until the user chooses an operation, the panel must show one that fits the selection.
     assert.match(await page.locator('#operation').inputValue(), /^face_/);
     await page.locator('#operation').selectOption('face_poke');
     assert.equal(await page.locator('#param-face').inputValue(), `${face.id}`);
@@ -270,7 +270,7 @@ test('an operation takes its elements from the selection', async (t) => {
     const [made] = (await getAll(daemon, mesh, 'vertices')).slice(-1);
     assert.deepEqual(made.position, [0, 0, 2]);
 
-    // A half-edge gives its edge where an edge is asked for.
+    // If an operation takes an edge, a selected half-edge must fill in its edge.
     await goTo(page, 'halfedge', 4);
     await page.locator('#operation').selectOption('edge_split');
     assert.equal(await page.locator('#param-edge').inputValue(), '2');
@@ -354,21 +354,22 @@ test('what is shown is in the address, and an address shows it again', async (t)
     await page.waitForURL((url) => `${url}` !== unframed);
     const address = page.url();
     assert.match(address, new RegExp(`#mesh=${mesh}&face=${face.id}&camera=`));
-    // The ring of the focus has the colour of the selection.
+    // The ring around the focused canvas has the colour of the selection, so the focus is removed
+    // before counting pixels.
     await page.locator('#canvas').blur();
     const second = await openPage(t, daemon, {
         allowed: [/status of 404/],
         path: `/${new URL(address).hash}`,
     });
     await waitForFrame(second, { mesh, revision: 1, selection: `face:${face.id}` });
-    // Only the camera's last digits differ.
+    // The two cameras may differ in their last digits only.
     const [a, b] = [await readCanvas(page), await readCanvas(second)];
     const counts = [a.countOf(isChosen), b.countOf(isChosen)];
     assert.ok(counts[0] > 1000 && Math.abs(counts[0] - counts[1]) < counts[0] / 100, `${counts}`);
     const wanted = new URLSearchParams(new URL(address).hash).get('camera').split(',');
     const camera = (await cameraOf(second)).split(',');
     wanted.forEach((value, i) => assert.ok(Math.abs(value - camera[i]) < 1e-4, `${camera}`));
-    // An address typed into the open page.
+    // The user types an address into the open page.
     await second.evaluate(() => {
         window.location.hash = '#mesh=none';
     });
@@ -401,7 +402,7 @@ test('the view is saved as a picture', async (t) => {
     const { width, height } = await page.locator('#canvas').boundingBox();
     const size = [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
     assert.deepEqual(size, [Math.round(width), Math.round(height)]);
-    // The focus ring of the page is not in it.
+    // The saved picture must not contain the focus ring of the page.
     const [saved, shown] = [readPicture(bytes), await readCanvas(page)];
     assert.equal(saved.countOf(isSurface), shown.countOf(isSurface));
     assert.ok(saved.countOf(isSurface) > 10000);

@@ -1,4 +1,4 @@
-// The reader of event streams takes them in whatever pieces they come.
+// The parser of event streams must give the same events in whatever pieces the stream arrives.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,4 +1,4 @@
-// Whatever fails is said in a message, and what was shown before is still shown.
+// A failure must be shown in a message, and what was shown before must stay.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ const CUBE = { name: 'cube', shape: 'cube' };
 
 const closeToast = (page) => page.getByRole('button', { name: 'Close message' }).click();
 
-// What a server that cannot answer, or something before it, sends in place of an edit's answer.
+// Answers to an edit from a server that cannot do it, or from a gateway before the server.
 const REFUSALS = [
     [409, { title: 'Mesh busy', detail: 'a long operation is running on it' }],
     [412, { title: 'Stale', detail: 'the mesh is at revision 9' }],
@@ -41,13 +41,13 @@ test('each refusal of an edit is said in its own words', async (t) => {
         await page.unroute('**/edits');
         await closeToast(page);
     }
-    // A gateway speaks no JSON.
+    // A gateway does not answer with JSON.
     await page.route('**/edits', (route) => route.fulfill({ status: 502, body: '<h1>Bad</h1>' }));
     await page.getByRole('button', { name: 'Split' }).click();
     await expectToast(page, /status 502/);
     await page.unroute('**/edits');
     await closeToast(page);
-    // Nothing of that happened, and the page still works.
+    // None of the failed requests has changed the mesh, and the page must still work.
     assert.equal((await get(daemon, `/${mesh}`)).revision, 1);
     assert.ok((await readCanvas(page)).countOf(isSurface) > 1000);
     await page.getByRole('button', { name: 'Split' }).click();

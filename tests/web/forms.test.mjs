@@ -1,5 +1,5 @@
-// The forms of operations: fields filled by clicks, and what an edit would do said before it is
-// sent, in Chromium against the real daemon.
+// The forms of operations: fields are filled by clicks, and the effect of an edit is described
+// before it is sent, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -52,7 +52,7 @@ test('a field that is armed takes the next click, the selection stays', async (t
     await expectValue(page, 'edge', `${inner[3].id}`);
     assert.equal(await page.locator('[aria-pressed="true"]').count(), 0);
     await waitForFrame(page, { selection: 'face:0' });
-    // What was clicked stays when something else is selected.
+    // Elements that were clicked for a field must stay when another one is selected.
     await click(page, place.at(inner[1].vertices));
     await waitForFrame(page, { selection: `edge:${inner[1].id}` });
     assert.equal(await field(page, 'edge').inputValue(), `${inner[3].id}`);
@@ -68,7 +68,7 @@ test('a list collects clicks until Esc, and a second click takes one out', async
         await click(page, place.at(faces[id].vertices));
         await expectValue(page, 'face', value);
     }
-    // They are seen, though they are not selected.
+    // The elements in the field must be outlined in the view, although they are not selected.
     while ((await readCanvas(page)).countOf(isNear) < 300);
     await waitForFrame(page, { selection: '' });
     await checkAccessible(page, 'picking');
@@ -142,7 +142,7 @@ test('a point that lacks a number is said, and its field marked', async (t) => {
     await fillVector(page, 'position', [1, 2, 3]);
     await expectVerdict(page, 'Would make: +1 V');
     assert.equal(await page.locator('.wrong').count(), 0);
-    // What only the server knows is marked too.
+    // A mistake that only the server finds must be marked at its field, too.
     await choose(page, 'edge_split');
     await field(page, 'edge').fill('0');
     await field(page, 't').fill('7');
@@ -266,7 +266,8 @@ test('only the last of what is typed is tried', async (t) => {
         }
     });
     await choose(page, 'face_poke');
-    // At once, as no key is: the clock of the page does not go on meanwhile.
+    // The page's clock stands still in this test, so the field is filled at once and not key by
+    // key.
     await field(page, 'face').evaluate((input) => {
         for (const text of ['0', '1', '2', '3']) {
             input.value = text;

@@ -1,4 +1,4 @@
-// Arrays, arrows, measures, links and picking by numbers alone: no browser, no server.
+// Arrays, arrows, measures, links and picking, tested with numbers alone: no browser and no server.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -33,7 +33,8 @@ import {
     turnTo,
 } from '../../web/src/view.js';
 
-// What a server would send: points are [x, y, z, state], triangles [a, b, c, face, sides].
+// Builds an answer as a server sends it: points are [x, y, z, state], triangles [a, b, c, face,
+// sides].
 function answer(points, triangles, { revision = 1n, frame = [0, 0, 0, 1] } = {}) {
     const buffer = new ArrayBuffer(HEADER_BYTES + 16 * (points.length + triangles.length));
     const view = new DataView(buffer);
@@ -52,7 +53,7 @@ function answer(points, triangles, { revision = 1n, frame = [0, 0, 0, 1] } = {})
     return buffer;
 }
 
-// A square beside a triangle, with a dead vertex, a dead face and an isolated vertex:
+// A square beside a triangle, with a deleted vertex, a deleted face and an isolated vertex:
 //
 //     3---2
 //     |   |\            5 alone
@@ -77,7 +78,7 @@ test('an answer is unpacked into whole rows of textures', () => {
         assert.ok(array.subarray(28).every((value) => value === 0));
     }
     assert.ok(hasIsolated);
-    // The dead vertex at the origin is in no box.
+    // The deleted vertex at the origin must not belong to the bounding box.
     assert.ok(Math.abs(center[0] - 0.45) < 1e-6 && Math.abs(center[1] - 0.25) < 1e-6);
     assert.ok(Math.abs(radius - Math.hypot(0.45, 0.25)) < 1e-6);
 });
@@ -174,10 +175,10 @@ test('an arrow lies beside its edge, on the side of its face, and points to the 
             assert.ok(out > 0, `${point} of ${JSON.stringify(halfedge)}`);
             assert.equal(point[2], 0);
         }
-        // The tip is nearer to the target than anything else.
+        // The tip of the arrow must be nearer to the target than its other points.
         const away = points.map((p) => Math.hypot(p[0] - to[0], p[1] - to[1]));
         assert.equal(away.indexOf(Math.min(...away)), 7);
-        // Half as thick it is as long, and nearer to the edge.
+        // An arrow of half the thickness must have the same length, and be nearer to the edge.
         const distance = (point) =>
             Math.abs((point[0] - middle[0]) * side[0] + (point[1] - middle[1]) * side[1]);
         const [thick, thin] = [1, 0.5].map((scale) => middleOf(arrow, scale));
@@ -203,7 +204,7 @@ test('angles are right at every size', () => {
     near(angleBetween([1e300, 0, 0], [1e-300, 1e-300, 0]), 45);
     near(angleBetween([1, 0, 0], [-1, 0, 0]), 180);
     assert.ok(!Number.isNaN(angleBetween([0, 0, 0], [1, 0, 0])));
-    // The edge of a cube that runs up, its left face to -x and its right face to -y.
+    // The edge of a cube that runs up, whose left face looks to -x and whose right face to -y.
     near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, -1]), 90);
     near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, 1]), -90);
 });
@@ -243,7 +244,7 @@ test('what a link says wrongly is passed over', () => {
 
 // --- picking ---
 
-// Looking down on the plane of the specimen, 1 to a 100 pixels.
+// The camera looks down on the plane of the square; a length of 1 is 100 pixels.
 const SCREEN = { width: 200, height: 200 };
 const MATRIX = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const at = (x, y) => ({ matrix: MATRIX, ...SCREEN, x: 100 + 100 * x, y: 100 - 100 * y });
@@ -293,7 +294,7 @@ test('distances on the screen stop at the ends of a segment and at the camera', 
     assert.equal(segment([0, 0, 0], [1, 0, 0], 150, 110), 10);
     assert.equal(segment([0, 0, 0], [1, 0, 0], 97, 96), 5);
     assert.equal(segment([0, 0, 0], [0, 0, 0], 103, 104), 5);
-    // w = -z: what has a positive z is behind the camera.
+    // In this matrix w = -z, so a point with a positive z is behind the camera.
     const perspective = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0];
     assert.equal(distanceToPoint(perspective, width, height, [0, 0, 1], 0, 0), Infinity);
     const both = distanceToSegment(perspective, width, height, [0, 0, 1], [0, 1, 2], 0, 0);

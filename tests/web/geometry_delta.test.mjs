@@ -1,4 +1,5 @@
-// Changes of the geometry applied by the page's module, against what a real daemon sends afresh.
+// Changes of the geometry that the page's module has applied must equal the arrays that a real
+// daemon sends afresh.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -11,7 +12,7 @@ import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Arrays without room to spare, so that they must grow.
+// Returns arrays without spare capacity, so that changes must enlarge them.
 function wholeOf(buffer) {
     const geometry = unpack(buffer);
     const { vertices, vertexCount, triangles, triangleCount } = geometry;
@@ -111,7 +112,7 @@ test('after random edits the patched arrays equal fresh ones', async (t) => {
 
 // --- by numbers alone ---
 
-// An answer with these rows: [place, a, b, c, d].
+// Builds an answer with these rows: [place, a, b, c, d].
 function answer(vertices, triangles, { base = 1, layout = 9, counts = [3, 2] } = {}) {
     const bytes = [vertices, triangles].map(
         (rows) => 16 * Math.ceil(rows.length / 4) + 16 * rows.length,

@@ -1,4 +1,4 @@
-// What a drag means for several faces at once.
+// The meaning of a drag when several faces are selected.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -6,7 +6,8 @@ import { test } from 'node:test';
 import { ROW } from '../../web/src/geometry.js';
 import { begin, drag, regionsOf } from '../../web/src/gesture.js';
 
-// Squares of two triangles each, by the ids of their corners; vertex 3 y + x lies at (x, y).
+// Makes squares of two triangles each, from the ids of their corners; vertex 3 y + x lies at (x,
+// y).
 function squares(faces) {
     const vertices = new Float32Array(4 * ROW);
     for (let id = 0; id < 12; id++) {
@@ -25,7 +26,7 @@ function squares(faces) {
     return { vertices, triangles, triangleCount, vertexCount: 12, firstOf, frame };
 }
 
-// Two squares beside each other, and one that meets them at no edge.
+// Two squares with a common edge, and one that shares no edge with them.
 const FACES = [[0, 1, 4, 3], [1, 2, 5, 4], [6, 7, 10, 9]];
 
 test('faces that share an edge are one region, the edge is inside', () => {
@@ -48,7 +49,8 @@ test('all faces that are selected are drawn where they will be', () => {
     const { operation, lines } = drag(gesture, { ...view, height: 100 }, [0, -10]);
     assert.deepEqual(operation.faces, [0, 1, 2]);
     assert.equal(operation.region, true);
-    // A side and a top for each edge of the rim, a top for the edge inside: two ends each.
+    // Each edge of the rim has lines for a side and for its new position, the inner edge for its
+    // new position: two ends each.
     assert.equal(lines.length, 3 * 2 * (2 * 10 + 1));
     const heights = new Set(lines.filter((_, i) => i % 3 === 2));
     assert.deepEqual([...heights], [0, operation.distance]);

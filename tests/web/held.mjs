@@ -1,15 +1,15 @@
-// held.mjs - a way to a daemon on which levels of detail come as a test lets them.
+// held.mjs - a proxy to a daemon that passes levels of detail on only as the test allows.
 
 import { EventEmitter, once } from 'node:events';
 import { createServer, request as send } from 'node:http';
 
-// {url, next(), closers, stop()}: next() is the next answer of levels the page asks for, of which
-// it has had nothing yet:
+// Returns {url, next(), closers, stop()}: next() returns the next answer of levels that the page
+// requests, of which the page has got nothing yet:
 //
-//   sendTo(part)  all up to a part of its bytes, 0 to 1
-//   end()         no more comes, as if that were all
-//   breakOff()    the connection ends
-//   closed()      when nobody waits for it any more
+//   sendTo(part)  passes on everything up to a part of its bytes, 0 to 1
+//   end()         ends the answer as if it were complete
+//   breakOff()    breaks the connection
+//   closed()      resolves when the page no longer waits for the answer
 export async function holdLevels(t, daemon) {
     const asked = new EventEmitter();
     const server = createServer((request, answer) => {

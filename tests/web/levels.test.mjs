@@ -1,4 +1,5 @@
-// Levels of detail in the page: the mesh from coarse to fine, a slider, and the way back.
+// Levels of detail in the page: the mesh is shown from coarse to fine, with a slider, and then as
+// it was.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -17,12 +18,12 @@ const levels = (page) => page.getByRole('button', { name: 'Levels' });
 const back = (page) => page.getByRole('button', { name: 'Back to the mesh' });
 const slider = (page) => page.getByRole('slider', { name: 'Level' });
 
-// Until a frame with so many faces is on the screen.
+// Waits until a frame with this number of faces is on the screen.
 const waitForFaces = (page, faces) => page.locator(`#canvas[data-faces="${faces}"]`).waitFor();
 
 const waitForMesh = (page) => page.locator('#canvas:not([data-faces])').waitFor();
 
-// What was drawn by now is on the screen.
+// Waits until everything drawn so far is on the screen.
 const waitForFrames = (page) =>
     page.evaluate(
         () =>
@@ -31,14 +32,14 @@ const waitForFrames = (page) =>
             }),
     );
 
-// Opens a mesh like openMesh(), with levels that arrive when the test lets them.
+// Opens a mesh like openMesh(), with levels that arrive only when the test lets them.
 async function openHeld(t, options) {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', SPHERE);
     const held = await holdLevels(t, daemon);
     const page = await openPage(t, held, options);
     await waitForFrame(page, { mesh, revision: 1 });
-    // What is sent once levels are asked for.
+    // Presses the button for levels; returns the answer that the test holds.
     const ask = async () => {
         const next = held.next();
         await levels(page).click();
@@ -47,7 +48,7 @@ async function openHeld(t, options) {
     return { daemon, mesh, page, ask };
 }
 
-// Send a part of an answer, until the page has it.
+// Sends a part of an answer, and waits until the page has it.
 async function sendTo(page, answer, part) {
     answer.sendTo(part);
     await page.waitForFunction(
@@ -63,7 +64,7 @@ async function checkGivenUp(page) {
     assert.equal(await levels(page).getAttribute('aria-pressed'), 'false');
 }
 
-// The faces of all frames from now on, until one has so many.
+// Returns the numbers of faces in all frames from now on, until a frame has this number.
 function seenUntil(page, faces) {
     return page.evaluate(
         (last) =>
@@ -102,7 +103,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     assert.equal(await page.locator('#level-faces').textContent(), '320 of 320 faces');
     assert.ok(await page.locator('#level-progress').isHidden());
 
-    // A keyboard user has the focus at the slider.
+    // The focus must be on the slider, for users of a keyboard.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'level');
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
@@ -118,7 +119,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     await waitForFaces(page, 204);
     await checkAccessible(page, 'levels', 'main');
 
-    // Nothing is picked or edited.
+    // While a level is shown, nothing can be picked or edited.
     const { width, height } = await page.locator('#canvas').boundingBox();
     await click(page, { x: width / 2, y: height / 2 });
     await press(page, 'x');
@@ -154,7 +155,8 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
 
     await levels(page).click();
     await waitForFaces(page, FACES + 2);
-    // Picking for a field needs the mesh, so showing levels ends it.
+    // If a field waits for a click in the view, showing levels must end that, because levels have
+    // no ids.
     await page.getByRole('button', { name: 'Pick position in the view' }).click();
     await waitForMesh(page);
     await page.getByText('Click a vertex for position').waitFor();
@@ -167,7 +169,7 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
     await waitForMesh(page);
     assert.ok(await page.locator('#levels').isHidden());
 
-    // A cube has no triangles: the server says what to do.
+    // A cube has no triangles, so the server refuses and says what to do.
     await levels(page).click();
     await expectToast(page, /triangulate first/);
     assert.ok(await page.locator('#levels').isHidden());
@@ -219,7 +221,7 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     const answer = await ask();
     const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
-    // Levels that are played are not announced.
+    // Levels that are shown while playing must not be announced to screen readers.
     assert.equal(await valueText(), 'Playing');
     await page.getByRole('button', { name: 'Pause' }).click();
     await page.getByRole('button', { name: 'Play' }).waitFor();
@@ -232,7 +234,7 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     assert.equal(await slider(page).inputValue(), place);
     await page.getByRole('button', { name: 'Play' }).click();
     await waitForFaces(page, FACES);
-    // From the end on it begins with the base.
+    // If playing begins at the end of the slider, it must begin again with the base.
     await page.getByRole('button', { name: 'Play' }).waitFor();
     const again = seenUntil(page, 4);
     await page.getByRole('button', { name: 'Play' }).click();
@@ -261,7 +263,7 @@ test('levels stay when the connection was lost and the mesh is as it was', async
     await page.keyboard.press('Home');
     await waitForFaces(page, 4);
     assert.equal(await page.getByText('Back to the mesh').count(), 1);
-    // What has changed meanwhile is seen.
+    // Changes that were made while levels were shown must be visible afterwards.
     way.cut();
     await connection('lost');
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });

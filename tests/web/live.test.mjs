@@ -1,5 +1,5 @@
-// What other clients do appears on the page, through streams that are cut and refusals, and what is
-// selected survives it.
+// Edits of other clients appear on the page, even if its event stream is cut or refused, and the
+// selection survives them.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -22,7 +22,7 @@ const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };
 const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
 const noteOf = (page, state) => page.locator(`#connection[data-state="${state}"]`);
 
-// The requests of a page from now on whose URL has a text in it.
+// Returns the list of the page's requests, from now on, whose URL contains a text.
 function requestsOf(page, text) {
     const found = [];
     page.on('request', (request) => {
@@ -33,12 +33,12 @@ function requestsOf(page, text) {
     return found;
 }
 
-// Look until something holds, which the test's own time limit ends.
+// Repeats a test until it holds; the time limit of the test ends this.
 async function waitFor(holds) {
     while (!(await holds()));
 }
 
-// Keeps the first request of a kind waiting: {asked, release()}.
+// Holds the first request to a path back: returns {asked, release()}.
 async function hold(page, pattern) {
     let release;
     let ask;
@@ -77,7 +77,7 @@ test('what one page does is seen on another, and costs no whole mesh', async (t)
         await one.getByRole('button', { name: 'Fit view' }).click();
     }
     assert.deepEqual(fetched.filter((url) => !url.includes('since=')), []);
-    // Both show what a page shows that fetched it afresh.
+    // Both pages must show what a page shows that has just been opened.
     await press(page, 'Escape');
     const third = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(third, { mesh, revision: 4 });
@@ -147,7 +147,7 @@ test('a stream that is cut is said, and goes on where it was', async (t) => {
     await waitForFrame(page, { revision: 3, selection: 'face:0' });
     await noteOf(page, 'on').waitFor({ state: 'attached' });
     assert.ok(await page.locator('#connection').isHidden());
-    // And once more, with nothing missed.
+    // The stream is cut once more, and this time no event is missed.
     way.cut();
     await noteOf(page, 'lost').waitFor();
     way.mend();
@@ -164,7 +164,7 @@ test('an edit before a stream that opens late is shown', async (t) => {
     await page.getByRole('button', { name: 'Refresh' }).click();
     await page.locator(`#meshes button[data-mesh="${other}"]`).click();
     await asked;
-    // The page stops waiting for the stream, and shows the mesh.
+    // The page must stop waiting for the stream after a while, and show the mesh.
     await waitForFrame(page, { mesh: other, revision: 1 });
     await edit(daemon, other, { op: 'face_poke', face: 0 });
     release();
@@ -208,7 +208,7 @@ test('an element that is gone is said, with a way to what it is part of', async 
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const gone = page.locator('#element-gone li');
-    // Merged: a collapse says which vertex stays.
+    // A collapse merges the selected vertex into another one, which the page must offer.
     const { vertices } = await get(daemon, `/${mesh}/edges/5`);
     const made = await edit(daemon, mesh, {
         dry_run: true,
@@ -226,7 +226,8 @@ test('an element that is gone is said, with a way to what it is part of', async 
     await page.keyboard.press('Enter');
     await checkInspector(context, 'vertex', heir);
     assert.equal(await gone.count(), 0);
-    // Parted: an undo takes away what a face was cut into.
+    // An undo removes the faces into which a face was divided, and the page must offer the original
+    // one.
     const { created } = await edit(daemon, mesh, { op: 'face_poke', face: 8 });
     await waitForFrame(page, { revision: 3 });
     await goTo(page, 'face', created.faces[0]);
@@ -240,7 +241,7 @@ test('an element that is gone is said, with a way to what it is part of', async 
     await waitForFrame(page, { revision: 6, selection: '' });
     await gone.getByRole('button', { name: 'Face 8' }).click();
     await checkInspector(context, 'face', 8);
-    // Neither: nothing is left of it.
+    // If a face is deleted, nothing replaces it, so the page must offer nothing.
     await edit(daemon, mesh, { op: 'face_delete', face: 8 });
     await waitForFrame(page, { revision: 7, selection: '' });
     assert.match(await gone.textContent(), /^Face 8 is gone/);
@@ -260,7 +261,7 @@ test('what is selected while a change is fetched stays selected', async (t) => {
     release();
     await waitForFrame(page, { revision: 2, selection: 'face:0' });
     await checkInspector(context, 'face', 0);
-    // Read before a change and come after it.
+    // The answer was made before a change and arrives after it.
     const late = await hold(page, '**/faces/0');
     await page.locator('#goto-id').fill('0');
     await page.getByRole('button', { name: 'Go', exact: true }).click();

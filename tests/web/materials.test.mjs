@@ -1,5 +1,5 @@
-// Materials go from an OBJ file with its library to three.js as GLB, and back: names and colours stay
-// at the same faces. three.js reads the library that is written too.
+// Materials go from an OBJ file with its library as GLB to three.js and back: names and colours
+// must stay at the same faces. three.js must also read the library that is written.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -79,7 +79,7 @@ test('materials stay at their faces on the way to three.js and back', async (t) 
     assert.ok(triangles.some((line) => line.endsWith('red 1.0000,0.2500,0.0000,0.5000,0.0000,1.0000')));
     assert.ok(triangles.some((line) => line.endsWith('green 0.0000,0.7500,0.1250,1.0000,0.5000,0.2500')));
 
-    // what three.js writes of it has the same materials at the same triangles
+    // the file that three.js writes must have the same materials at the same triangles
     globalThis.FileReader = FileReader;
     const written = await new GLTFExporter().parseAsync(scene, { binary: true });
     const back = await create(url, written, 'model/gltf-binary');
@@ -87,7 +87,8 @@ test('materials stay at their faces on the way to three.js and back', async (t) 
     assert.deepEqual((await drawn(again)).triangles, triangles);
     assert.deepEqual((await materials(url, back.id)).map(({ name }) => name).sort(), ['green', 'red']);
 
-    // the file read here again has its six faces, and a change of colour shows in the next one
+    // read here again, the file must have its six faces, and a changed colour must appear in the
+    // next file
     const own = await create(url, glb, 'model/gltf-binary');
     assert.equal(own.counts.faces, 6);
     assert.deepEqual(await materials(url, own.id), [red, green]);
@@ -97,7 +98,7 @@ test('materials stay at their faces on the way to three.js and back', async (t) 
     assert.equal(changed.triangles.filter((line) =>
         line.endsWith('red 0.0000,0.0000,1.0000,0.5000,0.0000,1.0000')).length, 10);
 
-    // the library, as its OBJ file names it
+    // the library must have the name that the OBJ file gives it
     const answer = await content(url, mesh.id, 'mtl');
     assert.match(answer.headers.get('Content-Disposition'), /filename="two\.mtl"/);
     assert.match(await (await content(url, mesh.id, 'obj')).text(), /^mtllib two\.mtl$/m);

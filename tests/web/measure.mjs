@@ -19,7 +19,7 @@ const folder = process.argv[2];
 const cleanups = [];
 const lifetime = { after: (act) => cleanups.push(act) };
 
-// Milliseconds from `act` until the page shows what is waited for.
+// Returns the milliseconds from `act` until the page shows what `wait` waits for.
 async function timed(act, wait) {
     const start = performance.now();
     await act();
@@ -27,7 +27,7 @@ async function timed(act, wait) {
     return performance.now() - start;
 }
 
-// The camera is moved a little and the frame awaited.
+// Moves the camera a little, and returns the time until the frame is drawn.
 async function frameTime(page) {
     return page.evaluate(async (frames) => {
         const canvas = document.getElementById('canvas');
@@ -38,7 +38,7 @@ async function frameTime(page) {
             canvas.dispatchEvent(new WheelEvent('wheel', { deltaY: i % 2 ? 10 : -10 }));
             const start = performance.now();
             await new Promise((resolve) => requestAnimationFrame(resolve));
-            // Reading waits until the frame is drawn.
+            // Reading a pixel waits until the frame is drawn.
             gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
             times.push(performance.now() - start);
         }
@@ -67,7 +67,7 @@ async function measure(browser, daemon, side) {
         () => waitForFrame(page, { revision: 2 }),
     );
     const edited = bytes();
-    // Until the arrays have it, and until it is drawn too.
+    // The time until the arrays have the edit, and until it is drawn.
     const start = performance.now();
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
     await page.waitForFunction(
@@ -90,7 +90,7 @@ async function measure(browser, daemon, side) {
     }
     await page.close();
     const { counts: after } = await get(daemon, `/${mesh}`);
-    // The undo was of the rival's.
+    // The other client made the last edit, so the undo took back that one.
     if (after.faces !== counts.faces + 3) {
         throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }

@@ -1,4 +1,4 @@
-// The torus of a million quads: it opens, is picked in, edited and undone.
+// A torus of a million quads can be opened, picked in, edited and undone.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -45,7 +45,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     assert.ok(isChosen(canvas.colour(width / 2, height / 2)));
     assert.ok(canvas.countOf(isChosen) > 1000);
 
-    // An edit fetches what it changed, its statistics too, and no more.
+    // After an edit the page must fetch only what the edit changed, and the statistics.
     const bytes = await countBytes(page);
     const whole = [];
     page.on('request', (request) => {
@@ -59,14 +59,14 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     await waitForStatistics(page, { faces: counts.faces + 3, revision: 2 });
     console.log(`note: an edit of ${counts.faces} faces: ${bytes()} bytes`);
     assert.ok(bytes() > 100 && bytes() < 65536, `${bytes()} bytes`);
-    // The last of the new faces is where the server has it.
+    // The last of the new faces must be where the server has it.
     const made = counts.faces + 2;
     await goTo(page, 'face', made);
     await checkInspector({ daemon, mesh, page }, 'face', made);
     await press(page, 'Control+z');
     await waitForFrame(page, { revision: 3, selection: '' });
     assert.equal((await get(daemon, `/${mesh}`)).counts.faces, counts.faces);
-    // Those of others cost no more.
+    // Edits of other clients must cost no more bytes.
     const before = bytes();
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face });
     await waitForFrame(page, { revision: 4 });

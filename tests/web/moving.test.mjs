@@ -1,4 +1,4 @@
-// The camera by mouse, wheel, keyboard and fingers, and what it turns to.
+// The camera is moved by mouse, wheel, keyboard and fingers, and turns to the selection.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -19,14 +19,14 @@ import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 
-// How large the mesh is on the canvas and where its middle is.
+// Returns the size of the mesh on the canvas, and where its middle is.
 async function look(page) {
     const canvas = await readCanvas(page);
     const isMesh = (colour) => !isBackground(colour);
     return { size: canvas.countOf(isMesh), ...canvas.centreOf(isMesh) };
 }
 
-// Do something and wait until the address says that the camera has moved.
+// Calls `act` and waits until the address shows that the camera has moved.
 async function moved(page, act) {
     const address = page.url();
     await act();

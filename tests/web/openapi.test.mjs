@@ -1,4 +1,4 @@
-// openapi.test.mjs - the OpenAPI document is written in what generators of clients understand, and the
+// openapi.test.mjs - the OpenAPI document uses only what generators of clients understand, and the
 // paths that a newcomer tries first lead somewhere.
 
 import assert from 'node:assert/strict';
@@ -13,7 +13,7 @@ import { startDaemon } from './daemon.mjs';
 
 const plain = fileURLToPath(new URL('../../.ci/openapi/plain.mjs', import.meta.url));
 
-// What each lint says of the document after `change`.
+// Returns what each lint says about the document after `change`.
 async function faultsOf(folder, document, change) {
     const copy = structuredClone(document);
     change(copy);

@@ -1,5 +1,5 @@
-// Every operation of the server's table from the panel: its form filled by clicks, tried, applied
-// and undone, in Chromium against the real daemon.
+// Every operation of the server's table is used from the panel: its form is filled by clicks,
+// tried, applied and undone, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -38,7 +38,8 @@ const groupOf = ({ name }) => GROUPS.find((group) => name.startsWith(`${group}_`
 for (const group of [...GROUPS, 'mesh']) {
     test(`each ${group} operation is filled, tried, applied and undone`, async (t) => {
         const daemon = await startDaemon(t);
-        // What is half filled may be tried and refused: one edge between inner vertices is not cut.
+        // The page may try a form that is only half filled, and be refused: a single edge between
+        // inner vertices cannot be cut.
         const page = await openPage(t, daemon, { allowed: [/status of 422/] });
         for (const scenario of SCENARIOS.filter((one) => groupOf(one) === group)) {
             await goThrough({ daemon, page }, scenario);

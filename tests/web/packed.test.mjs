@@ -1,5 +1,6 @@
-// EXT_meshopt_compression between this server and others: three.js reads what is written here, and what
-// the encoder of meshoptimizer writes is read here as three.js reads it.
+// EXT_meshopt_compression between this server and other programs: three.js must read what the
+// server writes, and the server must read what the encoder of meshoptimizer writes, with the result
+// that three.js has.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -42,7 +43,8 @@ function jsonOf(glb) {
     return JSON.parse(new TextDecoder().decode(new Uint8Array(glb, 20, length)));
 }
 
-// Triangles by their corners, the lowest first, since packing may turn them.
+// Returns triangles by their corners, beginning with the lowest one, because compression may rotate
+// the corners of a triangle.
 function trianglesOf(index) {
     const list = [];
     for (let i = 0; i < index.length; i += 3) {
@@ -53,7 +55,7 @@ function trianglesOf(index) {
     return list;
 }
 
-// Two quads and a triangle with a seam between them.
+// Two quadrilaterals and a triangle with a texture seam between them.
 const OBJ = `
 v 0 0 0
 v 1 0 0.125
@@ -91,13 +93,13 @@ test('three.js reads what is packed here', async (t) => {
     }
     assert.deepEqual(trianglesOf(seen.geometry.index.array),
         trianglesOf(wanted.geometry.index.array));
-    // here again it is what it was, polygons and corner values included
+    // read here again, the mesh must be as it was, with its polygons and values of corners
     const back = await create(url, 'model/gltf-binary', packed);
     const text = async (mesh) => new TextDecoder().decode(await exported(url, mesh, 'format=obj'));
     assert.equal(await text(back.id), await text(id));
 });
 
-// A GLB of streams: `views` are { bytes, count, stride, mode, filter, target }.
+// Builds a GLB from compressed streams: `views` are { bytes, count, stride, mode, filter, target }.
 function pack(views, rest) {
     const streams = views.map(({ bytes, count, stride, mode }) =>
         MeshoptEncoder.encodeGltfBuffer(bytes, count, stride, mode));
@@ -160,7 +162,8 @@ const TRIANGLES = new Uint32Array(cells.filter(([x, y]) => x < SIDE - 1 && y < S
 const bytesOf = ({ buffer, byteOffset, byteLength }) =>
     new Uint8Array(buffer, byteOffset, byteLength);
 
-// Positions of 16 bits, directions on an octahedron, floats with a common exponent, indices both ways.
+// Builds a file with 16-bit positions, directions on an octahedron, floats with a common exponent,
+// and indices in both modes.
 function quantized(mode) {
     const positions = new Int16Array(cells.flatMap(([x, y]) =>
         [3000 * x - 16000, 2500 * y - 16000, Math.round(9000 * Math.sin(x + y)), 0]));
@@ -236,7 +239,7 @@ for (const mode of ['TRIANGLES', 'INDICES']) {
         close(values('color').flat(),
             all.flatMap((i) => [color.getX(i), color.getY(i), color.getZ(i), color.getW(i)]),
             1e-6, 'color');
-        // directions turn with the node, which is not scaled alike everywhere
+        // directions must be transformed with the node, which is scaled differently along its axes
         const turned = all.flatMap((i) => {
             const v = [normal.getX(i) / 10, normal.getY(i) / 10, normal.getZ(i) / 2];
             const length = Math.hypot(...v);

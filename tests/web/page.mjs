@@ -1,11 +1,11 @@
-// page.mjs - what a visitor does on the page and reads from it.
+// page.mjs - what a visitor does on the page, and what a visitor reads there.
 
 import assert from 'node:assert/strict';
 
 import { waitForFrame } from './browser.mjs';
 import { get } from './daemon.mjs';
 
-// The inspector's members as text, keyed by name.
+// Returns the members in the inspector as text, by name.
 export function readMembers(page) {
     return page.locator('#members').evaluate((list) =>
         Object.fromEntries(
@@ -17,7 +17,7 @@ export function readMembers(page) {
     );
 }
 
-// Does so for an element of the API.
+// Returns the members that the inspector must show for an element of the API.
 function membersOf(element) {
     const text = (value) => (value === null ? 'none' : String(value));
     return Object.fromEntries(
@@ -45,13 +45,13 @@ export async function press(page, key) {
     await page.locator('#canvas').press(key);
 }
 
-// The camera in the address, once it is at rest and written there.
+// Returns the camera in the address, once the camera is at rest and has been written there.
 export async function cameraOf(page) {
     await page.locator('#canvas:not([data-moving])').waitFor();
     return /camera=([^&]*)/.exec(page.url())?.[1];
 }
 
-// Select by the form for ids.
+// Selects an element by the form for ids.
 export async function goTo(page, kind, id) {
     await page.locator('#goto-kind').selectOption(kind);
     await page.locator('#goto-id').fill(`${id}`);
@@ -63,13 +63,13 @@ export async function setMode(page, mode) {
     await page.getByRole('radio', { name: mode, exact: true }).check();
 }
 
-// Is a request or an answer that of an edit, and not of a dry run?
+// Returns whether a request or an answer is that of an edit and not of a dry run.
 export function isEdit(message) {
     const request = message.request?.() ?? message;
     return request.url().endsWith('/edits') && request.postDataJSON()?.dry_run !== true;
 }
 
-// The three fields of a point or a vector in the form of an operation.
+// Returns the three fields of a point or a vector in the form of an operation.
 export const vectorOf = (page, name) =>
     ['x', 'y', 'z'].map((axis) =>
         page.locator('#parameters').getByLabel(`${name} ${axis}`, { exact: true }),

@@ -1,4 +1,5 @@
-// The panels around the view: what the server says of a mesh, and what a form sends to it.
+// The panels around the view: what the server says about a mesh, and what a form sends to the
+// server.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -9,7 +10,7 @@ import { expectToast, fillVector, goTo, isEdit, press, setMode } from './page.mj
 import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
-// Two triangles that meet in a vertex, and a vertex alone.
+// Two triangles that share only a vertex, and an isolated vertex.
 const BOW_TIE = {
     name: 'bow-tie',
     vertices: [[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [-1, 0, 0], [-0.5, -1, 0], [0, 0, 1]],
@@ -69,7 +70,7 @@ test('measures are rounded for the eye, and whole in their titles', async (t) =>
     assert.ok(shown.length < 9 && Math.abs(Number(shown) - area) < 1e-5, shown);
 });
 
-// Apply the form as it is filled and give the operation that was sent.
+// Applies the form as it is filled, and returns the operation that was sent.
 async function apply(page) {
     const sent = page.waitForRequest(isEdit);
     await page.getByRole('button', { name: 'Apply' }).click();
@@ -101,7 +102,7 @@ test('a field that is left empty is left out, whatever its type', async (t) => {
     await fill('edge', '0');
     assert.deepEqual(await apply(page), { op: 'edge_collapse', edge: 0 });
     await waitForFrame(page, { revision: 4 });
-    // What was typed stays where nothing else was selected meanwhile.
+    // Text that the user typed must stay as long as the selection is the same.
     assert.equal(await page.locator('#param-edge').inputValue(), '0');
     await choose('face_poke');
     await fill('face', '0');

@@ -1,12 +1,12 @@
-// png.mjs - the pixels of a screenshot: PNG as Chromium writes it, 8 bits, RGB or RGBA, not
-// interlaced. See the PNG specification (W3C), 9.2 for the filters.
+// png.mjs - the pixels of a screenshot, a PNG as Chromium writes it: 8 bits, RGB or RGBA, not
+// interlaced. The filters are described in the PNG specification (W3C), 9.2.
 
 import assert from 'node:assert/strict';
 import { inflateSync } from 'node:zlib';
 
 const CHANNELS = { 2: 3, 6: 4 }; // by colour type
 
-// {width, height, channels, pixels}, rows from the top.
+// Returns {width, height, channels, pixels}; the rows begin at the top.
 export function readPng(file) {
     const [width, height] = [16, 20].map((at) => file.readUInt32BE(at));
     const channels = CHANNELS[file[25]];
@@ -32,7 +32,7 @@ function chunksOf(file, wanted) {
     return found;
 }
 
-// Write a row of pixels at `at`; those to the left and above are there already.
+// Writes a row of pixels at `at`; the pixels to the left and above are there already.
 function undo(filter, row, pixels, at, stride, channels) {
     const guess = FILTERS[filter];
     for (let i = 0; i < stride; i++) {

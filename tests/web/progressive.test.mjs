@@ -1,4 +1,5 @@
-// Meshes from coarse to fine: what the daemon sends, and the arrays that are made of it.
+// Meshes from coarse to fine: the bytes that the daemon sends, and the arrays that the page makes
+// of them.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -17,7 +18,8 @@ const MESHES = [
     { shape: 'icosphere', subdivisions: 3 },
     { shape: 'torus', major_segments: 24, minor_segments: 12 },
     { shape: 'grid', columns: 12, rows: 9 },
-    // A bow-tie, a triangle by itself, an isolated vertex.
+    // The mesh has a bow-tie (two triangles that share a vertex), a separate triangle, and an
+    // isolated vertex.
     {
         vertices: [
             [0, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 0, 0], [-1, -1, 0], [2, 1, 0], [9, 9, 9],
@@ -42,7 +44,7 @@ async function getStream(daemon, mesh) {
     return new Uint8Array(await answer.arrayBuffer());
 }
 
-// The levels of a stream that comes in parts of some lengths, and the ids of their vertices.
+// Reads a stream in parts of given lengths; returns the levels, and the ids of their vertices.
 function read(stream, frame, nextLength) {
     let levels;
     const ids = [];
@@ -73,15 +75,15 @@ const WHOLE = { origin: [0, 0, 0], scale: 1 };
 
 const readWhole = (stream, frame = WHOLE) => read(stream, frame, () => stream.length);
 
-// What is drawn: the corners of each triangle.
+// Returns the corners of each triangle that is drawn.
 function cornersOf({ triangles, triangleCount }) {
     return Array.from({ length: triangleCount }, (_, i) => [
         ...triangles.subarray(4 * i, 4 * i + 3),
     ]);
 }
 
-// The edges of some triangles, by origin and target of the half-edges that are of a face. No two
-// have both in common, or it is no surface.
+// Returns the half-edges of some triangles by origin and target, which must differ, because
+// otherwise the triangles are no surface.
 function halfedgesOf(triangles) {
     const found = new Set();
     for (const [a, b, c] of triangles) {
@@ -97,7 +99,7 @@ const edgeOf = (halfedge) => halfedge.split('>').map(Number).sort((a, b) => a - 
 
 const edgesOf = (triangles) => new Set([...halfedgesOf(triangles)].map(edgeOf));
 
-// Each vertex has one fan of triangles around it.
+// Requires that each vertex has one fan of triangles around it.
 function checkFans(triangles) {
     const next = new Map();
     for (const corners of triangles) {
@@ -143,7 +145,7 @@ test('all splits lead back to the mesh with its ids and places', async (t) => {
         assert.equal(shown.triangleCount, counts.faces);
         assert.equal(levels.faces, counts.faces);
         assert.equal(shown.hasIsolated, counts.isolated_vertices > 0);
-        // Vertices are drawn where the mesh has them, bit for bit.
+        // Vertices must be drawn where the mesh has them, bit for bit.
         for (let i = 0; i < shown.vertexCount; i++) {
             const place = shown.vertices.subarray(4 * i, 4 * i + 4);
             assert.deepEqual(place, geometry.vertices.subarray(4 * ids[i], 4 * ids[i] + 4));
@@ -245,7 +247,7 @@ test('levels can be shown while more come', async (t) => {
     all.goTo(all.most);
     assert.deepEqual(levels.geometry, all.geometry);
     assert.equal(levels.part, 1);
-    // One that can be no coarser has no other level.
+    // A mesh that cannot be coarser has no other level.
     const least = await makeMesh(daemon, { shape: 'tetrahedron' });
     const { levels: only } = readWhole(await getStream(daemon, least));
     assert.ok(only.hasBase && only.most === 0 && only.part === 1);

@@ -1,6 +1,6 @@
-// random.mjs - edits at random that follow from a seed.
+// random.mjs - random edits that follow from a seed.
 
-// Numbers below n (Marsaglia, "Xorshift RNGs", 2003).
+// Returns a function that returns pseudo-random numbers below n (Marsaglia, "Xorshift RNGs", 2003).
 export function numbersFrom(seed) {
     let state = seed >>> 0 || 1;
     return (n) => {
@@ -12,7 +12,7 @@ export function numbersFrom(seed) {
     };
 }
 
-// An edit of elements whose ids are below those of `issued`; it may well be refused.
+// Returns an edit of elements whose ids are below those of `issued`; the server may refuse it.
 export function randomEdit(below, issued) {
     const id = (kind) => below(issued[kind]);
     const by = [0, 1, 2].map(() => (below(200) - 100) / 2000);
@@ -28,7 +28,7 @@ export function randomEdit(below, issued) {
     ][below(8)]();
 }
 
-// Count what an answer made.
+// Counts the elements that an answer has created.
 export function countIssued(issued, { created }) {
     for (const kind of Object.keys(issued)) {
         issued[kind] = created[kind].reduce((most, id) => Math.max(most, id + 1), issued[kind]);

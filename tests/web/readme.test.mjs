@@ -1,5 +1,5 @@
-// readme.test.mjs - what README.md and api/GUIDE.md tell their readers to paste works, with the
-// daemon's address in place of the usual one, and prints what they say.
+// readme.test.mjs - the commands that README.md and api/GUIDE.md offer for pasting must work, with
+// the daemon's address in place of the usual one, and print what the pages say.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -15,10 +15,10 @@ const read = (name) => readFile(new URL(`../../${name}`, import.meta.url), 'utf8
 const readme = await read('README.md');
 const guide = await read('api/GUIDE.md');
 
-// What the lines of a block may print in all: some thirty lines of a terminal.
+// The lines of a block may print at most this many characters, some thirty lines of a terminal.
 const MOST_PRINTED = 3000;
 
-// The code blocks of a language, with another address.
+// Returns the code blocks of a language, with another address.
 function blocks(language, url) {
     const found = (readme + guide).matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\`$`, 'gms'));
     return [...found].map(([, code]) => code.replaceAll('http://127.0.0.1:8080', url));
@@ -29,14 +29,14 @@ async function run(program, words) {
     return stdout;
 }
 
-// The shell lines that have this in them.
+// Returns the block of shell lines that contains a text.
 function shellWith(text, url) {
     const found = blocks('sh', url).filter((code) => code.includes(text));
     assert.equal(found.length, 1, text);
     return found[0];
 }
 
-// What each curl of a block is answered: a line each.
+// Runs a block; returns a line for the answer to each curl.
 async function runCurls(block) {
     const printed = await run('sh', ['-ec', block]);
     return printed.trim().split('\n');
@@ -44,13 +44,14 @@ async function runCurls(block) {
 
 const parsed = (lines) => lines.map((line) => JSON.parse(line));
 
-// The comment at the end of the line that prints.
+// Returns the comment at the end of the line that prints.
 function promised(code, mark) {
     const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
     return text;
 }
 
-// The commands of a block, each with the beginning of the answer that the comment after it promises.
+// Returns the commands of a block, each with the beginning of the answer that the comment after it
+// promises.
 function commandsOf(block) {
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = [];
@@ -64,7 +65,7 @@ function commandsOf(block) {
     return commands;
 }
 
-// What each command answers, which begins as the page says.
+// Runs each command; its answer must begin as the page says.
 async function answersOf(block) {
     const answers = [];
     for (const { line, promised } of commandsOf(block)) {
@@ -191,7 +192,7 @@ test('the JavaScript lines work as pasted', async (t) => {
     assert.equal(printed.trim(), promised(code, '//'));
 });
 
-// Headings as a link names them: "Live updates" is #live-updates.
+// Returns headings in the form that links have: "Live updates" is #live-updates.
 const anchorsOf = (text) =>
     [...text.matchAll(/^## (.*)$/gm)].map(([, title]) => title.toLowerCase().replaceAll(' ', '-'));
 
@@ -200,7 +201,8 @@ test('each file, heading and make target they name is there', async () => {
     for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
         assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
     }
-    // And the table, which `make fresh` tries, has each target but those that only serve others.
+    // The table, whose commands `make fresh` tries, must have each target of the Makefile, except
+    // those that only serve others.
     const [table] = /^\| command \|.*?\n\n/ms.exec(readme);
     const named = new Set([...table.matchAll(/`(?:make )?([a-z-]+)/g)].map(([, name]) => name));
     const parts = ['help', 'page', 'programs', 'ready', 'clean'];

@@ -1,4 +1,4 @@
-// A refused file is offered again, with the repairs that let it pass.
+// A file that was refused is offered again, with the repairs that would make it acceptable.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

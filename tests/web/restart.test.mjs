@@ -1,5 +1,5 @@
-// restart.test.mjs - a newcomer's minute: an edit in the page, Ctrl-C, another start on the same
-// folder, and the edit is undone in the page.
+// restart.test.mjs - the first minutes of a new user: an edit in the page, Ctrl-C, another start on
+// the same folder, and the edit is undone in the page.
 
 import assert from 'node:assert/strict';
 import { mkdtemp, rm, writeFile } from 'node:fs/promises';
@@ -19,7 +19,7 @@ async function open(t, daemon, name, revision) {
     return page;
 }
 
-// All that the mesh is, but for how often it was changed.
+// Returns everything about the mesh except how often it was changed.
 async function stateOf(daemon, mesh) {
     const { counts, bounds } = await get(daemon, `/${mesh}`);
     const lists = await Promise.all(

@@ -1,4 +1,4 @@
-// What of a texture is sent again after a change: no graphics in here.
+// Which parts of a texture are uploaded again after a change; tested without graphics.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

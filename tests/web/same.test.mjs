@@ -1,6 +1,6 @@
-// After many edits of several clients a page holds, and has sent to the graphics memory, byte for
-// byte what a fresh page would. EDITS (300; make proof takes 1000) and SEED come from the
-// environment.
+// After many edits by several clients, a page must hold, and have uploaded to graphics memory, the
+// same bytes as a page that has just been opened. EDITS (300; make proof takes 1000) and SEED come
+// from the environment.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -15,8 +15,8 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Keeps what is sent to textures of 32 bits a component, as the graphics memory has it, and the
-// memory of the page that it was sent from.
+// Keeps a copy of what is uploaded to 32-bit textures, as the graphics memory has it, and of the
+// array that it came from.
 function keepTextures() {
     const { prototype } = WebGL2RenderingContext;
     const kept = new Map();
@@ -52,8 +52,8 @@ function keepTextures() {
         }
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
-    // Each format has two, of the mesh and of the materials of its faces. That of the mesh
-    // was sent from its array, and from nothing else.
+    // There are two textures of each format, of the mesh and of the materials of its faces. That of
+    // the mesh must have been uploaded from the mesh's array alone.
     window.readTextures = ({ vertices, triangles }) => {
         const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;
         const find = (wanted, { buffer }) => {
@@ -65,7 +65,7 @@ function keepTextures() {
     };
 }
 
-// The arrays of the page and those of its textures, as text of their bytes.
+// Returns the arrays of the page and those of its textures, as text of their bytes.
 function readArrays(page) {
     return page.evaluate(() => {
         const text = (array, count) => {
@@ -107,7 +107,8 @@ async function checkSame(daemon, mesh, page) {
     }
 }
 
-// What the visitor of the page does: undo, redo, or an edit by the form. False when refused.
+// Does what a visitor of the page may do: undo, redo, or an edit by the form. Returns false if it
+// was refused.
 async function actOnPage(page, daemon, mesh, below, issued) {
     const { revision, undo, redo } = await get(daemon, `/${mesh}/edits?limit=1`);
     await waitForFrame(page, { mesh, revision });

@@ -1,11 +1,11 @@
-// scenarios.mjs - for each operation of the server's table a mesh on which it can be done, and what
-// a visitor puts into its form: elements by clicks, the rest by keys.
+// scenarios.mjs - for each operation of the server's table, a mesh on which it can be done, and
+// what a visitor puts into its form: elements by clicks, the rest by keys.
 
 import { projector, waitForFrame } from './browser.mjs';
 import { getAll, post } from './daemon.mjs';
 import { click, fillVector } from './page.mjs';
 
-// Flat, so that a click reaches all of it: vertex 4 y + x.
+// A flat grid, so that a click can reach all of it; vertex 4 y + x lies at (x, y).
 const GRID = { shape: 'grid', columns: 3, rows: 3 };
 
 const flat = (points, faces) => ({ vertices: points.map(([x, y]) => [x, y, 0]), faces });
@@ -14,19 +14,19 @@ const square = (x, y) => [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
 
 const PAIR = flat([...square(0, 0), ...square(2, 0)], [[0, 1, 2, 3], [4, 5, 6, 7]]);
 
-// Two squares that nearly meet.
+// Two squares with a narrow gap between them.
 const GAP = flat([...square(0, 0), ...square(1.05, 0)], [[0, 1, 2, 3], [4, 5, 6, 7]]);
 
-// Two triangles that meet in vertex 2.
+// Two triangles that share only vertex 2.
 const BOWTIE = flat(
     [[0, 0], [1, 0], [1, 1], [2, 2], [1, 2]],
     [[0, 1, 2], [2, 3, 4]],
 );
 
-// Two triangles cut by the longer diagonal.
+// Two triangles, made by the longer diagonal of a quadrilateral.
 const LONG = flat([[-2, 0], [0, -0.5], [2, 0], [0, 0.5]], [[0, 1, 2], [0, 2, 3]]);
 
-// Three triangles within each other, quads between them.
+// Three triangles inside each other, with quadrilaterals between them.
 const nested = (size) => [[-size, -size], [size, -size], [0, size]];
 const NESTED = flat(
     [...nested(1), ...nested(2), ...nested(3)],
@@ -57,8 +57,8 @@ const face = (...corners) => ({ kind: 'face', ends: corners });
 const MIDDLE = face(5, 6, 10, 9);
 const HOLE = [{ op: 'face_delete', face: 4 }];
 
-// [name, mesh, what goes in by parameter, edits before]: an element or several are clicked, three
-// numbers are a point, true a tick, text is typed or chosen.
+// Each row: [name, mesh, values by parameter, edits made before]. An element or several are
+// clicked, three numbers are a point, true is a tick, and text is typed or chosen.
 export const SCENARIOS = [
     ['vertex_add', GRID, { position: [0, 0, 1] }],
     ['vertex_move', GRID, { vertex: [vertex(5), vertex(6)], by: [0, 0, 0.25] }],
@@ -114,7 +114,7 @@ export const SCENARIOS = [
     ['subdivide', GRID, { scheme: 'catmull_clark', steps: '2' }],
 ].map(([name, mesh, filled, before = []]) => ({ name, mesh, filled, before }));
 
-// Make the mesh of a scenario, show it in the page and say which it is.
+// Makes the mesh of a scenario, shows it in the page, and returns its id.
 export async function openScenario({ daemon, page }, { name, mesh: content, before }) {
     const { id: mesh } = await post(daemon, '', { ...content, name });
     for (const op of before) {
@@ -127,7 +127,7 @@ export async function openScenario({ daemon, page }, { name, mesh: content, befo
     return mesh;
 }
 
-// Fill the form of a scenario as a visitor does.
+// Fills the form of a scenario as a visitor does.
 export async function fillForm({ daemon, page, mesh }, { name, filled }) {
     await page.locator('#operation').selectOption(name);
     const place = await projector(page, daemon, mesh);
@@ -148,7 +148,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
         } else if (param.includes(' ')) {
             await page.getByLabel(param, { exact: true }).fill(value);
         } else if ((await field.evaluate(({ tagName }) => tagName)) === 'SELECT') {
-            // Meshes have no names to know beforehand: the one that is open.
+            // The name of a mesh is not known beforehand, so 'mesh' stands for the open one.
             await field.selectOption(param === 'mesh' ? mesh : value);
         } else {
             await field.fill(value);
@@ -156,7 +156,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
     }
 }
 
-// Until as many ids as were clicked are in a field, or a coordinate is.
+// Waits until a field has as many ids as were clicked, or a coordinate.
 async function waitForWords(field, count) {
     const handle = await field.elementHandle();
     await field.page().waitForFunction(
@@ -165,7 +165,7 @@ async function waitForWords(field, count) {
     );
 }
 
-// Where to click for an element.
+// Returns where to click for an element.
 async function placeOf({ daemon, mesh, place }, { kind, ends }) {
     const middle = place.at(ends);
     if (kind !== 'halfedge') {
@@ -178,7 +178,7 @@ async function placeOf({ daemon, mesh, place }, { kind, ends }) {
         vertices[(vertices.indexOf(ends[0]) + 1) % vertices.length] === ends[1];
     const own = beside.find(follows);
     const { x, y } = place.at((own ?? beside[0]).vertices);
-    // Into its face, or away from the other's.
+    // The click is moved into the face of the half-edge, away from the face on the other side.
     const away = Math.hypot(x - middle.x, y - middle.y);
     const step = (own === undefined ? -5 : 5) / away;
     return { x: middle.x + step * (x - middle.x), y: middle.y + step * (y - middle.y) };

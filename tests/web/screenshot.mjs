@@ -1,5 +1,5 @@
-// screenshot.mjs - the README's picture, web/screenshot.png: a torus in the viewer with one of its
-// half-edges chosen.
+// screenshot.mjs - makes the picture of the README, web/screenshot.png: a torus in the viewer with
+// one of its half-edges selected.
 
 import { statSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -11,7 +11,7 @@ import { setMode } from './page.mjs';
 const file = fileURLToPath(new URL('../../web/screenshot.png', import.meta.url));
 const MOST_BYTES = 100 * 1024;
 
-// What a test would clean up at its end.
+// Functions that a test would call at its end.
 const endings = [];
 const run = { after: (ending) => endings.unshift(ending) };
 try {
@@ -25,7 +25,7 @@ try {
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await setMode(page, 'Half-edge');
-    // A half-edge of the face that is nearest to a point of the ring's near side.
+    // The half-edge belongs to the face that is nearest to a point on the near side of the ring.
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const projected = await projector(page, daemon, mesh);
     const distance = ({ vertices }) => {
@@ -38,7 +38,7 @@ try {
     const place = await projected.arrow(face.halfedge);
     await page.mouse.click(x + place.x, y + place.y);
     await waitForFrame(page, { selection: `halfedge:${face.halfedge}` });
-    // Nearer, and the address says when it is drawn.
+    // The camera goes nearer; the address shows when the frame is drawn.
     const address = page.url();
     await page.mouse.wheel(0, -500);
     await page.waitForURL((url) => `${url}` !== address);

@@ -1,5 +1,5 @@
-// A mesh whose texture has seams goes as GLB to three.js and back: the same texture coordinates at the
-// same corners, in a program that knows of vertices alone.
+// A mesh whose texture has seams goes as GLB to three.js and back: the same texture coordinates
+// must be at the same corners, although that program has values of vertices only.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -8,7 +8,7 @@ import { GLTFLoader } from '../../web/node_modules/three/examples/jsm/loaders/GL
 import { post, startDaemon } from './daemon.mjs';
 import { FileReader } from './file_reader.mjs';
 
-// A cube whose six faces have a square of the texture each, and a normal.
+// A cube; each of its six faces has a normal and a square of the texture.
 const CUBE = [
     ...[0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${i & 1} ${(i >> 1) & 1} ${i >> 2}`),
     ...Array.from({ length: 24 }, (_, i) => {
@@ -22,7 +22,7 @@ const CUBE = [
 
 const say = (...numbers) => numbers.map((n) => n.toFixed(5)).join(' ');
 
-// What the corners of an OBJ say: place and texture coordinate, each once.
+// Returns the position and texture coordinate of each corner of an OBJ file, without repetitions.
 function cornersOfObj(text) {
     const lines = text.split('\n').map((line) => line.split(' '));
     const rows = (word) => lines.filter((w) => w[0] === word).map((w) => w.slice(1).map(Number));
@@ -34,7 +34,7 @@ function cornersOfObj(text) {
     }))].sort();
 }
 
-// Reads a mesh of three.js, where v runs down.
+// Reads a mesh of three.js, in which v runs down.
 function cornersOfThree(mesh) {
     const { position, uv } = mesh.geometry.attributes;
     return [...new Set(Array.from(mesh.geometry.index.array, (i) =>
@@ -86,7 +86,8 @@ test('texture coordinates stay at their corners on the way to three.js and back'
     assert.ok(back.import.repairs[0].moved > 0);
     assert.deepEqual(cornersOfObj(await (await content(url, back.id, 'obj')).text()), wanted);
 
-    // read here again it has its polygons, and an edit leaves the other faces as they were
+    // read here again, the mesh must have its polygons, and an edit must leave the other faces as
+    // they were
     const again = await create(url, 'model/gltf-binary', glb);
     assert.equal(again.counts.faces, 6);
     assert.deepEqual(cornersOfObj(await (await content(url, again.id, 'obj')).text()), wanted);

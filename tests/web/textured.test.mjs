@@ -1,8 +1,8 @@
-// Models with a texture are welded, edited at a seam and exported: every corner has the texture
-// coordinate that it had, and the seams are where they were, to three.js too.
+// Models with a texture are welded, edited at a seam and exported: every corner must have the
+// texture coordinate that it had, and the seams must be where they were, for three.js, too.
 //
 // The model is made here. TEXTURED names a folder with others, OBJ files of triangles and GLB files
-// of one mesh, that go the same way.
+// of one mesh, which are treated in the same way.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
@@ -14,7 +14,7 @@ import { Vector3 } from '../../web/node_modules/three/build/three.module.js';
 import { post, startDaemon } from './daemon.mjs';
 import { FileReader } from './file_reader.mjs';
 
-// A tube bent to a ring, cut open along one circle each way for its texture.
+// Makes a tube that is bent to a ring, cut open along one circle in each direction for its texture.
 function ring(around, across) {
     const lines = [];
     for (let i = 0; i < around * across; i++) {
@@ -49,7 +49,7 @@ function facesOfObj(text) {
         }));
 }
 
-// Images are a browser's to read: a GLB file without its materials, which name them.
+// Returns a GLB file without its materials, which name images that only a browser can read.
 function withoutMaterials(glb) {
     const length = new DataView(glb).getUint32(12, true);
     const json = JSON.parse(Buffer.from(glb, 20, length).toString());
@@ -81,15 +81,15 @@ function facesOfThree(mesh) {
 
 const isNear = (a, b, most) => a.every((x, i) => Math.abs(x - b[i]) <= most);
 
-// Has a face the same corners as another, which may begin elsewhere?
+// Returns whether two faces have the same corners, beginning at any of them.
 function sameFace(a, b, size) {
     const same = (p, q) => isNear(p.place, q.place, 1e-5 * size) && isNear(p.uv, q.uv, 1e-5);
     return a.length === b.length && a.some((_, turn) =>
         a.every((corner, i) => same(corner, b[(i + turn) % b.length])));
 }
 
-// Counts the sides of each face that are seams: sides with other texture coordinates across.
-// `sides` lists them as [face, side].
+// Counts the sides of each face that are seams: sides with other texture coordinates on the other
+// face. `sides` lists them as [face, side].
 function seamsOf(faces) {
     const met = new Map();
     const of = faces.map(() => 0);
@@ -131,7 +131,8 @@ const content = (url, id, format) => fetch(`${url}/v1/meshes/${id}/content?forma
 const facesIn = async (url, id) => facesOfObj(await (await content(url, id, 'obj')).text());
 const glbOf = async (url, id) => (await content(url, id, 'glb')).arrayBuffer();
 
-// The faces of a file, and it as a GLB of another program: vertices apart at seams, no polygons.
+// Returns the faces of a file, and the file as a GLB of another program: with separate vertices at
+// seams, and without polygons.
 async function begin(url, name, bytes) {
     if (name.endsWith('.glb')) {
         const glb = new Uint8Array(bytes).buffer;
@@ -145,7 +146,7 @@ async function begin(url, name, bytes) {
     };
 }
 
-// Welded as it is read, or by the operation.
+// Returns the mesh welded while it is read, or by the operation.
 async function welded(url, glb, isRepaired) {
     if (isRepaired) {
         return create(url, 'model/gltf-binary', glb, '?repair=weld');
@@ -155,7 +156,8 @@ async function welded(url, glb, isRepaired) {
     return id;
 }
 
-// Split a side that is a seam, poke the face on it, move its ends. Returns which faces are touched.
+// Splits a side that is a seam, pokes the face there, and moves the ends of the side. Returns which
+// faces were touched.
 async function edit(url, id, faces, [face, side]) {
     const [p, q] = [side, side + 1].map((i) => faces[face][i % 3]);
     const at = [p.vertex, q.vertex];
@@ -186,7 +188,7 @@ async function check(t, name, bytes) {
         const edited = await facesIn(url, id);
         const others = faces.flatMap((_, f) => (touched.has(f) ? [] : [f]));
         checkSame(others.map((f) => edited[f]), others.map((f) => faces[f]), size, 'not touched');
-        // the side that was split is two now, and both are seams
+        // the side that was split is two sides now, and both must be seams
         const after = seamsOf(edited);
         assert.equal(after.sides.length, before.sides.length + 1);
         const about = new Set([...touched].flatMap((f) => faces[f].map(({ vertex }) => vertex)));

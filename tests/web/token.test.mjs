@@ -1,4 +1,5 @@
-// A server with tokens: the page asks for one, keeps it for its tab, and shows what it may do.
+// A server that requires tokens: the page asks for one, keeps it for its tab, and shows what it
+// allows.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -12,7 +13,7 @@ import { program, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';
 import { openPage } from './visit.mjs';
 
-// A token and the line for the file.
+// Makes a token, and its line for the file of tokens.
 function makeToken(name, role) {
     const [token, line] = execFileSync(program, ['--new-token', name, role], {
         encoding: 'utf8',
@@ -20,7 +21,7 @@ function makeToken(name, role) {
     return { token, line };
 }
 
-// A daemon with a mesh, and the tokens of alice, who may edit, and bob, who may look.
+// Starts a daemon with a mesh and two tokens: alice may edit, and bob may only read.
 async function startGuarded(t) {
     const folder = mkdtempSync(path.join(os.tmpdir(), 'tokens-'));
     t.after(() => rmSync(folder, { recursive: true }));
@@ -62,14 +63,14 @@ test('the page asks for a token until one is good, and edits with it', async (t)
     assert.equal(await page.locator('#who').textContent(), 'alice (write)');
     assert.equal(await page.locator('#split').isVisible(), true);
 
-    // What others do comes by the stream.
+    // Edits of other clients arrive by the event stream.
     const { status } = await ask(alice, '/v1/meshes/box/edits', 'POST', { op: 'face_poke', face: 0 });
     assert.equal(status, 200);
     await waitForFrame(page, { revision: 2 });
     await page.locator('#undo:enabled').click();
     await waitForFrame(page, { revision: 3 });
 
-    // Nothing of the token is in the address, nor beyond the tab.
+    // Nothing of the token may be in the address, or in storage that outlives the tab.
     assert.equal(page.url().includes(alice.token), false);
     assert.equal(await page.evaluate(() => localStorage.length + document.cookie.length), 0);
     await page.reload();
@@ -96,7 +97,7 @@ test('who may look sees no buttons that edit', async (t) => {
     assert.equal(await page.locator('#history button:visible').count(), 0);
     await checkAccessible(page, 'looking only');
 
-    // Another token may be used.
+    // The user can change to another token.
     await page.locator('#who').click();
     await use(page, alice.token);
     await waitForFrame(page, { mesh: 'box', revision: 2 });

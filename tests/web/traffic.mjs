@@ -1,22 +1,23 @@
-// traffic.mjs - a proxy before a daemon that keeps what passes, for the last step of `make test`:
+// traffic.mjs - a proxy before a daemon that records what passes, for the last step of `make test`:
 // check-traffic.mjs compares it with the served OpenAPI document.
 //
-// Browsers, generated clients and the commands of the README then need no recorder of their own.
-// Lines are those of tests/traffic.h. Of the codings a browser accepts gzip is passed on, which
-// node can undo to look inside.
+// So browsers, generated clients and the commands of the README need no recorder of their own. The
+// lines have the form of tests/traffic.h. Of the codings that a browser accepts, only gzip is
+// passed on, which node can decompress to look inside.
 
 import { appendFileSync } from 'node:fs';
 import { Agent, createServer, request as send } from 'node:http';
 import path from 'node:path';
 
-// Bytes kept of a body; a body that is not JSON is not checked.
+// The number of bytes recorded of a JSON body; a body that is not JSON is not checked.
 const JSON_BYTES = 1024 * 1024;
 const OTHER_BYTES = 4 * 1024;
 
-// Headers of one connection, which are not the other's.
+// Headers that belong to one connection and are not passed to the other.
 const OWN = new Set(['connection', 'keep-alive']);
 
-// An object and no list, with which node would make a request without a body a chunked one.
+// The headers are an object and not a list, because with a list node would send a request without a
+// body as chunked.
 function forwarded(rawHeaders) {
     const kept = {};
     for (let i = 0; i < rawHeaders.length; i += 2) {
@@ -33,7 +34,7 @@ function gzipOf(codings) {
     return /\bgzip\b/.test(codings) ? 'gzip' : 'identity';
 }
 
-// Collects the message of a stream as it passes by.
+// Collects the message of a stream while it passes.
 function collect(stream) {
     const json = stream.headers['content-type']?.includes('json');
     const most = json ? JSON_BYTES : OTHER_BYTES;
@@ -54,7 +55,8 @@ function collect(stream) {
     };
 }
 
-// {url, close()} of a proxy that records into the folder TRAFFIC; without it the daemon's own.
+// Returns {url, close()} of a proxy that records into the folder TRAFFIC; without that variable,
+// the daemon's own address.
 export async function recorded(url) {
     const folder = process.env.TRAFFIC;
     if (folder === undefined) {
@@ -79,7 +81,7 @@ export async function recorded(url) {
             answered.writeHead(upstream.statusCode, forwarded(upstream.rawHeaders));
             upstream.pipe(answered);
         });
-        // Where the daemon says nothing, its client hears nothing.
+        // If the daemon closes its connection without an answer, the proxy does so, too.
         onward.on('error', () => asked.socket.destroy());
         answered.on('close', () => onward.destroy());
         asked.pipe(onward);

@@ -1,4 +1,4 @@
-// The page in Chromium against the real daemon: what it shows is what the API says.
+// The page in Chromium with the real daemon: it must show what the API answers.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -159,7 +159,7 @@ test('files are uploaded by dropping them, one after another', async (t) => {
 
 test('polygons are drawn with their edges and without diagonals', async (t) => {
     const { daemon, mesh, page } = await openMesh(t, SQUARE);
-    // A second square beside it, so that an edge lies inside of the surface.
+    // A second square beside the first one is added, so that an edge lies inside the surface.
     const { id: other } = await post(daemon, '', {
         name: 'two squares',
         vertices: [[-1, -1, 0], [0, -1, 0], [1, -1, 0], [1, 1, 0], [0, 1, 0], [-1, 1, 0]],
@@ -361,7 +361,7 @@ test('a face is split from its middle, or between two corners', async (t) => {
     await waitForFrame(page, { mesh, revision: 3 });
     const { counts } = await checkStatistics(context);
     assert.deepEqual([counts.vertices, counts.edges, counts.faces], [5, 8, 4]);
-    // The page fetched the new mesh: its new vertex can be picked where it is.
+    // The page has fetched the new mesh, so its new vertex can be picked where it is.
     await setMode(page, 'Vertex');
     const [made] = (await getAll(daemon, mesh, 'vertices')).slice(-1);
     await click(page, (await projector(page, daemon, mesh)).at([made.id]));
@@ -412,7 +412,7 @@ test('an edit meant for an older revision is refused, and the page catches up', 
     const [face] = (await getAll(daemon, mesh, 'faces')).filter((f) => place.isSeen(f));
     await click(page, place.at(face.vertices));
     await waitForFrame(page, { selection: `face:${face.id}` });
-    // Another client is faster while the page's edit is on its way.
+    // Another client's edit comes first, while the page's edit is on its way.
     await page.route('**/edits', async (route) => {
         await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: face.id });
         await route.continue();
@@ -455,7 +455,7 @@ test('a mesh that is gone and a server that is gone are said', async (t) => {
     await daemon.stop();
     await page.getByRole('button', { name: 'Refresh' }).click();
     await expectToast(page, /cannot be reached/);
-    // What was shown is still there.
+    // The mesh must still be shown.
     assert.ok((await readCanvas(page)).countOf(isSurface) > 1000);
 });
 

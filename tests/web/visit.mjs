@@ -1,11 +1,11 @@
-// visit.mjs - the page opened by a test of a file, with a daemon behind it.
+// visit.mjs - opens the page for the tests of a file, with a daemon behind it.
 
 import { after } from 'node:test';
 
 import { launch, openPageIn, waitForFrame } from './browser.mjs';
 import { post, startDaemon } from './daemon.mjs';
 
-// One browser for all tests of a file, launched by the first that opens a page.
+// The browser of all tests in a file, started by the first test that opens a page.
 let browser;
 after(async () => (await browser)?.close());
 
@@ -14,7 +14,7 @@ export async function openPage(t, daemon, options) {
     return openPageIn(t, await browser, daemon, options);
 }
 
-// A daemon with one mesh, and the page that shows it.
+// Starts a daemon with one mesh, and opens the page that shows it.
 export async function openMesh(t, document, options) {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', document);

@@ -1,4 +1,4 @@
-// The list of revisions, and what takes long: how far it is, how it is given up, how it ends.
+// The list of revisions; and long work: its progress, how it is cancelled, how it ends.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -48,7 +48,7 @@ test('the history says what was done, and a click goes back to a revision', asyn
         [6, 'undo of edge_split', false, false],
         [5, 'undo of vertex_move', false, false],
     ]);
-    // The keyboard is not thrown back to the top of the page.
+    // The focus must not go back to the top of the page.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'history');
     await page.getByRole('button', { name: 'Redo' }).click();
     await waitForFrame(page, { revision: 7 });
@@ -74,7 +74,8 @@ test('a long history is read on by a button', async (t) => {
     assert.deepEqual(revisions, Array.from({ length: 26 }, (_, i) => 26 - i));
 });
 
-// Until it is let go the page hears that its job runs. {cancelled, release()}.
+// Makes the page believe that its job still runs, until the test releases it: {cancelled,
+// release()}.
 async function keepRunning(page) {
     let isHeld = true;
     await page.route('**/v1/jobs/*', async (route) => {
@@ -110,7 +111,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
     await waitForFrame(page, { mesh, revision: 2 });
     assert.ok(await page.locator('#work').isHidden());
     assert.equal((await get(daemon, `/${mesh}`)).revision, 2);
-    // A small one asks for no job.
+    // A small edit must not request a job.
     const small = page.waitForRequest(isEdit);
     await page.locator('#operation').selectOption('face_poke');
     await page.locator('#param-face').fill('0');
@@ -120,7 +121,7 @@ test('an operation on the whole mesh shows how far it is, and how it ended', asy
 });
 
 test('an operation that is refused as a job says why', async (t) => {
-    // Where the form is filled slowly the page tries the edit before it is sent.
+    // If the form is filled slowly, the page tries the edit before it is sent, and may be refused.
     const { page } = await openMesh(t, CUBE, { allowed: [/status of 400/] });
     await page.locator('#operation').selectOption('plane_split');
     await fillVector(page, 'point', [0, 0, 0]);
@@ -130,7 +131,8 @@ test('an operation that is refused as a job says why', async (t) => {
     await waitForFrame(page, { revision: 1 });
 });
 
-// A job that goes on until it is cancelled: the daemon's own would have ended long before.
+// Makes a job that runs until it is cancelled, because the daemon's own job would have ended long
+// before.
 async function fakeJob(page, pattern) {
     const job = { id: 'fake', state: 'running', phase: 'pairing', progress: 0.7, finished: null };
     let body = job;
@@ -186,7 +188,7 @@ test('an upload is given up while it is sent and while it is read', async (t) =>
     await expectToast(page, /Cancelled/);
     assert.ok(await page.locator('#uploading').isHidden());
     assert.deepEqual((await get(daemon, '')).items, []);
-    // The daemon's own job, to its end.
+    // The daemon's own job is awaited.
     await page.unrouteAll();
     await upload('whole.off');
     await waitForTold(page, /Read whole\.off.*3 vertices, 1 face/);

@@ -1,5 +1,5 @@
-// json.mjs - node's side of the JSON rows, spoken to as side.h says: the document is a string in
-// memory before it is parsed, and a string again when it has been printed.
+// json.mjs - the program of the JSON rows that runs in node; side.h describes its input and output.
+// The document is a string in memory before it is parsed, and again a string after it is written.
 
 import { readFileSync } from 'node:fs';
 import { createInterface } from 'node:readline';
@@ -25,7 +25,7 @@ const rows = {
     },
 };
 
-// As bench_counts of side.h, of 64 bits.
+// Combines counts into 64 bits as bench_counts of side.h does.
 const counts = ({ vertices, faces }) =>
     [0, vertices.length, 0, faces.length].reduce(
         (hash, count) => BigInt.asUintN(64, hash * 0x9e3779b97f4a7c15n + BigInt(count)),
