@@ -1,9 +1,9 @@
-# hedge - everything is done from here; `make help` lists the targets.
+# hedge - builds and checks everything; `make help` lists the targets.
 #
-# A configuration is a build folder: release in build/, asan, tsan, coverage and fuzz in build/NAME.
-# Sources are found by pattern, so a new file needs no line here. What a target needs to be installed
-# is a line of a table below, and .ci/deps sees to it first; pkg-config therefore runs inside recipes
-# only.
+# A configuration has a build folder: release has build/; asan, tsan, coverage and fuzz have
+# build/NAME. Sources are found by pattern, so a new file needs no line here. What must be installed
+# for a target is in a table below, and .ci/deps installs it first; therefore pkg-config is called
+# only inside recipes.
 
 CONFIG ?= release
 BUILD  := $(if $(filter release,$(CONFIG)),build,build/$(CONFIG))
@@ -15,31 +15,31 @@ SHELL  := /bin/sh
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
-# Runs as many jobs as there are cores, unless the caller chose a number.
+# make runs as many jobs as there are cores, unless the caller has chosen a number.
 ifeq ($(MAKELEVEL)$(filter -j% --jobserver%,$(MAKEFLAGS)),0)
 MAKEFLAGS += -j$(shell nproc)
 endif
 
-# V=1 shows whole commands.
+# V=1 prints whole commands.
 Q        := $(if $(V),,@)
 CC       := $(if $(filter fuzz,$(CONFIG)),clang,gcc)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes \
             -Wmissing-prototypes -Wswitch-enum -Wvla $(WERROR)
 CPPFLAGS := -D_DEFAULT_SOURCE -D_POSIX_C_SOURCE=200809L -Icore -I. -Itests
-# A sanitizer's report needs line tables only.
+# The report of a sanitizer shows line numbers, for which line tables suffice.
 DEBUG    ?= $(if $(filter asan tsan fuzz,$(CONFIG)),-g1,-g)
 CFLAGS   := -std=c11 -pthread $(DEBUG) $(WARNINGS) $(EXTRA_CFLAGS)
 LDFLAGS  := -pthread -Wl,--as-needed $(EXTRA_LDFLAGS)
-# Evaluated lazily, when a program is linked: .ci/deps has run by then.
+# This is expanded only when a program is linked, after .ci/deps has run.
 DAEMON_LIBS = $(shell pkg-config --libs libmicrohttpd libcjson zlib libzstd sqlite3 nettle gnutls) -lmeshoptimizer -lm
 TEST_LIBS   = $(shell pkg-config --libs libcurl cmocka)
-# Some two hundred programs hold the whole of the daemon each, in every configuration: lld needs half of
-# the time. The daemon is linked by the compiler's own.
+# Some two hundred test programs each contain the whole daemon, in every configuration: lld links
+# them in half of the time. The daemon is linked by the compiler's default linker.
 TEST_LD    := -fuse-ld=lld
 
-# Asserts stay in the release: a daemon that stops is better than one that overwrites a mesh.
-# What -O3 inlines makes gcc guess wrongly about values set through a pointer; lint's analyzer looks
-# for reads of uninitialized memory instead.
+# Asserts stay in the release, because a daemon that stops is better than one that overwrites a
+# mesh. What -O3 inlines makes gcc warn wrongly about values that are set through a pointer;
+# instead, lint's analyzer looks for reads of uninitialized memory.
 ifeq ($(CONFIG),release)
 CFLAGS  += -O3 -fno-math-errno -fstack-protector-strong -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 \
            -Wno-maybe-uninitialized
@@ -57,7 +57,7 @@ CFLAGS  += -O0 --coverage -fprofile-update=atomic
 LDFLAGS += --coverage
 else ifeq ($(CONFIG),fuzz)
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-# clang has other warnings than gcc, to which the sources keep.
+# Only gcc's warnings are used: clang has other ones, and the sources are written for gcc's.
 CFLAGS  += -O1 $(SANITIZE) -fsanitize=fuzzer-no-link -w
 LDFLAGS += $(SANITIZE) -fsanitize=fuzzer
 else
@@ -74,7 +74,7 @@ MAIN_C     := server/boot/main.c server/version.c
 SERVER_C   := $(sort $(filter-out $(MAIN_C),$(shell find server -name '*.c')))
 SUITES     := unit model api e2e
 PROGRAM_C  := $(sort $(foreach suite,$(SUITES),$(wildcard tests/$(suite)/test_*.c)))
-# Sources of the random tests, which the threaded tests do not need.
+# The sources of the random tests; tests with threads do not need them.
 ORACLE_C   := $(sort $(wildcard tests/oracle/*.c tests/unit/scenarios_*.c) \
                 $(filter-out tests/model/test_% $(patsubst %,tests/model/%.c,corpus marks parts shapes), \
                     $(wildcard tests/model/*.c)))
@@ -85,8 +85,8 @@ OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
 BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
-# What all targets are linked with beside the libraries below the server; libFuzzer brings its own main
-# program.
+# The sources that all fuzz targets are linked with, besides the libraries; libFuzzer has a main
+# program of its own.
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
                 $(wildcard tests/fuzz/*.c)) tests/codings.c tests/json_tokens.c tests/pace.c tests/traffic.c \
                 tests/api/request.c server/http/syntax/http_fault.c server/http/syntax/http_syntax.c)
@@ -114,8 +114,8 @@ STAMPS     := build/.stamps
         screenshot \
         install uninstall clean ALWAYS
 
-# TESTS narrows: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`,
-# `make test TESTS=tests/web/rows.test.mjs`.
+# TESTS selects tests: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`, `make test
+# TESTS=tests/web/rows.test.mjs`.
 TESTS   ?= $(SUITES) transport fuzz web install soak hostile durable lint
 CHOSEN   = $(filter $(foreach t,$(TESTS),$(BUILD)/tests/$(t)/test_% $(BUILD)/$(t:.c=)),$(PROGRAMS))
 WITH_WEB = $(filter web tests/web/%,$(TESTS))
@@ -126,17 +126,18 @@ WITH_HOSTILE = $(filter hostile,$(TESTS))
 WITH_DURABLE = $(filter durable,$(TESTS))
 WITH_LINT = $(filter lint,$(TESTS))
 WITH_TRANSPORT = $(filter transport,$(TESTS))
-# TRANSPORT=tls or unix has the daemons of e2e reached like that; these programs always are.
+# With TRANSPORT=tls or unix, the tests of e2e reach their daemons over TLS or a Unix socket; the
+# programs below do so in every run.
 export TRANSPORT
 TRANSPORTED = $(addprefix $(BUILD)/tests/e2e/test_,vertical history tokens limits metrics proxy service)
-# A narrower choice of tests does not request every route.
+# A smaller selection of tests does not request every route, so its traffic is not compared.
 WITH_TRAFFIC = $(and $(filter e2e,$(TESTS)),$(filter web,$(TESTS)))
 WITH_DAEMON = $(filter e2e transport web install soak hostile durable tests/e2e/% tests/web/%,$(TESTS))
 
 # --- what must be installed ----------------------------------------------------------------
-# The sets of .ci/deps that each target needs. A target asks for all of them in one call before
-# anything else is done, so that a reader who is not root sees one line to install, and apt-get never
-# runs twice at once. A target that is the name of a file needs what compiles it.
+# The sets of packages (.ci/deps) that each target needs. All sets of a target are requested in one
+# call before anything else is done, so that a user who is not root sees one line to install, and
+# apt-get never runs twice at once. A target that is a file needs what compiles it.
 
 NEEDS.all          := build
 NEEDS.run          := build web
@@ -200,9 +201,10 @@ run: $(HEDGED) page ## build the daemon and its page, then serve sample meshes
 
 # --- compiling -----------------------------------------------------------------------------
 
-# A test's own lines run a few times: to optimize them takes longer than it saves. The oracle and the
-# models beside it run millions of times. Without the fortified functions, which want optimization, and
-# would call libc's __recv_chk past the recv() of server/http/http_recv.c that test_srv_syntax tries.
+# The code of a test runs only a few times, so optimizing it takes longer than it saves; the oracle
+# and the models run millions of times and are optimized. The fortified functions are off, because
+# they require optimization, and because libc's __recv_chk would bypass the recv() of
+# server/http/http_recv.c, which test_srv_syntax tests.
 PLAIN := $(patsubst %,$(BUILD)/obj/tests/%/test_%.o,unit api e2e)
 $(PLAIN): private CFLAGS += -O0 $(if $(filter release,$(CONFIG)),-g1 -U_FORTIFY_SOURCE)
 
@@ -211,8 +213,8 @@ $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@echo "CC $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-# Made anew each time, so that the object of a deleted source does not stay inside; appended to, since
-# two folders may hold sources of one name.
+# The archive is made anew each time, so that the object of a deleted source does not stay in it;
+# objects are appended, because two folders may have sources of one name.
 $(BUILD)/libkernel.a: $(call object,$(KERNEL_C))
 $(BUILD)/libstore.a: $(call object,$(STORE_C))
 $(BUILD)/libapi.a: $(call object,$(API_C))
@@ -225,7 +227,7 @@ $(BUILD)/%.a:
 	@echo "AR $@"
 	$(Q)ar qcs $@ $^
 
-# Which commit this is, in one object of the daemon's own, so that a commit costs one link.
+# The commit is compiled into one object of the daemon, so that a new commit costs only linking.
 COMMIT := $(shell git describe --always --exclude '*' --abbrev=12 --dirty=+ 2>/dev/null)
 $(BUILD)/commit: ALWAYS
 	@mkdir -p $(@D)
@@ -238,8 +240,8 @@ $(HEDGED): $(call object,$(MAIN_C)) $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
-# A test that looks at the calls of a room below has the linker give it these calls. lld would give it
-# those within one source as well.
+# A test that must see the calls of a lower room has the linker redirect these calls to functions of
+# the test. This needs the linker bfd, because lld would also redirect calls within one source.
 wrap = -fuse-ld=bfd $(patsubst %,-Wl$(comma)--wrap=%,$(1))
 comma := ,
 $(BUILD)/tests/api/test_writes: private LDFLAGS += $(call wrap,st_write_begin st_write_commit st_write_abort st_write_remove)
@@ -320,9 +322,9 @@ ASAN_TESTS = $(filter-out transport web tests/web/% install soak hostile durable
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
 	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" test
 
-# The kernel has no threads, and most of tests/api does one thing after the other, jobs included: only
-# what begins threads or reads the past of a stream, which a thread prepares, and the daemon itself are
-# worth the time here.
+# The kernel has no threads, and most of tests/api does one thing after another, jobs included. So
+# under TSan only these run: tests that start threads or read the past of a stream, which a thread
+# prepares, and the tests of the daemon itself.
 THREADED_C  = $(shell grep -lE 'pthread_create|tests/api/stream.h' tests/api/test_*.c) \
               $(wildcard tests/unit/test_srv_*.c)
 TSAN_TESTS  = e2e $(THREADED_C)
@@ -335,8 +337,8 @@ coverage: | $(INSTALLED) ## line and branch coverage of the C tests
 	gcovr --root . --filter core/ --filter api/ --filter server/ --exclude-throw-branches \
 	    --print-summary --txt build/coverage/report.txt build/coverage/obj
 
-# CHECK_FLAGS="--files 100000 --only ply" for a longer look; SEED=... repeats a run. PEERS=blender has
-# Blender alone read what is written, which is no part of .ci/run.
+# CHECK_FLAGS="--files 100000 --only ply" checks more files; SEED=... repeats a run. With
+# PEERS=blender only Blender reads the written files; .ci/run does not do that.
 CHECK_PEERS = $(if $(filter blender,$(PEERS)),,$(BUILD)/tests/crosscheck/peers)
 crosscheck: $(HEDGED) $(CHECK_PEERS) ## readers and writers beside assimp, OpenMesh, CGAL and the corpus' reader; PEERS=blender: beside Blender
 	@python3 -B tests/crosscheck/run.py --hedged $(abspath $(HEDGED)) \
@@ -347,7 +349,7 @@ $(BUILD)/tests/crosscheck/peers: tests/crosscheck/peers.cc | $(INSTALLED)
 	@echo "CXX $<"
 	$(Q)g++ -std=c++17 -O0 -w -o $@ $< -lOpenMeshCore -lgmp -lmpfr
 
-# The long versions of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another.
+# The long version of what .ci/run does once; `make fuzz FUZZ_SECONDS=1800` is another one.
 ROUNDS ?= 10
 proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, in turn a tenth of that under ASan; 8 writers at once; a copy and a page beside them; as many minutes of soak
 	+$(MAKE) $(HEDGED) page $(BUILD)/tests/model/test_model $(BUILD)/tests/e2e/test_writers \
@@ -355,19 +357,20 @@ proof: | $(INSTALLED) ## ROUNDS=10 of random edits from every start: a million, 
 	+$(MAKE) CONFIG=asan build/asan/tests/model/test_model
 	sh .ci/proof $(ROUNDS)
 
-# With a load below 1 the machine is left to others for the rest of the time.
+# With LOAD below 1 the test pauses, and leaves the machine to other programs for that part of the
+# time.
 MINUTES ?= 60
 LOAD    ?= 1
 soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is the daemon's memory flat? build/soak.csv and .svg
 	@HEDGED=$(abspath $(HEDGED)) node tests/soak/soak.mjs --minutes $(MINUTES) --load $(LOAD)
 
-# HOSTILE_FLAGS="--only fan" for the rows whose name has that, "--parts operations,starving" for parts
+# HOSTILE_FLAGS="--only fan" selects rows by their name, "--parts operations,starving" selects parts
 # of run.py's list; SEED=... repeats a run.
 hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what each may hold of the daemon, and what it held
 	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
 	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)
 
-# Preloaded into a daemon, whatever flags that was compiled with.
+# This library is preloaded into a daemon, with whatever flags that daemon was compiled.
 $(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "LD $@"
@@ -378,7 +381,8 @@ $(DAMAGE): $(call object,$(DAMAGE_C)) $(BUILD)/libsupport.a $(LIBRARIES) | $(INS
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS) $(TEST_LIBS)
 
-# ROUNDS of another target's default are not ours.
+# A default for ROUNDS in this file belongs to another target, so only a value from the caller is
+# passed on.
 GIVEN_ROUNDS = $(if $(filter file default,$(origin ROUNDS)),,--rounds $(ROUNDS))
 PROOF ?= kill
 durable: $(HEDGED) $(FAULTS) $(DAMAGE) | $(INSTALLED) ## PROOF=kill ROUNDS= SEED=: what was acknowledged is there, whatever the disk did; tests/durable/run.py lists the proofs; EVERY=101: not every place of cut and flip
@@ -386,7 +390,8 @@ durable: $(HEDGED) $(FAULTS) $(DAMAGE) | $(INSTALLED) ## PROOF=kill ROUNDS= SEED
 	    --damage $(abspath $(DAMAGE)) --proof $(PROOF) $(GIVEN_ROUNDS) $(if $(EVERY),--every $(EVERY)) \
 	    $(if $(SEED),--seed $(SEED)) --work build/durable
 
-# `make fuzz FUZZ_SECONDS=1800` is what a release has behind it; nice, for it takes two cores.
+# Before a release, `make fuzz FUZZ_SECONDS=1800` is run; it runs with low priority, because it uses
+# two cores.
 FUZZ_SECONDS ?= 20
 fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON document, edits, stored meshes, requests and HTTP
 	+$(MAKE) CONFIG=fuzz targets
@@ -395,9 +400,10 @@ fuzz: | $(INSTALLED) ## FUZZ_SECONDS=20 of libFuzzer on each reader, the JSON do
 targets: $(FUZZERS)
 
 # --- the kernel beside its peers -------------------------------------------------------------
-# BENCH narrows: `make bench BENCH=build,onering`; RUNS=3 and SCALE=0.1 make it quicker. The peers are
-# compiled for this alone, as their users would: optimized as we are, but without our hardening and
-# with NDEBUG, which CGAL's checks want. Neither side is tuned to the machine.
+# BENCH selects parts: `make bench BENCH=build,onering`; RUNS=3 and SCALE=0.1 make it quicker. The
+# peers are other mesh libraries, compiled only for the benchmark and as their users would: optimized
+# as our program is, but without our hardening, and with NDEBUG, which turns CGAL's checks off.
+# Neither side is tuned to the machine.
 
 BENCH      ?=
 RUNS       ?= 5
@@ -468,8 +474,8 @@ bench-flood: $(HEDGED) $(BUILD)/tests/bench/http/paced | $(INSTALLED) ## one tok
 bench-large: $(HEDGED) | $(INSTALLED) ## a million quads through the daemon: times and memory
 	@sh tests/bench/large.sh $(HEDGED)
 
-# Each benchmark that REPORTS names runs alone, and what it printed is written down in
-# tests/bench/README.md. RUNS, BENCH, SCALE, MINUTES and LOAD reach it.
+# Runs each benchmark in REPORTS by itself, and writes what it printed into tests/bench/README.md.
+# RUNS, BENCH, SCALE, MINUTES and LOAD are passed on to the benchmarks.
 REPORTS  ?= bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space soak
 REPORTED  = $(strip make $(1) $(foreach v,BENCH RUNS SCALE MINUTES LOAD,$(if $(filter command%,$(origin $(v))),$(v)=$($(v)))))
 report: | $(INSTALLED) ## runs REPORTS="bench soak" and writes what they print into tests/bench/README.md
@@ -485,8 +491,8 @@ $(patsubst %.c,$(BUILD)/%,$(HTTP_C)): $(BUILD)/%: $(BUILD)/obj/%.o
 
 # --- style ---------------------------------------------------------------------------------
 
-# What reads the OpenAPI document has a lock file of its own, so that a build of the page need not
-# fetch it.
+# The programs that check the OpenAPI document have a lock file of their own, so that a build of the
+# page does not download them.
 $(STAMPS)/openapi: .ci/openapi/package.json .ci/openapi/package-lock.json | $(INSTALLED)
 	@mkdir -p build/openapi
 	cp .ci/openapi/package.json .ci/openapi/package-lock.json build/openapi
@@ -507,14 +513,15 @@ screenshot: $(HEDGED) page | $(INSTALLED) ## the README's picture, web/screensho
 container: | $(INSTALLED) ## build the image with buildah and try it (root)
 	@sh tests/container.sh
 
-# TARGETS="lint bench-http" tries these alone. The table in README.md is the list of all.
+# TARGETS="lint bench-http" selects commands; the table in README.md lists all of them.
 fresh: | $(INSTALLED) ## each command of the README's table alone, in a bare Debian (root); TARGETS="lint fuzz" for some
 	@sh tests/fresh.sh
 
 $(BUILD)/hedged.8: $(HEDGED) server/hedged.8.in .ci/man api/metric/metric_rows.h
 	$(Q)sh .ci/man $(HEDGED) server/hedged.8.in api/metric/metric_rows.h >$@
 
-# The unit goes where systemd looks, which for a PREFIX of one's own is UNITS=/etc/systemd/system.
+# The unit is put where systemd looks for it; with a PREFIX of one's own, UNITS=/etc/systemd/system
+# says where that is.
 install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	install -D -m 755 $(HEDGED) $(DESTDIR)$(PREFIX)/bin/hedged
 	install -D -m 644 $(BUILD)/hedged.8 $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8
@@ -527,7 +534,7 @@ install: $(HEDGED) $(BUILD)/hedged.8 page ## to DESTDIR and PREFIX (/usr/local)
 	    install -D -m 644 "$$file" "$(DESTDIR)$(PREFIX)/share/hedge/web/$${file#$(PAGE)/}" || exit 1; \
 	done
 
-# Meshes and settings are kept.
+# Stored meshes and settings are kept.
 uninstall: ## what install put there, with its DESTDIR and PREFIX; stop and disable the service first
 	rm -f $(DESTDIR)$(PREFIX)/bin/hedged $(DESTDIR)$(PREFIX)/share/man/man8/hedged.8 \
 	    $(DESTDIR)$(UNITS)/hedged.service

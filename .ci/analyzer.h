@@ -1,7 +1,7 @@
-/* analyzer.h - included first by .ci/lint-tidy, never by the compiler. The analyzer sees one source
- * at a time, so it cannot know that a refusal returns the status it was given, never HE_OK, and
- * api_in_fail false. Sources that ask for _GNU_SOURCE do so before this includes the first header.
- */
+/* analyzer.h - included first by .ci/lint-tidy, and never by the compiler. The analyzer sees one
+ * source at a time, so it cannot know that a function which refuses returns the status that it was
+ * given and never HE_OK, and that api_in_fail returns false; this header tells it. Sources that
+ * need _GNU_SOURCE define it before this includes the first header. */
 #define _GNU_SOURCE
 #include "api/json/json_in.h"
 #include "base/status.h"

@@ -1,5 +1,5 @@
-// plain.mjs FILE - does an OpenAPI document keep to what generators of clients understand? Prints the
-// place of each fault; the exit is 1 where there is one.
+// plain.mjs FILE - checks that an OpenAPI document uses only what generators of clients understand.
+// Prints the place of each fault; the exit status is 1 if there is one.
 
 import { readFileSync } from 'node:fs';
 
