@@ -1,5 +1,5 @@
-// address.js - writes what is shown into the page's address, and shows what an address says; see
-// link.js.
+// address.js - writes the open mesh, the selection and the camera into the page's address, and
+// shows what an address says; see link.js.
 
 import { formatLink, parseLink } from './link.js';
 

@@ -7,7 +7,7 @@ const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const translation = ([x, y, z]) => [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
 const scaling = ([x, y, z]) => [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1];
 
-// The map at the right is applied first.
+// Returns the product of two matrices: the map of the right one is applied first.
 function multiply(a, b) {
     return IDENTITY.map((_, at) => {
         const [row, column] = [4 * Math.floor(at / 4), at % 4];
@@ -23,7 +23,7 @@ function turnOf(degrees) {
     return exact ?? [Math.cos(angle), Math.sin(angle)];
 }
 
-// A rotation around one axis, 0 to 2, counter-clockwise seen from its tip.
+// Returns the rotation around one axis, 0 to 2, counter-clockwise seen from the tip of the axis.
 function rotation(axis, degrees) {
     const [cosine, sine] = turnOf(degrees);
     const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -35,8 +35,8 @@ function rotation(axis, degrees) {
     return matrix;
 }
 
-// Scales and then rotates about a point (around x, y and z one after another, in degrees), then
-// moves.
+// Returns the map that first scales and then rotates about the point `about` (around x, y and z one
+// after another, in degrees), and then moves.
 export function compose({ scale, rotate, translate, about }) {
     const there = about.map((value) => -value);
     return [

@@ -53,7 +53,7 @@ function problemOf(status, text) {
             return new Problem({ ...problem, status });
         }
     } catch {
-        // Not JSON: a gateway answered.
+        // The answer is no JSON, so it comes from a gateway before the server.
     }
     const detail = `The server answered with status ${status}.`;
     return new Problem({ status, title: 'Request failed', detail });
@@ -233,7 +233,7 @@ async function readArrays(path, onProgress, signal) {
 // Reads the mesh from coarse to fine; calls `onBytes` with the bytes as they arrive, see
 // progressive.js.
 export async function getProgressive(mesh, onBytes, signal) {
-    // As bytes, however long it takes to make them: not as a job.
+    // The server must answer with bytes, however long it takes to make them, and not with a job.
     const headers = { Prefer: 'wait=30' };
     const answer = await request(`${meshPath(mesh)}/progressive`, { signal, headers });
     const reader = answer.body.getReader();
@@ -375,7 +375,7 @@ function formOf(files) {
     return form;
 }
 
-// Resolves for a 401, too.
+// Sends a form or a file; resolves for a 401, too, so that upload() can ask for a token.
 function send({ file, beside }, onProgress, work, repairs, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;

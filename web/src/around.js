@@ -8,7 +8,7 @@
 
 import { formatMeasure } from './dom.js';
 
-// Maximum of arrows for one selection.
+// The largest number of arrows that are drawn for one selection.
 const MOST = 64;
 
 const subtract = (a, b) => a.map((value, i) => value - b[i]);
@@ -24,7 +24,8 @@ function cross(a, b) {
 
 // Returns the angle between two vectors, in degrees.
 export function angleBetween(a, b) {
-    // Scaled to a longest component of 1, since products could overflow.
+    // Both vectors are scaled so that their longest component is 1, because products could
+    // overflow.
     const scaled = [a, b].map((v) => v.map((value) => value / (Math.max(...v.map(Math.abs)) || 1)));
     return (Math.atan2(length(cross(...scaled)), dot(...scaled)) * 180) / Math.PI;
 }
@@ -38,7 +39,7 @@ export function foldAngle(left, right, direction) {
 
 const degrees = (value) => `${formatMeasure(value)}\u00b0`;
 
-// A question fails if the mesh has changed meanwhile.
+// Returns whether a question was answered; it fails if the mesh has changed meanwhile.
 const lives = (answer) => answer !== undefined && !('status' in answer);
 
 async function ids(ask, relations, of) {

@@ -10,10 +10,11 @@
 
 import { normalOfFace, pointAt } from './geometry.js';
 
-// Positions along the edge, as parts of its length.
+// Where an arrow begins and ends on its edge, as parts of the edge's length.
 const START = 0.16;
 const END = 0.84;
-// Widths, as parts of its length too, or of less if the face is thin.
+// The distance of an arrow from its edge, and its widths, as parts of the edge's length; they are
+// smaller if the face is thin.
 const OFFSET = 0.1;
 const HEAD = 0.15;
 const BODY_WIDTH = 0.022;

@@ -23,12 +23,12 @@ export function showName({ mesh, summary }) {
     );
 }
 
-// May the open mesh be edited now?
+// Returns whether the open mesh may be edited now.
 export function isReady({ mesh, busy, connection }, mayEdit) {
     return mayEdit && mesh !== null && !busy && connection !== 'gone';
 }
 
-// `ready`: the mesh may be edited now; `isDrawn`: there is a view.
+// Shows the state of the session. `ready`: the mesh may be edited now; `isDrawn`: there is a view.
 export function showState(session, ready, isDrawn) {
     const { mesh, split } = session;
     const steps = session.shown?.history;

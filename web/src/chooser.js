@@ -79,8 +79,8 @@ export class Chooser {
     }
 }
 
-// Operations whose name contains the text come before those that only mention it, and the previous
-// operation comes before the first of them.
+// Returns the operation to select: operations whose name contains the text come before those that
+// only mention it, and the previous operation comes before the first of them.
 function bestOf(operations, text, words, before) {
     const names = operations.map(({ name }) => name);
     const named =

@@ -69,7 +69,7 @@ export class Flag {
     }
 }
 
-// A flag that may be left out.
+// A choice of yes or no that may be left out.
 export class Whether extends Choice {
     constructor() {
         super([['', 'as it is'], ['yes', 'yes'], ['no', 'no']], '');
@@ -180,7 +180,8 @@ export class Numeral {
     constructor(name, placeholder, step = 'any') {
         this.#name = name;
         this.node = make('input', { type: 'number', step, placeholder });
-        // Otherwise scrolling with the wheel over the field would change it.
+        // The focus is given up, because otherwise scrolling with the wheel over the field would
+        // change the number.
         this.node.addEventListener('wheel', () => this.node.blur(), { passive: true });
     }
 

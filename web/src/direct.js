@@ -75,7 +75,7 @@ export class Direct {
         }
     }
 
-    // The mesh has changed: continues with the present selection.
+    // Called when the mesh has changed: goes on with the present selection.
     refresh() {
         const gesture = this.#gesture && this.#acts.begin(this.#tool);
         if (gesture === null) {

@@ -195,7 +195,8 @@ function show({ info, paths, components }) {
             make('h2', {}, 'Schemas'),
             ...schemas.map(schemaSection),
         );
-    // The browser looked for the anchor before it existed.
+    // The browser looked for the anchor of the address before the manual was built, so this scrolls
+    // there.
     document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 

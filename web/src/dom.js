@@ -6,8 +6,8 @@ export function byId(id) {
     return document.getElementById(id);
 }
 
-// make('button', {className: 'link', 'aria-label': 'x'}, 'text', child, ...). Names with a dash are
-// attributes, others are properties.
+// Makes an element, as in make('button', {className: 'link', 'aria-label': 'x'}, 'text', child,
+// ...). Names with a dash are attributes, others are properties.
 export function make(tag, properties = {}, ...children) {
     const element = document.createElement(tag);
     for (const [name, value] of Object.entries(properties)) {
@@ -46,14 +46,14 @@ export function prose(text) {
 
 const counts = new Intl.NumberFormat('en');
 
-// Formats as 1,234,567.
+// Formats a count as in 1,234,567.
 export function formatCount(value) {
     return counts.format(value);
 }
 
 const about = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
-// Formats as 12,345 or 1.2M, where space is short.
+// Formats a count as in 12,345 or 1.2M, where space is short.
 export function formatAbout(value) {
     return value < 100000 ? formatCount(value) : about.format(value);
 }

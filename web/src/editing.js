@@ -20,7 +20,7 @@ const MOST_MARKED = 1000;
 // view.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
-// What the user has to click, one or several.
+// The words for what the user has to click, for one element and for several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
@@ -212,7 +212,7 @@ export class Editing {
         }
     }
 
-    // No field waits any more.
+    // Ends the waiting of a field for a click.
     stopPicking() {
         this.#tools.disarm();
     }

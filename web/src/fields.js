@@ -22,7 +22,7 @@ export function isPlace({ type }) {
     return PLACES.includes(type);
 }
 
-// Does it take several elements?
+// Returns whether the parameter takes several elements.
 export function isList({ plural, type }) {
     return plural !== undefined || type in PLURALS;
 }
@@ -78,7 +78,8 @@ export function marksOf({ type, required, min, max, exclusive }) {
     return marks.join(', ');
 }
 
-// Does the parameter have a value, or need none? One of a group is enough.
+// Returns whether every parameter has a value or needs none. Of a group of alternatives one value
+// is enough.
 export function isComplete(fields) {
     return fields.every(
         (field) =>

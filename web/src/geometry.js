@@ -122,7 +122,7 @@ function hasIsolated(vertices) {
     return false;
 }
 
-// Is this the id of a live vertex?
+// Returns whether this is the id of a live vertex.
 export function hasVertex({ vertices }, id) {
     return 4 * id < vertices.length && vertices[4 * id + 3] !== 0;
 }
@@ -132,7 +132,7 @@ export function pointAt({ vertices }, id) {
     return Array.from(vertices.subarray(4 * id, 4 * id + 3));
 }
 
-// Two accessors: the face of a triangle, and whether its side i is an edge of the polygon.
+// Return the face of a triangle, and whether its side i is an edge of the polygon.
 export function faceOf(triangles, triangle) {
     return triangles[4 * triangle + 3] & FACE_MASK;
 }

@@ -16,7 +16,7 @@ const INSET = [0.01, 0.99];
 // viewer, and dragging upwards follows it.
 const LEAST_ACROSS = 0.3;
 
-// At most this many lines are shown.
+// The largest number of lines that preview an edit.
 const MOST_LINES = 20000;
 
 const add = (a, b, factor = 1) => a.map((value, i) => value + factor * b[i]);
@@ -66,7 +66,7 @@ function endsOf({ kind, id, element }) {
 
 // Returns the polygon edges of all triangles at some vertices.
 function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
-    // fast lookup, since millions of triangles are checked
+    // an array gives fast lookup, because millions of triangles are checked
     const wanted = new Uint8Array(vertexCount);
     vertices.forEach((id) => {
         wanted[id] = 1;
@@ -105,13 +105,13 @@ function pixelOf({ middle }, view) {
     return pixelAtOne(view.height) * Math.max(depth, 0);
 }
 
-// A movement in the plane of the view.
+// Returns the movement of the pointer as a vector in the plane of the view.
 function across(gesture, view, [dx, dy]) {
     const pixel = pixelOf(gesture, view);
     return add(view.right.map((value) => dx * pixel * value), view.up, -dy * pixel);
 }
 
-// The distance along the normal of the faces for which they follow the pointer.
+// Returns the distance by which faces must move along their normals to follow the pointer.
 function along(gesture, view, [dx, dy]) {
     const sum = gesture.chosen
         .map(({ id }) => unit(normalOfFace(gesture.geometry, id)))
@@ -124,7 +124,7 @@ function along(gesture, view, [dx, dy]) {
     return (dx * x - dy * y) * pixelOf(gesture, view);
 }
 
-// The part of the way to the middle.
+// Returns the part of the way to the middle of the faces that the pointer has moved.
 function inwards(gesture, view, [dx, dy]) {
     const part = (Math.hypot(dx, dy) * pixelOf(gesture, view)) / (gesture.reach || 1);
     return Math.min(Math.max(part, INSET[0]), INSET[1]);

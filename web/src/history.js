@@ -113,7 +113,7 @@ export class History {
 
 const signs = { created: '+', deleted: '\u2212', modified: '~' };
 
-// "+6 −1": how many elements were created and deleted.
+// Returns how many elements were created and deleted, as in "+6 −1".
 function sumOf(entry) {
     return ['created', 'deleted']
         .map((name) => [
@@ -125,7 +125,7 @@ function sumOf(entry) {
         .join(' ');
 }
 
-// "+1 vertices, +3 edges": the numbers by kind.
+// Returns the numbers by kind of element, as in "+1 vertices, +3 edges".
 function tallyOf(entry) {
     return Object.keys(signs)
         .flatMap((name) => KINDS.map((kind) => [signs[name], entry[name]?.[kind] ?? 0, kind]))

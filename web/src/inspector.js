@@ -21,10 +21,10 @@ const LINKS = {
 
 const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
 
-// Ids of one member that are shown before a button offers the others.
+// The number of ids of one member that are shown before a button offers the others.
 const MOST = 16;
 
-// Digits of a measure: three numbers must fit into a line.
+// The digits of a measure: three numbers must fit into a line.
 const DIGITS = 5;
 
 export class Inspector {
@@ -95,7 +95,8 @@ export class Inspector {
         );
     }
 
-    // `kind` is the kind of the linked element, undefined if it is no link.
+    // Returns the description of a value; `kind` is the kind of the linked element, undefined if it
+    // is no link.
     #description(name, value, kind) {
         const description = make('dd', { className: Array.isArray(value) ? 'many' : 'one' });
         description.dataset.member = name;

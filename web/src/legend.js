@@ -4,7 +4,7 @@
 import { formatMeasure, make } from './dom.js';
 import { toScreen } from './materials.js';
 
-// Rows that are shown before a button offers the others.
+// The number of rows that are shown before a button offers the others.
 const MOST = 50;
 
 export class Legend {
@@ -90,7 +90,7 @@ function colorOf([red, green, blue, opacity]) {
     return `rgb(${parts.join(' ')} / ${opacity})`;
 }
 
-// Properties that a swatch does not show.
+// Returns notes on the properties that a swatch does not show.
 function notesOf(look) {
     if (look === null) {
         return ['no colour known'];

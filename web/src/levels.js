@@ -8,14 +8,14 @@
 import { ROW, VERTEX_ISOLATED, VERTEX_USED, wholeRows } from './geometry.js';
 import { unreadable } from './progressive.js';
 
-// All three sides of a triangle are edges.
+// The bits that say that all three sides of a triangle are edges.
 const SIDES = 7 << 29;
 
 // Changes are recorded by blocks of this many texels; a block never spans two rows of a texture.
 const BLOCK = 256;
 
 export class Levels {
-    // In the form that the renderer takes.
+    // The arrays in the form that the renderer takes.
     geometry;
     count = 0; // splits that have arrived
     level = 0; // splits that are applied
@@ -28,8 +28,8 @@ export class Levels {
     #placeOf; // by id, starting from 1
     #triangleOf;
     #faces = 0;
-    // By split: the vertex that is split and its position at the other level; the ends of the
-    // lists of triangles that it moves and creates.
+    // For each split: the vertex that is split and its position at the other level, and the ends of
+    // the lists of triangles that it moves and creates.
     #from;
     #other;
     #movedEnd;
@@ -62,7 +62,7 @@ export class Levels {
         };
     }
 
-    // Has the whole base arrived?
+    // Whether the whole base has arrived.
     get hasBase() {
         const { vertexCount } = this.geometry;
         return vertexCount >= this.#base.vertices && this.#faces >= this.#base.faces;

@@ -134,7 +134,7 @@ function importOf({ counts, import: report }) {
 
 // --- showing the session ---
 
-// The session changed; see Session for `what`.
+// Called when the session has changed; see Session for `what`.
 function update(what, change) {
     const isNew = what === 'mesh' || what === 'content';
     const isChanged = isNew || what === 'change';
@@ -236,7 +236,7 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Levels of another mesh or revision do not fit what is shown.
+// Ends the showing of levels, because those of another mesh or revision do not fit what is shown.
 function endLevels() {
     refining.end();
     if (session.loading === null) {

@@ -33,7 +33,7 @@ export class Materials {
         this.#mesh = mesh;
     }
 
-    // Are there no materials?
+    // Whether there are no materials.
     get isEmpty() {
         return this.#rows.length === 0 && this.#names.every((name) => name === '');
     }
@@ -173,7 +173,7 @@ async function readAll(mesh, signal) {
             ]);
             return { revision, materials, column, values };
         } catch (error) {
-            // The revision is gone by now.
+            // The history has dropped this revision by now, so the newest one is read.
             if (error.status !== 410 || tries === TRIES) {
                 throw error;
             }

@@ -37,7 +37,7 @@ class Steps {
         return this.#vectors.scale.main;
     }
 
-    // A centre of rotation alone changes nothing.
+    // A centre of rotation alone changes nothing, so it does not count as a value.
     get isSaid() {
         return STEPS.some(([member]) => this.#vectors[member].isSaid);
     }

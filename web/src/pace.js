@@ -5,7 +5,7 @@
 // the eye notices. If there are few levels, each has a position; of many levels, the fine ones
 // share positions.
 
-// Maximum number of positions of the slider, besides 0.
+// The largest position of the slider; the smallest is 0.
 const MOST = 1000;
 
 // A split adds two faces; playing takes SECONDS each time the number of faces doubles.
@@ -37,7 +37,7 @@ export class Pace {
         }
         const faces = this.#faces * this.#growth ** (position / this.positions);
         const level = Math.round((faces - this.#faces) / FACES);
-        // Different positions have different levels.
+        // The level is at least the position, so that different positions have different levels.
         return Math.min(Math.max(level, Math.floor(position)), this.#levels);
     }
 

@@ -152,7 +152,7 @@ export class ProgressiveReader {
     }
 }
 
-// Also for faults that the receiver of the rows finds.
+// Returns the error for invalid bytes, also for faults that the receiver of the rows finds.
 export function unreadable() {
     return new RangeError('The server sent no levels of a mesh this page can read.');
 }

@@ -8,7 +8,8 @@ import { Levels } from './levels.js';
 import { Pace } from './pace.js';
 import { ProgressiveReader } from './progressive.js';
 
-// The longest step while playing, in seconds, after a hidden page or a slow frame.
+// The longest step while playing, in seconds: after a hidden page or a slow frame, playing does not
+// jump further.
 const LONGEST = 0.5;
 
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
@@ -56,12 +57,12 @@ export class Refining {
         }
     }
 
-    // Is a level shown instead of the mesh?
+    // Whether a level is shown instead of the mesh.
     get isOn() {
         return this.#pace !== null;
     }
 
-    // Were levels requested?
+    // Whether levels were requested.
     get isWanted() {
         return this.#mesh !== null;
     }
@@ -143,7 +144,7 @@ export class Refining {
                 this.#showBase();
             }
             this.#elements.progress.value = levels.part;
-            // With reduced motion the page waits for everything.
+            // If the user prefers reduced motion, the page waits until all levels have arrived.
             if (!isStill.matches) {
                 this.#schedule();
             }
@@ -205,7 +206,7 @@ export class Refining {
             const seconds = this.#time > 0 ? Math.min((now - this.#time) / 1000, LONGEST) : 0;
             this.#time = now;
             const further = this.#position + (seconds / pace.seconds) * pace.positions;
-            // Levels that have not arrived are waited for.
+            // Playing waits for levels that have not arrived.
             const most = levels.count < levels.most ? pace.positionOf(levels.count) : Infinity;
             this.#position = Math.min(further, pace.positions, Math.max(most, this.#position));
             this.#isPlaying = this.#position < pace.positions;

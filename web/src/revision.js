@@ -50,7 +50,7 @@ export class Content {
         return this.geometry.triangleCount > LARGE;
     }
 
-    // Are summary and boundary of the revision that is shown, or newer?
+    // Whether summary and boundary are of the revision that is shown, or newer.
     get hasFacts() {
         return this.summary.revision >= this.revision;
     }

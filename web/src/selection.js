@@ -146,7 +146,7 @@ export class Selection {
     }
 }
 
-// Do the arrays contain the element?
+// Returns whether the arrays contain the element.
 export function isIn(geometry, { kind, id, from, to }) {
     if (kind === 'face') {
         return trianglesOfFace(geometry, id).length > 0;

@@ -164,7 +164,7 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // Without a connection the stream ends, too, which is shown.
+            // If there is no connection, the event stream ends, too, which is shown instead.
             if (error.status !== 0) {
                 this.#onError(error);
             }

@@ -46,7 +46,7 @@ export class Stage {
         this.#listenToClicks();
     }
 
-    // Is there a renderer?
+    // Whether there is a renderer.
     get isThere() {
         return this.#renderer !== null;
     }
@@ -60,7 +60,7 @@ export class Stage {
         this.#draw(label, () => this.#renderer?.show(geometry, label));
     }
 
-    // The arrays were changed, see applyDelta().
+    // Called when the arrays were changed, see applyDelta(): draws the change.
     update(change, label) {
         this.#draw(label, () => this.#renderer?.update(change, label));
     }
@@ -155,7 +155,7 @@ export class Stage {
         this.#renderer?.zoom(nearer);
     }
 
-    // `data-moving` is set until the listener was called.
+    // Called when the camera moves. The canvas has `data-moving` until the listener was called.
     #moved(isHeld) {
         this.#canvas.dataset.moving = '';
         clearTimeout(this.#timer);
@@ -167,12 +167,12 @@ export class Stage {
         }
     }
 
-    // See Renderer.view.
+    // Returns position and axes of the camera, see Renderer.view.
     get view() {
         return this.#renderer.view;
     }
 
-    // Six numbers, undefined without a renderer.
+    // Position and target of the camera, six numbers; undefined without a renderer.
     get camera() {
         return this.#renderer?.camera;
     }

@@ -97,7 +97,7 @@ export class Tools {
 
     // --- clicks ---
 
-    // Does a field wait for a click?
+    // Whether a field waits for a click.
     get isArmed() {
         return this.#armed !== null;
     }
@@ -182,7 +182,7 @@ export class Tools {
         }
     }
 
-    // Is the first parameter of the kind that is selected?
+    // Returns whether the first parameter takes elements of the selected kind.
     #fits({ params } = { params: [] }) {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
@@ -204,12 +204,12 @@ export class Tools {
         return plural && ids.length > 1 ? { op: name, [plural]: ids } : { op: name, [kind]: id };
     }
 
-    // Does the operation work on the whole mesh, so that it may take long?
+    // Returns whether the operation works on the whole mesh, so that it may take long.
     isWhole(name) {
         return this.#chooser.find(name)?.size === 'whole';
     }
 
-    // Does the server have an operation with this name?
+    // Returns whether the server has an operation with this name.
     has(name) {
         return this.#chooser.find(name) !== undefined;
     }
@@ -252,7 +252,8 @@ export class Tools {
         this.#touch();
     }
 
-    // `isOther`: it is an alternative to the one before it.
+    // Returns the rows of a parameter in the form; `isOther`: it is an alternative to the one
+    // before it.
     #rows(param, isOther) {
         const { name, doc } = param;
         const id = `param-${name}`;
@@ -351,7 +352,7 @@ function isDeletion({ name }) {
     return name.endsWith('_delete');
 }
 
-// Is it an alternative to one of those before it?
+// Returns whether a parameter is an alternative to one of those before it.
 function isOtherOf(before, { group }) {
     return group !== undefined && before.some((other) => other.group === group);
 }

@@ -27,7 +27,8 @@ export class Trial {
         }
     }
 
-    // The mesh has changed: the last result may be wrong.
+    // Called when the mesh has changed, because the last result may be wrong: tries the operation
+    // again.
     askAgain() {
         if (this.#asked !== null) {
             this.ask(this.#asked);

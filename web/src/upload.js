@@ -26,7 +26,7 @@ export class Uploads {
         this.#onError = onError;
         input.addEventListener('change', () => {
             this.#add([...input.files]);
-            // Lets the same file be chosen again.
+            // Without this, choosing the same file again would not be reported.
             input.value = '';
         });
         this.#listenToDrops();

@@ -13,8 +13,8 @@ export class Work {
         button.addEventListener('click', () => this.#giveUp());
     }
 
-    // Work is about to begin; `isShown`: show it at once, rather than when it turns out to take
-    // long.
+    // Called when work is about to begin; `isShown`: it is shown at once, rather than when it turns
+    // out to take long.
     start(title, isShown) {
         const { box, label, progress, button } = this.#elements;
         this.#title = title;
@@ -24,7 +24,7 @@ export class Work {
         box.hidden = !isShown;
     }
 
-    // From now on `cancel()` cancels it; it may return a promise.
+    // Called when the work begins: from now on `cancel()` cancels it, which may return a promise.
     begin(cancel) {
         const { box, button } = this.#elements;
         this.#cancel = cancel;

@@ -88,7 +88,7 @@ export class Camera {
         return { right, up, back, position, height: this.#canvas.clientHeight };
     }
 
-    // View and projection, column-major, for view.js.
+    // The matrix of view and projection, column-major, for view.js.
     get matrix() {
         this.three.updateMatrixWorld();
         return new Matrix4().multiplyMatrices(

@@ -47,7 +47,7 @@ const FIELD_WIDTH = 3;
 const RAISED = 0.996; // factor of the distance, as for dots in shaders.js
 
 export class Marks {
-    // The objects that are drawn.
+    // The objects of three.js that are drawn.
     chosen;
     boundary;
     arrows;
@@ -78,7 +78,7 @@ export class Marks {
                 blending: NoBlending,
             }),
         );
-        // Hidden parts are drawn faintly.
+        // Lines are drawn twice: the parts behind the surface faintly.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
         this.vertices = dots(new Vector3(1, 0.7, 0.28));
@@ -88,7 +88,7 @@ export class Marks {
         this.preview.visible = false;
     }
 
-    // Another mesh, or none (null): removes all marks.
+    // Called for another mesh, or for none (null): removes all marks.
     reset(geometry) {
         this.#geometry = geometry;
         this.setBoundary([]);
@@ -222,8 +222,8 @@ export class Marks {
         this.#pixel.value = pixelAtOne(height);
     }
 
-    // A slanted surface would hide parts of a line: scales it towards the camera, which does not
-    // change its place on the screen.
+    // Scales the object towards the camera, which does not change its place on the screen:
+    // otherwise a slanted surface would hide parts of the lines.
     raise(position) {
         for (const lines of [this.lines, this.hiddenLines, this.boundary]) {
             lines.scale.setScalar(RAISED);
@@ -266,7 +266,7 @@ function line(depthFunc, opacity) {
     });
 }
 
-// With one colour.
+// Gives a line material one colour, without colours of its vertices.
 function plain(material, width, color) {
     material.linewidth = width;
     material.vertexColors = false;

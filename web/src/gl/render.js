@@ -123,7 +123,7 @@ export class Renderer {
         this.#draw();
     }
 
-    // See Surface.updateMaterials().
+    // Applies a change of the materials, see Surface.updateMaterials().
     updateMaterials(materials, change, label) {
         this.#surface.updateMaterials(materials, change);
         this.#label = label;
@@ -192,7 +192,7 @@ export class Renderer {
         act();
     }
 
-    // See Camera.view.
+    // Returns position and axes of the camera, see Camera.view.
     get view() {
         return this.#camera.view;
     }
@@ -208,7 +208,7 @@ export class Renderer {
         });
     }
 
-    // See Camera.matrix.
+    // Returns the matrix of view and projection, see Camera.matrix.
     get matrix() {
         return this.#camera.matrix;
     }

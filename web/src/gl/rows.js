@@ -23,8 +23,8 @@ export class Rows extends DataTexture {
         };
     }
 
-    // The array was changed at some places, or anywhere (null), or replaced. Returns the texture to
-    // use from now on, a new one if the array was replaced.
+    // Called when the array was changed at some places, or anywhere (null), or replaced. Returns
+    // the texture to use from now on, a new one if the array was replaced.
     update(array, places) {
         if (array !== this.image.data) {
             const longer = new Rows(array, this.format, this.type);
@@ -36,7 +36,8 @@ export class Rows extends DataTexture {
         return this;
     }
 
-    // The array was changed in some ranges [begin, end], in ascending order, each within one row.
+    // Called when the array was changed in some ranges [begin, end], which are in ascending order
+    // and each within one row.
     updateWithin(ranges) {
         const texels = ranges.reduce((sum, [begin, end]) => sum + end - begin, 0);
         this.#send(texels >= MOST * (this.image.data.length / 4) ? null : ranges);
@@ -56,7 +57,8 @@ export class Rows extends DataTexture {
         this.needsUpdate = true;
     }
 
-    // The copy in graphics memory is lost or outdated: the next upload is of everything.
+    // Called when the copy in graphics memory is lost or outdated: the next upload is of
+    // everything.
     forget() {
         this.#isSent = false;
         this.clearUpdateRanges();

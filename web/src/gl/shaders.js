@@ -91,7 +91,7 @@ const mat4 THRESHOLDS = mat4( // Bayer's ordered dither
 const vec3 KEY = normalize(vec3(-0.45, 0.75, 0.60));
 
 void main() {
-    // Turned to the camera, whichever side of the face is visible.
+    // The normal is turned to the camera, whichever side of the face is visible.
     vec3 n = normalize(cross(dFdx(-eye), dFdy(-eye)));
     float light = 0.34 + 0.46 * max(dot(n, KEY), 0.0)
                 + 0.24 * max(dot(n, normalize(eye)), 0.0);
@@ -104,7 +104,8 @@ void main() {
     float chosenness = chosen ? (isPainted ? 0.92 : 0.8) : 0.0;
     fill = mix(fill, CHOSEN * (0.5 + 0.5 * light), chosenness);
 
-    // Distances in pixels from each side: a -> b is opposite the corner of bary.z, and so on.
+    // The variable line has the distances in pixels from each side of the triangle: a -> b is
+    // opposite the corner of bary.z, and so on.
     vec3 dx = dFdx(bary);
     vec3 dy = dFdy(bary);
     vec3 rate = max(sqrt(dx * dx + dy * dy), vec3(1e-9)).zxy;
@@ -142,7 +143,7 @@ void main() {
     vec4 place = vertexAt(gl_VertexID);
     bool wanted = isolatedOnly ? place.w == 2.0 : place.w > 0.0;
     vec4 seen = modelViewMatrix * vec4(place.xyz, 1.0);
-    // A dot faces the camera: moved nearer, so that the surface does not hide parts of it.
+    // A dot faces the camera, so it is moved nearer; otherwise the surface would hide parts of it.
     seen.xyz *= 0.996;
     vertex = uint(gl_VertexID);
     gl_PointSize = size;
@@ -175,7 +176,7 @@ void main() {
 }
 `;
 
-// Points given by position: the selected vertices.
+// The program for points given by position, which are the selected vertices.
 export const MARK_VERTEX = `
 precision highp float;
 in vec3 position;
@@ -192,8 +193,8 @@ void main() {
 }
 `;
 
-// Half-edges: coloured triangles in front of the surface. See arrows.js; `pixel` is the length of a
-// CSS pixel at depth 1.
+// The program for half-edges: coloured triangles in front of the surface. See arrows.js; `pixel` is
+// the length of a CSS pixel at depth 1.
 export const ARROW_VERTEX = `
 precision highp float;
 in vec3 position;

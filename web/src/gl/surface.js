@@ -87,7 +87,7 @@ export class Surface {
             },
             side: DoubleSide,
             blending: NoBlending,
-            // Moved back behind the marks.
+            // Faces are moved back a little, so that the marks on them are visible.
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
@@ -156,7 +156,7 @@ export class Surface {
         this.#isColored.value = isColored;
     }
 
-    // The contents of the graphics memory are lost.
+    // Called when the contents of the graphics memory are lost: everything is uploaded again.
     forget() {
         [this.#textures, this.#looks]
             .flatMap((textures) => Object.values(textures))
