@@ -44,9 +44,9 @@ static void lose_newest(st_status why)
 
 /* --- the mesh is lost when a write begins --- */
 
-/* The result of the check, right before the next write begins, of whether the newest change reached
- * the disk; ST_OK: it did. The linker redirects calls of the check to a wrapper (Makefile) that
- * returns this. */
+/* The reason for which the newest change is lost right before the next write begins; ST_OK: it is
+ * not lost. The linker redirects calls of st_write_begin to a wrapper (Makefile), which lets the
+ * journal report the loss. */
 static st_status loss_before;
 
 st_status __real_st_write_begin(st_mesh *mesh, const st_cause *cause, st_write *out);

@@ -392,8 +392,8 @@ static void test_hostile_parameters(void **state)
     assert_int_equal(r.status, 200);
     assert_true(arrays_u64(r.body + 16) == 0 && arrays_u64(r.body + 80) == c.layout);
     bench_reply_free(&r);
-    /* The service knows no changes from before the first request for arrays, which made the slots:
-     * it must answer with all rows. */
+    /* The service records changes only from the first request for arrays on; a client that names an
+     * earlier revision must get all rows. */
     poke(w.b, 0);
     poke(w.b, 1);
     put(w.b, starts[1]);

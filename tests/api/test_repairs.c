@@ -55,8 +55,8 @@ static void expect_valid(api_bench *b, const bench_reply *created)
     bench_reply_free(&r);
 }
 
-/* Requires that the body is refused with this code, then refused or accepted as repairs are added,
- * and accepted with `repairs`. */
+/* Requires that the body is refused with this code, that the refusal names exactly `repairs`, and
+ * that the body is accepted with these. */
 static void expect_mended(api_bench *b, const char *type, const char *body, size_t length,
                           const char *code, const char *repairs)
 {

@@ -372,8 +372,9 @@ static void take_elements(api_bench *b)
     }
 }
 
-/* Sends two requests with the same key, the path, at the same time; the first is so long that it
- * still runs when the second comes. Then sends a third one with this key and another body. */
+/* Sends a request with its path as Idempotency-Key, and an equal one while the first still runs,
+ * which is refused (409). Then sends an equal one, which gets the first answer, and one with
+ * another body, which is refused (422). */
 static void take_keyed(api_bench *b, const char *method, const char *path, const char *json)
 {
     enum { LONG = 300 << 10 };

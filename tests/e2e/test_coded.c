@@ -438,7 +438,7 @@ static void it_can_be_switched_off(void **state)
         200, client_send(c, "GET", targets[0], NULL, 0, ARGUMENTS("Accept-Encoding: gzip, zstd")));
     assert_string_equal(reply_header(&r, "Content-Encoding", value, sizeof value), "");
     reply_free(&r);
-    /* While jobs wait, compressed bodies of short requests must still be read. */
+    /* A short body whose coding is x-gzip, the old name of gzip, must be read, too. */
     static const char body[] = "{\"shape\":\"cube\"}";
     size_t length;
     char *packed = coding_pack("gzip", body, sizeof body - 1, &length);

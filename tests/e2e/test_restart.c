@@ -255,9 +255,9 @@ static void a_key_is_good_after_a_restart(void **state)
     reply_free(&r);
 }
 
-/* A listener that was connected before the restart must get the events that it missed from the
- * history on the disk; one that listened to an earlier mesh of the same id must be told to fetch it
- * anew. */
+/* A listener whose Last-Event-ID is from before the restart must get the events after it from the
+ * history on the disk; one that listened to an earlier mesh of the same id must be told to fetch
+ * the mesh anew. */
 static void listeners_go_on_where_they_were(void **state)
 {
     (void)state;

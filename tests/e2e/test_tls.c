@@ -198,8 +198,8 @@ static void what_cannot_serve_stops_the_start(void **state)
         2);
 }
 
-/* Framing faults must be refused over TLS as they are over TCP, and if a body breaks off, the
- * client must be answered why. */
+/* Framing faults, such as line feeds without carriage returns or an invalid size of a chunk, must
+ * be refused over TLS as they are over TCP. */
 static void what_comes_over_tls_is_checked_byte_for_byte(void **state)
 {
     (void)state;

@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-/* Two writers that send the same edits wait for each other after TOGETHER edits, so that the keys
- * of the slower one are not forgotten before it uses them. */
+/* Two writers that send the same edits wait for each other before every TOGETHER edits, so that the
+ * keys of the slower one are not forgotten before it uses them. */
 enum { WRITERS = 8, MESHES = 3, DEFAULT_EDITS = 400, TOGETHER = 500 };
 
 typedef enum condition { NONE, EXPECTED, IF_MATCH, KEYED } condition;

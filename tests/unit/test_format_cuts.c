@@ -5,8 +5,8 @@
 #include "format/io/cuts.h"
 
 /* Makes quads 0 a 1 b of which both diagonals exist as edges: 0-1 in a triangle in the middle, a-b
- * in one triangle each. Another vertex is connected to every tenth a, so that three vertices have a
- * high degree. */
+ * in one triangle each. Another vertex is connected to every second a, so that three vertices have
+ * a high degree. */
 static he_mesh *two_hubs(uint32_t quads)
 {
     he_soup soup;

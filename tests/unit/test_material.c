@@ -324,8 +324,8 @@ static void the_checker_sees_a_table_that_cannot_be(void **state)
     he_mesh_free(m);
 }
 
-/* Rows of the table are shared between copies: a copy takes memory only for its slots, but the
- * memory of both is counted in full. */
+/* The rows of the table of materials must be counted in the memory of the mesh, and those that an
+ * edit changes in the memory of its delta. */
 static void memory_of_rows_is_counted(void **state)
 {
     (void)state;

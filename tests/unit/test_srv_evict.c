@@ -275,7 +275,7 @@ static void the_least_recently_used_go_first(void **state)
     for (int i = 0; i < MANY; i++) {
         atomic_store(&store->meshes[i]->used, (uint64_t)1000 * (uint64_t)(MANY - i));
     }
-    /* An eighth of the memory must become free, which is about what one of the meshes takes. */
+    /* The store makes an eighth of the memory free, which is about what one of the meshes takes. */
     st_memory_set_budget(st_memory_used());
     st_make_room(store, 0);
     st_memory_set_budget(BUDGET);
