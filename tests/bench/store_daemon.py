@@ -1,10 +1,12 @@
-"""store_daemon.py - what a durable store costs those who ask the daemon: rows beside tests/bench/store.c.
+"""store_daemon.py - what a durable store costs the clients of the daemon: rows in addition to those
+of tests/bench/store.c.
 
     python3 tests/bench/store_daemon.py --hedged build/hedged --work FOLDER [--rounds N] [--side N]
         [--only ROW]
 
-FOLDER is on the disk that is meant. The large meshes have SIDE x SIDE quads, a million as it is. An
-edit's time is from the request to the durable answer, of one client over one connection.
+FOLDER is on the disk to be measured. The large meshes have SIDE x SIDE quads, by default a million.
+The time of an edit is that from the request to the durable answer, for one client over one
+connection.
 """
 import argparse
 import os
@@ -66,7 +68,7 @@ def expect(found, wanted, why):
 
 
 def edit(client, number):
-    """Seconds until the edit is durable."""
+    """Returns the seconds until the edit is durable."""
     begun = time.perf_counter()
     answer = client.send('POST', '/v1/meshes/small/edits', {
         'op': 'vertex_move', 'vertex': number % 8, 'to': [0, 0, number % 100]})
@@ -79,7 +81,7 @@ def percentile(times, share):
 
 
 def edits_while(daemon, work):
-    """Times of edits one after another as long as work(client) runs."""
+    """Returns the times of edits, made one after another as long as work(client) runs."""
     ended = threading.Event()
 
     def run():
@@ -99,9 +101,10 @@ def edits_while(daemon, work):
 
 
 def beside_snapshots(bench):
-    """An edit waits little longer while the content of a large mesh is written: of one that is
-    made, and of one whose records have become many; and while one is moved as a whole, which is one
-    record as large as its content. In turn with edits while nothing else is done."""
+    """An edit must wait little longer while the content of a large mesh is written: when the mesh
+    is made, when a new base is due because it has many records, and when all of it is moved, which
+    makes one record as large as its content. The edits of a quiet daemon are measured in turn with
+    these."""
     quiet, made, moved, rebased = [], [], [], []
     daemon = bench.start('snapshots')
     client = daemon.client()
@@ -133,8 +136,8 @@ def beside_snapshots(bench):
 
 
 def first_answer(bench):
-    """From exec to the first answer about a large mesh with many edits, after kill -9 and with
-    nothing of the store in the page cache."""
+    """Measures the time from the start of the program to the first answer about a large mesh with
+    many edits, after kill -9 and with nothing of the store in the page cache."""
     daemon = bench.start('start')
     client = daemon.client()
     bench.make(client, 'small')
@@ -162,7 +165,8 @@ def first_answer(bench):
 
 
 def log_under_loads(bench):
-    """Large meshes take turns in memory, so that loads never pause, while large contents are written."""
+    """Large meshes take turns in memory, so that meshes are loaded all the time, while large
+    contents are written."""
     daemon = bench.start('loads', '--memory-budget', str(LOAD_BUDGET))
     client = daemon.client()
     for i in range(LOADED):
@@ -201,7 +205,7 @@ def log_under_loads(bench):
 
 
 def reads(bench):
-    """A mesh that is in memory is read at the same rate, whatever keeps it."""
+    """A mesh that is in memory must be read at the same rate, whichever journal stores it."""
     rates = {'memory': [], 'sqlite': []}
     for i in range(bench.rounds):
         for kind, of in rates.items():

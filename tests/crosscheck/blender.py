@@ -1,9 +1,11 @@
-"""blender.py - what Blender finds in files of the daemon: faces, and what their corners say.
+"""blender.py - checks what Blender reads in files of the daemon: faces, and the values of their
+corners.
 
-One process reads all files (blender_read.py). A corner must have the place, texture coordinate,
-normal, colour and material that it has in the mesh, as far as the format holds them and Blender
-reads them: its reader of PLY takes no normals, and there is none of OFF. Normals are rounded by
-Blender, and colours to bytes."""
+One process of Blender reads all files (blender_read.py). A corner must have the position, texture
+coordinate, normal, colour and material that it has in the mesh, as far as the format holds them and
+Blender reads them: its PLY reader ignores normals, and it has no OFF reader. Blender rounds
+normals, and stores colours as bytes.
+"""
 import json
 import os
 import shutil
@@ -22,7 +24,7 @@ CLOSE = {'uv': 1e-5, 'normal': 2e-3, 'color': 6e-3}
 
 
 def has_materials(path):
-    """A GLB of which other programs see materials has them in its JSON."""
+    """Returns whether a GLB has materials that other programs see, which are in its JSON."""
     with open(path, 'rb') as f:
         head = f.read(20)
         return not head.startswith(b'glTF') or \
@@ -30,7 +32,7 @@ def has_materials(path):
 
 
 def wanted(text):
-    """Faces of an OBJ, as blender_read.py has them."""
+    """Returns the faces of an OBJ in the form that blender_read.py writes."""
     faces = []
     for face in meaning.faces_of(text):
         faces.append([[list(place), said['uv'], said['normal'], said['color'], said['material']]
@@ -45,7 +47,7 @@ def key(corner, with_uv):
 
 
 def differences(want, got, parts):
-    """Corners with one place and texture coordinate say the same."""
+    """Compares faces. Corners with equal position and texture coordinate must have equal values."""
     found = []
     if not isinstance(got, list):
         return [got]

@@ -1,10 +1,11 @@
-"""blender_read.py - run by Blender: what it reads in files, as JSON.
+"""blender_read.py - runs inside Blender: writes what Blender reads in files, as JSON.
 
     blender -b --factory-startup -P blender_read.py -- OUT FILE...
 
-OUT has for each file its corners, or the words with which it was refused. A corner is [place, uv,
-normal, colour, material], with null for what the file gave none of; faces are lists of corners.
-Blender turns what glTF has upward; that is turned back here."""
+For each file OUT has the corners, or the words with which Blender refused it. A corner is
+[position, uv, normal, colour, material], with null for what the file has not; faces are lists of
+corners. Blender makes z the upward axis of a glTF; that is reversed here.
+"""
 import json
 import sys
 
@@ -23,7 +24,8 @@ READ = {
 
 
 def color_of(mesh, loop, kind):
-    """Of glTF colours are linear; in other files they are what is stored, which is sRGB here."""
+    """Returns a colour as sRGB: glTF has linear colours; in other files the stored values are sRGB.
+    """
     colors = mesh.color_attributes.active_color
     if colors is None:
         return None

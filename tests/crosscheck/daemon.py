@@ -1,4 +1,4 @@
-"""daemon.py - a daemon of one's own, and its answers."""
+"""daemon.py - starts a daemon for the tests of this folder, and sends it requests."""
 import http.client
 import json
 import re
@@ -7,7 +7,7 @@ import urllib.parse
 
 
 class Daemon:
-    """Started on a free port; stopped at the end of the `with` block."""
+    """A daemon that is started on a free port, and stopped at the end of the `with` block."""
 
     def __init__(self, program):
         self.process = subprocess.Popen([program, '--listen', '127.0.0.1:0', '--store', 'memory'],
@@ -32,7 +32,8 @@ class Daemon:
             print(said)
 
     def send(self, method, path, body=None, kind='application/octet-stream'):
-        """The status and the bytes. A connection that the daemon has closed is opened again."""
+        """Returns the status and the bytes of an answer. If the daemon has closed the connection, a
+        new one is opened."""
         for again in (True, False):
             try:
                 self.connection.request(method, path, body, {'Content-Type': kind})
@@ -53,7 +54,7 @@ class Daemon:
         self.send('DELETE', '/v1/meshes/' + mesh)
 
     def read(self, kind, body, repair=None):
-        """What it says about a file, which it then forgets."""
+        """Returns what the daemon says about a file; the mesh is deleted again."""
         status, answer = self.create(kind, body, repair)
         if status == 201:
             self.delete(answer['id'])

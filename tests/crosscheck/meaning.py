@@ -1,13 +1,15 @@
-"""meaning.py - what corners of a file say is the same to the daemon and to assimp.
+"""meaning.py - checks that the values of corners in a file mean the same to the daemon and to
+assimp.
 
-A grid whose texture has seams, whose normals have creases and whose vertices have colours is exported
-in every format; assimp makes an OBJ of each, in which every corner of a face must have the place,
-texture coordinate, normal and colour that it has in the mesh, as far as the format holds them. What
-assimp writes is read by the daemon, welded, and must say the same. assimp makes vertices of its own
-and cuts polygons, so that corners are compared as a set, and faces are triangles.
+A grid whose texture has seams, whose normals have creases and whose vertices have colours is
+exported in every format. assimp makes an OBJ of each file, in which every corner of a face must
+have the position, texture coordinate, normal and colour that it has in the mesh, as far as the
+format holds them. The daemon reads what assimp writes and welds it; the values must be the same.
+assimp splits vertices and cuts polygons, so corners are compared as a set, and faces as triangles.
 
-Materials likewise: a face has its colour and opacity in what assimp makes of an OBJ with its library
-and of a GLB, and in what the daemon reads of a GLB that assimp wrote."""
+Materials are compared in the same way: a face must have its colour and opacity in what assimp makes
+of an OBJ with its library and of a GLB, and in what the daemon reads of a GLB that assimp wrote.
+"""
 import json
 import os
 import subprocess
@@ -16,8 +18,8 @@ SIDE = 6
 
 
 def grid(normals, colors, materials=False):
-    """As OBJ: uv per cell of 2 x 2, so that each has a seam about it; normals and materials
-    likewise."""
+    """Returns a grid as OBJ: each cell of 2 x 2 quads has its own part of the texture, so that
+    there is a seam around it; normals and materials change between cells, too."""
     lines = []
     for i in range((SIDE + 1) ** 2):
         x, y = i % (SIDE + 1), i // (SIDE + 1)
@@ -46,7 +48,7 @@ def grid(normals, colors, materials=False):
 
 
 def faces_of(text):
-    """Of an OBJ: the faces as lists of (place, {uv, normal, color, material})."""
+    """Returns the faces of an OBJ as lists of (position, {uv, normal, color, material})."""
     v, vt, vn, material = [], [], [], None
     for line in text.splitlines():
         words = line.split()
@@ -70,7 +72,8 @@ def faces_of(text):
 
 
 def corners_of(text, parts):
-    """Of an OBJ: the corners as (place, uv, normal, colour), those not in `parts` left out."""
+    """Returns the corners of an OBJ as (position, uv, normal, colour), without the values that are
+    not in `parts`."""
     return {(place,) + tuple(tuple(round(x, 4) for x in said[k]) if said[k] else None
                              for k in parts)
             for face in faces_of(text) for place, said in face}
@@ -130,7 +133,8 @@ LOOKS = {'red one': (1, 0.25, 0, 1), 'green': (0, 0.75, 0.125, 0.5), 'blue': (0,
 
 
 def paint(text):
-    """Faces of a grid in turn with each material, by rows so that they do not come together."""
+    """Gives the rows of faces of a grid the materials in turn, so that the faces of a material are
+    not all together."""
     names, lines, n = list(LOOKS), [], 0
     for line in text.splitlines():
         if line.startswith('f '):
@@ -141,7 +145,8 @@ def paint(text):
 
 
 def painted(text, library, numbers=4):
-    """Of an OBJ and its library: the faces as (places, material, so many numbers of its colour)."""
+    """Returns the faces of an OBJ with its library as (positions, material, this many numbers of
+    its colour)."""
     looks, v, out, at = {}, [], set(), None
     for words in (line.split(None, 1) for line in library.splitlines() if line.strip()):
         if words[0] == 'newmtl':
@@ -163,7 +168,7 @@ def painted(text, library, numbers=4):
 
 
 def library_of(path):
-    """What assimp wrote beside an OBJ."""
+    """Returns the library of materials that assimp wrote beside an OBJ."""
     path = path[:-len('obj')] + 'mtl'
     return open(path).read() if os.path.exists(path) else ''
 
@@ -213,7 +218,7 @@ EDITS = [{'op': 'weld', 'tolerance': 0}, {'op': 'face_poke', 'face': 3, 'positio
 
 
 def check_edited(tally, daemon, folder, mesh, name):
-    """What assimp reads of an edited mesh is what our OBJ of it says."""
+    """Requires that assimp reads in an edited mesh what our OBJ of this mesh says."""
     status, _ = daemon.send('POST', '/v1/meshes/%s/edits' % mesh,
                             json.dumps({'ops': EDITS}).encode(), 'application/json')
     tally.check('edits of ' + name, 200, status)

@@ -1,10 +1,11 @@
-"""peers.py - files of the daemon are read by other programs, and theirs by the daemon.
+"""peers.py - other programs read files of the daemon, and the daemon reads theirs.
 
-Each mesh is exported in every format and encoding. assimp, OpenMesh, CGAL and the corpus' reference
-reader must find the faces, edges and vertices that it has; what OpenMesh, CGAL and assimp write of
-it must become it again. Not asked is where they are known to differ: OpenMesh and CGAL read no GLB;
-assimp makes a vertex of every corner, so that its files are welded and only its faces compare; and
-each cuts polygons into triangles of its own for STL."""
+Each mesh is exported in every format and encoding. assimp, OpenMesh, CGAL and the reference reader
+of the corpus must find the faces, edges and vertices that it has; what OpenMesh, CGAL and assimp
+write of it must become the same mesh again. Known differences are not compared: OpenMesh and CGAL
+read no GLB; assimp makes a vertex of every corner, so its files are welded and only their faces
+compared; and each program cuts polygons into triangles in its own way for STL.
+"""
 import math
 import os
 import re
@@ -84,7 +85,8 @@ def export_all(daemon, mesh, folder, name):
 
 
 def check_exports(tally, daemon, reference, program, paths, summary):
-    """Other readers, and the daemon itself, find in each file what the mesh has."""
+    """Requires that the other readers, and the daemon itself, find in each file what the mesh has.
+    """
     counts = summary['counts']
     sides = {int(k): n for k, n in summary['degrees'].items()}
     corners = sum(k * n for k, n in sides.items())
@@ -116,7 +118,8 @@ def check_exports(tally, daemon, reference, program, paths, summary):
 
 
 def check_theirs(tally, daemon, program, folder, path, summary):
-    """What others write is read with the counts of the mesh that they read."""
+    """Requires that files of the other programs are read with the counts of the mesh that they had
+    read."""
     counts = summary['counts']
     flat = all(int(k) == 3 for k in summary['degrees'])
     ran = subprocess.run([program, '--write', folder, path], capture_output=True).returncode

@@ -1,9 +1,11 @@
-"""readers.py - small files of every format, read by the daemon and by the corpus' reference reader.
+"""readers.py - small files of every format are read by the daemon and by the reference reader of
+the corpus.
 
 Valid files with every feature of their formats, and files of the corpus, are changed at random: the
-two must agree on which can be read, and on the facts of those that make a mesh. What the structure
-cannot hold must be refused with a repair that lets it pass. Differences that are chosen are named
-in KNOWN, with the reason."""
+two readers must agree on which can be read, and on the facts of those that make a mesh. A soup that
+no mesh can represent must be refused with a repair that makes it acceptable. Intended differences
+are listed in KNOWN, with the reason.
+"""
 import base64
 import collections
 import json
@@ -272,7 +274,7 @@ def make_gltf(r):
 
 
 def pack_glb(g, data, r):
-    """The container, one in four times with something unusual about it."""
+    """Returns a GLB container, in one of four cases with something unusual about it."""
     what = r.randrange(16) if r.random() < 0.25 else -1
     text = json.dumps(g).encode()
     if what == 0:
@@ -303,7 +305,7 @@ def pack_glb(g, data, r):
 
 
 def change_json(g, r):
-    """One member somewhere gets another value, goes, or comes."""
+    """Changes, removes or adds one member somewhere in a JSON value."""
     places = []
 
     def walk(o):
@@ -438,7 +440,8 @@ def near(a, b, scale=0.0):
 
 
 def facts_differ(kind, facts, answer):
-    """Both read it, and it makes a mesh as it is."""
+    """Returns whether the facts differ, for a file that both read and that makes a mesh without
+    repairs."""
     r = facts['welded'] if kind == 'stl' else facts['indexed']
     c = answer['counts']
     out = []
@@ -573,7 +576,8 @@ def compare(ref, daemon, kind, body):
 
 
 def run(daemon, reference, folder, count, kinds, keep, show):
-    """Read `count` files; those that differ are shown, and kept in `keep`. How many agree and not."""
+    """Reads `count` files; those in which the readers differ are shown, and kept in `keep`. Returns
+    how many agree and how many do not."""
     seed = int(os.environ.get('SEED') or random.SystemRandom().randrange(2**32))
     print('note: SEED=%d' % seed)
     r = random.Random(seed)

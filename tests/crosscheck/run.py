@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""run.py - the daemon's readers and writers beside those of others.
+"""run.py - compares the daemon's readers and writers with those of other programs.
 
     run.py --hedged PROGRAM --peers PROGRAM [--corpus DIR] [--files N] [--only obj,off] [--keep DIR]
     run.py --hedged PROGRAM --blender PROGRAM
 
-readers.py compares it with the reference reader of the corpus, where the corpus lies beside the
-project; peers.py with assimp, OpenMesh and CGAL; meaning.py what corners say with assimp; with --blender,
-blender.py compares with Blender and nothing else is done. The last line is `N passed, M failed`."""
+readers.py compares the daemon with the reference reader of the corpus, if the corpus lies beside
+the project; peers.py with assimp, OpenMesh and CGAL; meaning.py compares the values of corners with
+assimp. With --blender, only blender.py runs, which compares with Blender. The last line is `N
+passed, M failed`.
+"""
 import argparse
 import os
 import sys

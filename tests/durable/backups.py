@@ -1,10 +1,11 @@
-"""backups.py - a backup is the state of one moment, and a restore is done or not done (D9, D10).
+"""backups.py - a backup is the state of one moment, and a restore is done completely or not at all
+(D9, D10).
 
-The backup is taken while clients write; the restored store must be the replay of all changes up to
-some moment between the beginning and the end of the backup, the same one for all meshes. A restore
-is killed before each of its calls that change something, beside a -wal that kill -9 left: the next
-start has all of the old store or all of the new one, or refuses and says what to do; and restored
-again it is the new one.
+The backup is taken while clients write. The restored store must be the replay of all changes up to
+some moment between the beginning and the end of the backup, the same moment for all meshes. A
+restore is killed before each of its calls that change something, beside a write-ahead log that kill
+-9 left. The next start must have all of the old store or all of the new one, or refuse and say what
+to do; restored once more, it must have the new one.
 """
 import os
 import random
@@ -23,7 +24,7 @@ KINDS = [(kind, weight) for kind, weight in Draw.KINDS if kind != 'delete']
 
 
 def maintain(run, folder, *arguments, faults=None):
-    """Runs hedged for one task: its exit status and what it said."""
+    """Runs hedged for one task; returns its exit status and its output."""
     environment = dict(os.environ)
     if faults:
         environment.update({k: str(v) for k, v in faults.items()}, LD_PRELOAD=run.library,
@@ -35,7 +36,8 @@ def maintain(run, folder, *arguments, faults=None):
 
 
 def write_and_back_up(run, file, folder):
-    """All changes, when the backup began and ended, and the store killed under its writers."""
+    """Returns all changes, and when the backup began and ended; the daemon was killed while clients
+    wrote."""
     daemon = run.start(folder=folder)
     log, writers = write_for(daemon.port, MESHES, random.Random(run.chance.random()),
                              f'b{run.chance.random()}', kinds=KINDS)
@@ -54,7 +56,7 @@ def write_and_back_up(run, file, folder):
 
 
 def compare(run, client, done, begun, ended):
-    """The store behind `client` is the replay of a moment between these two."""
+    """Requires that the store behind `client` is the replay of a moment between these two."""
     replay = Replay(run.hedged, [])
     inside, outside = [], []
     try:
@@ -100,7 +102,7 @@ def prove_backup(run):
 
 
 def views(run, folder):
-    """What a daemon shows of a store; the incarnations apart."""
+    """Returns what a daemon shows of a store, and the incarnations separately."""
     daemon = Daemon(run.hedged, ['--store', 'sqlite:' + folder])
     client = daemon.client()
     seen = [state(client, mesh) for mesh in MESHES]
@@ -112,7 +114,7 @@ def views(run, folder):
 
 
 def counted_calls(run, folder, file):
-    """How many calls of a restore change something."""
+    """Returns how many calls of a restore change something."""
     report = run.folder('report')
     maintain(run, folder, '--restore', file, faults={'FAULT_REPORT': report})
     with open(report, encoding='ascii') as told:
@@ -120,7 +122,8 @@ def counted_calls(run, folder, file):
 
 
 def kill_restore(run, number, folder, file, old, new):
-    """`old` and `new` are what `views` says of the store before, and restored without a fault."""
+    """`old` and `new` are what `views` returns for the store before, and after a restore without a
+    fault."""
     report, name = run.folder(f'report-{number}'), f'killed before call {number}'
     maintain(run, folder, '--restore', file,
              faults={'FAULT_CALL': number, 'FAULT_REPORT': report})

@@ -1,4 +1,4 @@
-"""daemon.py - a daemon that can be killed and started again, and clients of it."""
+"""daemon.py - a daemon that can be killed and started again, and clients for it."""
 import atexit
 import http.client
 import json
@@ -13,7 +13,7 @@ ETAG = re.compile(r'"([0-9a-f]+)-(\d+)-(\d+)')
 
 
 class Gone(Exception):
-    """The daemon ended, or closed the connection, before it had answered."""
+    """Raised if the daemon ended, or closed the connection, before it answered."""
 
 
 class Answer:
@@ -24,7 +24,8 @@ class Answer:
         return json.loads(self.body)
 
     def version(self):
-        """Incarnation, metadata counter and revision that the entity tag names; None without."""
+        """Returns the incarnation, metadata counter and revision in the entity tag; None if there
+        is no tag."""
         found = ETAG.match(self.headers.get('ETag') or '')
         return found and (found[1], int(found[2]), int(found[3]))
 
@@ -33,7 +34,7 @@ class Answer:
 
 
 class Client:
-    """One connection, for one thread."""
+    """One connection, which only one thread may use."""
 
     def __init__(self, port, patience=PATIENCE):
         self.connection = http.client.HTTPConnection('127.0.0.1', port, timeout=patience)
@@ -61,7 +62,7 @@ class Client:
 
 
 class Refused(Exception):
-    """The daemon ended before it listened; the text is what it said."""
+    """Raised if the daemon ended before it listened; the text is its output."""
 
     def __init__(self, status, said):
         super().__init__(f'exit status {status}: {said.strip()}')
@@ -69,7 +70,8 @@ class Refused(Exception):
 
 
 class Daemon:
-    """Started on a free port. `faults` is for inject/faults.c, `around` a program to run it under."""
+    """A daemon on a free port. `faults` are the settings of inject/faults.c, `around` is a program
+    to run it under."""
 
     def __init__(self, program, flags, faults=None, library=None, around=(), on_start=None):
         environment = dict(os.environ)
@@ -121,7 +123,8 @@ class Daemon:
         return status
 
     def kill(self):
-        """As the system would, when it is out of memory. True if it was still running."""
+        """Kills the daemon as the system would when it is out of memory. Returns true if it was
+        still running."""
         self.process.send_signal(signal.SIGKILL)
         return self.wait() == -signal.SIGKILL
 
@@ -130,7 +133,7 @@ class Daemon:
         return self.wait()
 
     def memory(self):
-        """Resident bytes now, and at most."""
+        """Returns the bytes that are resident now, and the maximum so far."""
         with open(f'/proc/{self.process.pid}/status', encoding='ascii') as file:
             text = file.read()
         return tuple(int(re.search(name + r':\s+(\d+) kB', text)[1]) * 1024

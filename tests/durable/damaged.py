@@ -1,8 +1,8 @@
 """damaged.py - a small store whose files are cut at every byte, or have every bit flipped (D6, D7).
 
-damage/damage.c does it in one process for each processor, over whole loads: all that was acknowledged
-is there, or what is not is refused by name. Each round makes a store of its own; --every 101 tries
-every 101st place alone, from one on that the seed draws.
+damage/damage.c does this in one process for each processor, and loads every mesh: everything that
+was acknowledged must be there, or its loss must be reported. Each round makes a new store; --every
+101 tries only every 101st place, beginning with one drawn from the seed.
 """
 import os
 import re

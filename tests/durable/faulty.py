@@ -1,14 +1,14 @@
 """faulty.py - each sync and each write of a hundred edits fails in turn (D3, D4, D5).
 
     kill    the daemon is killed before the N-th sync
-    power   so is it, and what was not synced is lost with it
+    power   as `kill`, and everything that was not synced is lost as well
     sync    the N-th sync fails
     full    the N-th write finds the disk full, once
     short   the N-th write is cut to half, and the next one finds the disk full
 
-What is answered is compared with what is there afterwards: while the daemon goes on, and after a
-restart without faults. A first run counts the calls; ROUNDS of each way are tried, spread over them,
-or all when there are fewer.
+The answers are compared with what is there afterwards, both while the daemon goes on and after a
+restart without faults. A first run counts the calls; ROUNDS of each kind are tried, spread over the
+calls, or all if there are fewer.
 """
 import os
 import random
@@ -46,7 +46,7 @@ class Attempt:
         self.log, self.answers = Log(), {}
 
     def go(self, seed):
-        """Runs it; the daemon, if it still runs."""
+        """Runs the edits; returns the daemon, if it still runs."""
         try:
             daemon = self.run.start(faults=self.faults)
         except Refused as refused:
@@ -91,7 +91,7 @@ class Attempt:
 
 
 class Patient(Writer):
-    """One that ends when the disk does not come back."""
+    """A client that gives up if the disk does not work again."""
 
     refusals = 0
 

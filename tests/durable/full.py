@@ -1,8 +1,9 @@
-"""full.py - a disk that fills up while four clients write, and is emptied by DELETE alone (D5).
+"""full.py - a disk becomes full while four clients write, and is emptied by DELETE alone (D5).
 
-The store lies on a file system of 32 MiB in memory. Meshes are made until there is no space: 507,
-nothing half done, reads go on. Then they are deleted, one after another, until writes work again,
-without a restart. What was acknowledged is there before and after a restart.
+The store lies on a file system of 32 MiB in memory. Meshes are made until there is no space: then
+the answer must be 507, nothing may be half done, and reads must go on. Then the meshes are deleted,
+one after another, until writes work again, without a restart. Everything that was acknowledged must
+be there, before and after a restart.
 """
 import os
 import random
@@ -22,7 +23,8 @@ PATIENCE = 60  # seconds until writes work again
 
 
 def in_own_mounts():
-    """What is mounted is seen by this process and its children alone, and goes with them."""
+    """Moves this process into mounts of its own, which only it and its children see, and which end
+    with it."""
     if 'DURABLE_MOUNTS' in os.environ:
         return
     os.environ['DURABLE_MOUNTS'] = '1'
@@ -31,7 +33,7 @@ def in_own_mounts():
 
 
 class Stubborn(Patient):
-    """Goes on however often the disk was full."""
+    """A client that goes on however often the disk was full."""
 
     def refuse(self, change, answer):
         self.refusals = 0
@@ -39,7 +41,7 @@ class Stubborn(Patient):
 
 
 def fill(run, client):
-    """Makes meshes until there is no space; their names."""
+    """Makes meshes until there is no space; returns their names."""
     made = []
     while True:
         name = f'fill{len(made)}'
@@ -54,7 +56,7 @@ def fill(run, client):
 
 
 def empty(run, client, log, made):
-    """Deletes until something was written again."""
+    """Deletes meshes until something could be written again."""
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         before = len(log.done)
@@ -69,7 +71,8 @@ def empty(run, client, log, made):
 
 
 def has_space(run, client, made):
-    """Deletes what is left of those made, until there is space for good."""
+    """Deletes the remaining meshes until the store is writable; returns false if that takes too
+    long."""
     deadline = time.monotonic() + PATIENCE
     while client.get('/readyz').json().get('store') != 'writable':
         if time.monotonic() > deadline:
@@ -81,7 +84,8 @@ def has_space(run, client, made):
 
 
 def says_in_turn(log, folder):
-    """Full, space again, full: a line each, which names the folder."""
+    """Returns whether the log says in turn that the disk of the folder is full and that it has
+    space again."""
     told = [line for line in log.splitlines() if f'the disk of {folder} ' in line]
     return told and all(('is full' if i % 2 == 0 else 'has space') in line
                         for i, line in enumerate(told))

@@ -1,10 +1,10 @@
-"""golden.py - stores that released programs made, opened by today's (D11).
+"""golden.py - today's program opens stores that released programs made (D11).
 
     python3 tests/durable/golden.py --hedged build/hedged     makes tests/golden/NAME.db.gz
 
-That is a store with every kind of record, packed, and NAME.json, what is in it. NAME is the version
-of the program and that of its tables. Each that is there is opened, verified, loaded, undone, dumped
-and edited by every later program.
+This is a compressed store with every kind of record; NAME.json says what is in it. NAME is the
+version of the program and that of its tables. Every later program must open, verify, load, undo,
+dump and edit each of these stores.
 """
 import argparse
 import glob
@@ -27,7 +27,7 @@ SIDE = 200       # faces a side of a mesh that is too large to lie in its record
 
 
 def facts(client, mesh):
-    """What a mesh is, in words that every release has."""
+    """Returns the facts about a mesh in words that every release has."""
     base = f'/v1/meshes/{mesh}'
     one = client.get(base).json()
     document = client.get(base + '/content').json()
@@ -42,7 +42,7 @@ def facts(client, mesh):
 
 
 def told(client, mesh):
-    """The mesh, and what it is after each undo and redo there is."""
+    """Returns the mesh, and what it is after each possible undo and redo."""
     states = [facts(client, mesh)]
     for way in ('undo', 'redo'):
         while client.send('POST', f'/v1/meshes/{mesh}/{way}', {}).status == 200:
@@ -51,7 +51,7 @@ def told(client, mesh):
 
 
 def write(client):
-    """Every kind of record there is, and what else a store keeps."""
+    """Writes every kind of record, and everything else that a store keeps."""
     def ask(method, path, body=None, status=200, key=None):
         answer = client.send(method, '/v1/meshes' + path, body,
                              {'Idempotency-Key': key} if key else None)
@@ -189,7 +189,7 @@ def prove_one(run, packed):
 
 
 def refuse_newer(run, release, file):
-    """A store of tables that are to come is refused with both versions."""
+    """A store with tables of a future version must be refused, naming both versions."""
     folder = run.folder(release + '.newer')
     os.makedirs(folder)
     newer = os.path.join(folder, 'hedge.db')

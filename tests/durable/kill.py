@@ -2,7 +2,7 @@
 meshes are loaded, while the daemon starts.
 
 After each kill the daemon is started again and every mesh is compared with the replay. The next
-round goes on with the same store, so that the last one stands on all of them.
+round goes on with the same store, so the last state is the result of all rounds.
 """
 import os
 import random
@@ -26,7 +26,8 @@ LARGE_KINDS = [('put', 1), ('whole_move', 8)]
 
 
 class Mover(Draw):
-    """Moves all of a mesh, so that snapshots are due, or replaces it by one that is staged."""
+    """A client that moves all of a mesh, so that snapshots become due, or replaces it by a content
+    that is staged."""
 
     def change_whole_move(self, mesh):
         while True:
@@ -61,7 +62,8 @@ class Kills:
         return log, writers
 
     def kill_in_snapshot(self):
-        """Writers, and somebody who moves a large mesh until a snapshot of it is being written."""
+        """Kills the daemon while clients write and while a snapshot of a large mesh, which another
+        client moves, is being written."""
         log, writers = self.kill_while_writing()
         mover = Writer(self.daemon.port, log, [LARGE],
                        Mover(random.Random(self.run.chance.random()), f'm{time.monotonic()}'),
@@ -74,7 +76,7 @@ class Kills:
         return log, writers + [mover]
 
     def staged(self):
-        """Contents of which some parts are there and no mesh names them."""
+        """Returns the number of contents that are stored in part and belong to no mesh yet."""
         path = os.path.join(self.run.folder(), 'hedge.db')
         connection = sqlite3.connect(f'file:{path}?mode=ro', uri=True)
         try:
@@ -85,7 +87,7 @@ class Kills:
             connection.close()
 
     def kill_while_loading(self):
-        """A daemon that was just started is asked for all meshes at once."""
+        """A daemon that was just started gets requests for all meshes at once, and is killed."""
         self.restart_after(self.kill_while_writing, 'writing')
         self.daemon.kill()
         self.start()
@@ -181,7 +183,8 @@ class Kills:
         client.close()
 
     def send_again(self, client, changes):
-        """A request that was answered is not done twice, also by the daemon that comes after."""
+        """A request that was answered must not be executed twice, also by the daemon that is
+        started afterwards."""
         for change in changes:
             answer = change.send(client)
             self.run.count('requests sent again')

@@ -1,9 +1,10 @@
-"""locks.py - one daemon a folder (D8)."""
+"""locks.py - only one daemon may use a folder (D8)."""
 from daemon import Daemon, Refused
 
 
 def prove(run):
-    """A second daemon is refused and told whose the folder is; after kill -9 a third may start."""
+    """A second daemon must be refused and name the process that uses the folder; after kill -9 a
+    third one must start."""
     for number in range(run.rounds):
         daemon = run.start()
         client = daemon.client()

@@ -1,9 +1,10 @@
-"""many.py - more meshes than memory holds: made, listed, edited at random, started again.
+"""many.py - more meshes than fit into memory are made, listed, edited at random, and loaded after
+restarts.
 
 ROUNDS is the number of meshes. Each client has meshes of its own and a model of them, so that every
 answer, every page of the list and every start is compared with what must be there: names, tags,
-counts, the place of a vertex, where undo and redo lead. The budget is the 256 MiB that 100,000 small
-meshes do not fit into, and less for less.
+counts, the position of a vertex, where undo and redo lead. The memory budget is 256 MiB, into which
+100,000 small meshes do not fit, and less for fewer meshes.
 """
 import itertools
 import os
@@ -26,11 +27,11 @@ SHAPES = [({'shape': 'cube'}, (8, 12, 6)),
 
 
 class Wrong(Exception):
-    """An answer is not what the model says."""
+    """Raised if an answer is not what the model says."""
 
 
 class Mesh:
-    """What must be so of one mesh. A state is its counts and where vertex 0 was moved to."""
+    """The model of one mesh. A state is its counts and the position to which vertex 0 was moved."""
 
     def __init__(self, name, shape, client):
         self.id, self.name, self.shape, self.client = name, '', shape, client
@@ -41,7 +42,7 @@ class Mesh:
         return f'/v1/meshes/{self.id}{rest}'
 
     def expect(self, answer, status):
-        """The answer's tag names the state of the model."""
+        """Requires that the entity tag of the answer names the state of the model."""
         version = answer.version()
         if self.incarnation is None and version:
             self.incarnation = version[0]
@@ -133,7 +134,7 @@ class Mesh:
 
 
 def walk(client, limit):
-    """The pages of the list."""
+    """Returns the pages of the list."""
     cursor = ''
     while cursor is not None:
         answer = client.get(f'/v1/meshes?limit={limit}{cursor}')
@@ -155,7 +156,8 @@ def check_list(client, meshes, limit):
 
 
 def walk_beside(client, ids, ending, wrong):
-    """The list while meshes change: in order, each at most once, and none that never was."""
+    """Reads the list while meshes change: it must be in order, have each mesh at most once, and
+    none that never existed."""
     try:
         while not ending.is_set():
             found = [item['id'] for page in walk(client, 1000) for item in page['items']]
@@ -182,7 +184,7 @@ class Many:
         self.run.count(f'ms from start to list, {how}', round(1000 * (time.monotonic() - begun)))
 
     def settle(self):
-        """What is asked of each life before it ends."""
+        """Checks the state of the daemon before it is stopped or killed."""
         resident, counted = self.daemon.memory()[1], self.counted()
         self.run.judge('resident memory is within the budget', resident <= max(self.budget, PROGRAM),
                        f'{resident} of {self.budget}')
@@ -201,7 +203,8 @@ class Many:
         raise Wrong(f'/metrics has no {name}')
 
     def each(self, what, meshes, function):
-        """Calls function(mesh, client, chance) on each, by all clients, each on meshes of its own."""
+        """Calls function(mesh, client, chance) on each mesh; all clients work at once, each on
+        meshes of its own."""
         wrong, chances = [], [random.Random(self.run.chance.random()) for _ in range(CLIENTS)]
         lists = [[m for m in meshes if m.client == i] for i in range(CLIENTS)]
 

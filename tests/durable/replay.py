@@ -1,10 +1,10 @@
-"""replay.py - what a store must hold: the changes that were answered, made again in their order.
+"""replay.py - what a store must hold: the changes that were answered, replayed in their order.
 
-A daemon that keeps meshes in memory alone makes them again. Of what was in flight when the other
-daemon ended each change may be there or not; where a revision is missing between those that were
-answered, or follows them, one of these must have made it. All that a client can see is compared:
-elements with their ids and links, attributes, counters, the history with its tallies and how far it
-reaches, and where undo and redo lead.
+A daemon with a store in memory replays them. A change that was in flight (sent and not answered)
+when the other daemon ended may be there or not. If a revision is missing between those that were
+answered, or follows them, one of these changes must have made it. Everything that a client can see
+is compared: elements with their ids and links, attributes, counters, the history with its tallies
+and its length, and where undo and redo lead.
 """
 import itertools
 import json
@@ -23,16 +23,17 @@ INCARNATION = re.compile(r'"[0-9a-f]+-')
 
 
 class Wrong(Exception):
-    """The store does not hold what was acknowledged; the text says what differs."""
+    """Raised if the store does not hold what was acknowledged; the text says what differs."""
 
 
 def plain(body):
-    """Without what two daemons need not agree on."""
+    """Returns an answer without the members in which two daemons may differ."""
     return BYTES.sub(b'', TIMES.sub(b'', body))
 
 
 def state(client, mesh):
-    """All that can be seen of a mesh, by the name of the view; None where there is none."""
+    """Returns everything that can be seen of a mesh, by the name of the view; None if there is no
+    mesh."""
     base = f'/v1/meshes/{mesh}'
     summary = client.get(base)
     if summary.status == 404:
@@ -58,7 +59,7 @@ def state(client, mesh):
 
 
 def history(client, base):
-    """What can be undone, done again and read: [undo, redo, oldest, entries after that]."""
+    """Returns what can be undone, redone and read: [undo, redo, oldest, entries after that]."""
     told = client.get(base + '/edits?limit=1000').json()
     for entry in told['entries']:
         del entry['time'], entry['bytes']
@@ -67,7 +68,8 @@ def history(client, base):
 
 
 def as_far_as_both(ours, theirs):
-    """Histories, of the revisions that both reach: a store reads back what memory has dropped."""
+    """Returns two histories, limited to the revisions that both have: a store on a disk reads back
+    what memory has dropped."""
     ours, theirs = json.loads(ours), json.loads(theirs)
     oldest = max(ours[2], theirs[2])
     return [json.dumps(told[:2] + [e for e in told[3:] if e['revision'] > oldest])
@@ -75,7 +77,7 @@ def as_far_as_both(ours, theirs):
 
 
 def difference(ours, theirs):
-    """The first view that differs, in words; None when all are equal."""
+    """Returns the first view that differs, in words; None if all are equal."""
     if ours is None or theirs is None:
         return None if ours is theirs else \
             f'the store {"lacks the mesh" if ours is None else "has a mesh that was deleted"}'
@@ -98,7 +100,8 @@ def is_valid(client, mesh):
 
 
 class Known:
-    """What is known of a mesh: its incarnation, and the changes that led to what the replay has."""
+    """What is known of a mesh: its incarnation, and the changes that led to the state of the
+    replay."""
 
     def __init__(self):
         self.incarnation, self.changes = None, []
@@ -118,7 +121,8 @@ class Replay:
     # --- making changes again ---
 
     def make(self, change, version):
-        """False when it does not lead where it led before."""
+        """Replays a change; returns false if it does not lead to the revision that it led to
+        before."""
         headers = {k: v for k, v in change.headers.items() if k != 'Prefer'}
         answer = self.client.send(change.method, f'/v1/meshes/{change.mesh}{change.path}',
                                   change.body, {**headers, 'Prefer': 'wait=600'})
@@ -129,7 +133,7 @@ class Replay:
         self.client.send('DELETE', f'/v1/meshes/{mesh}')
 
     def make_all(self, mesh, changes, fresh):
-        """False when one of them fails."""
+        """Replays changes; returns false if one of them fails."""
         if fresh:
             self.forget(mesh)
         names, revision = (0, 0) if fresh else self.position(mesh)
@@ -142,7 +146,7 @@ class Replay:
         return True
 
     def make_all_of(self, mesh, changes):
-        """A mesh from these changes alone. Raises Wrong."""
+        """Makes a mesh from these changes alone. Raises Wrong."""
         if not self.make_all(mesh, changes, True):
             raise Wrong(f'{mesh}: a change leads elsewhere when it is made again')
 
@@ -181,15 +185,15 @@ class Replay:
         is_valid(client, mesh)
 
     def expect_absent(self, mesh, known, done, flying):
-        """Somebody deleted it, or nobody was told that it was made."""
+        """Handles a mesh that the store lacks: raises Wrong if it was made, and no deletion
+        explains that it is missing."""
         made = [c for c in done if not c.deletes()]
         if (known.incarnation or made) and not any(c.deletes() for c in done + flying):
             raise Wrong(f'{mesh}: the store lacks the mesh, which nobody deleted')
         deleted = max((c.sent if c in flying else c.answered
                        for c in done + flying if c.deletes()), default=0)
         if not any(c.deletes() for c in flying):
-            # Of the creations of a mesh, only those sent after the last deletion was answered can
-            # have made the present one.
+            # A creation that was sent after the last deletion was answered must have left a mesh.
             for change in made:
                 if change.sent > deleted:
                     raise Wrong(f'{mesh}: {change!r} was acknowledged after the last deletion')
@@ -197,7 +201,8 @@ class Replay:
         self.known[mesh] = Known()
 
     def expect_there(self, mesh, known, done):
-        """Not, when a deletion was acknowledged that was sent after it was seen."""
+        """Handles a mesh that the store has: raises Wrong if a deletion was acknowledged that was
+        sent after the mesh was seen."""
         for change in done:
             if change.deletes():
                 others = [c.version[0] for c in done if not c.deletes()
@@ -206,7 +211,7 @@ class Replay:
                             f'afterwards there was {others[:1]}')
 
     def expect_newest(self, mesh, incarnation, done, flying, fresh):
-        """The incarnation is the last that was answered, or one that was in flight."""
+        """The incarnation must be the last one that was answered, or of a creation in flight."""
         made = [c for c in done if not c.deletes()]
         known = {c.version[0] for c in made}
         if incarnation in known:
@@ -263,7 +268,7 @@ class Replay:
             gaps.append((names, revisions, place == (0, 0)))
 
     def fillings(self, gaps, flying):
-        """All ways of filling the gaps with changes in flight, none twice."""
+        """Yields all ways to fill the gaps with changes in flight, none of them twice."""
         if not gaps:
             yield []
             return
@@ -283,8 +288,8 @@ class Replay:
     # --- undo and redo lead where they would have led ---
 
     def walk(self, client, mesh):
-        """Undoes all and does it again, on both sides; the mesh is the same before and after but
-        for its revisions, which both sides count alike."""
+        """Undoes and redoes everything on both sides; the mesh must be the same before and after,
+        except for its revisions, which both sides must count alike."""
         if mesh not in self.known or self.known[mesh].incarnation is None:
             return 0
         history = json.loads(client.get(f'/v1/meshes/{mesh}/edits?limit=1').body)

@@ -3,8 +3,8 @@
     python3 tests/durable/run.py --hedged build/hedged --faults FAULTS.so --proof NAME
         [--damage PROGRAM] [--rounds N] [--every N] [--seed N] [--work FOLDER]
 
-Each proof prints its rounds, its seed and what it counted; the last line is `N passed, N failed`.
-A proof in which no fault fired has proved nothing, and fails. PROOFS below is the list of all.
+Each proof prints its rounds, its seed and its counts; the last line is `N passed, N failed`. A
+proof in which no fault occurred has proved nothing, and fails. PROOFS below lists all proofs.
 """
 import argparse
 import faulthandler
@@ -87,7 +87,7 @@ class Run:
         return good
 
     def attempt(self, name, function, *arguments):
-        """Judges what raises Wrong; its result, or None."""
+        """Calls a function that may raise Wrong, and judges that; returns its result, or None."""
         try:
             result = function(*arguments)
         except Wrong as wrong:
@@ -97,7 +97,7 @@ class Run:
         return result
 
     def expect_fired(self, *names):
-        """Every fault that the proof is about must have come about."""
+        """Requires that every fault that the proof is about has occurred."""
         for name in names:
             self.judge(f'{name} fired', self.counts.get(name, 0) > 0, 'a proof without its fault')
 

@@ -1,7 +1,7 @@
-"""self_test.py - would the proofs see a store that is wrong?
+"""self_test.py - checks that the proofs would notice a wrong store.
 
-Writers change meshes of a daemon that is never killed: its meshes must be those of the replay. Then
-the replay is told less, or something else, than what was acknowledged, and must object each time.
+Clients change meshes of a daemon that is never killed: its meshes must be those of the replay. Then
+the replay is given fewer changes than were acknowledged, or other ones, and must object each time.
 """
 import random
 import threading

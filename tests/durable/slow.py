@@ -1,4 +1,4 @@
-"""slow.py - a disk that takes 200 ms to sync: queues have an end (D12)."""
+"""slow.py - on a disk that takes 200 ms to sync, queues must not grow without limit (D12)."""
 import os
 import random
 import threading
@@ -32,7 +32,7 @@ def move_often(run, daemon, mesh, ending):
 
 
 def load_often(run, daemon, ending):
-    """Loads never pause: old contents are read while new ones are written."""
+    """Loads meshes all the time, so that old contents are read while new ones are written."""
     client = daemon.client()
     while not ending.is_set():
         for mesh in MESHES:

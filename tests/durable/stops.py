@@ -1,4 +1,6 @@
-"""stops.py - told to stop while the disk hangs: in time, honest about it, and nothing lost."""
+"""stops.py - a daemon is told to stop while the disk hangs: it must stop in time, say what it could
+not write, and lose nothing.
+"""
 import random
 import signal
 import threading

@@ -1,10 +1,10 @@
-"""traces.py - no answer before the sync that covers it (D1), by what strace saw.
+"""traces.py - no answer is sent before the sync that covers it (D1), as seen by strace.
 
-Each change but a few carries a name or a key that nothing else has, and that can be found again in
-what is written to the -wal. The first write that holds it, then the first sync of the -wal that
-begins after that write: when this sync has returned, and not before, an answer, an event or a list
-may show the change. A removal leaves no such mark: it counts as written by the first write to the
--wal after its request came.
+Nearly every change carries a name or a key that is unique and can be found again in what is written
+to the write-ahead log (-wal). Its write is the first one that contains this mark, and its sync is
+the first one of the -wal that begins after that write: only when this sync has returned may an
+answer, an event or a list show the change. A removal leaves no such mark: it counts as written by
+the first write to the -wal after its request came.
 """
 import http.client
 import os
@@ -28,14 +28,14 @@ def unhex(text):
 
 
 class Seen:
-    """What a request was, and what its answer shows: (incarnation, names, revision)."""
+    """A request, and what its answer shows: (incarnation, names, revision)."""
 
     def __init__(self, kind):
         self.kind, self.mark, self.shows, self.items, self.gone = kind, None, [], [], None
 
 
 class Traffic:
-    """Writers, readers and a listener, whose requests have names."""
+    """Clients that write, read and listen, whose requests have unique names."""
 
     def __init__(self, daemon, chance):
         self.daemon, self.chance = daemon, chance
@@ -91,7 +91,8 @@ class Traffic:
         client.close()
 
     def await_job(self, client, mark, path):
-        """The answer that says `done` must wait; those before say nothing."""
+        """Waits for a job. Only the answer that says `done` must wait for the sync; those before
+        show nothing."""
         while True:
             _, seen, answer = self.ask(client, 'job', 'GET', path)
             if answer.json()['state'] == 'done':
@@ -118,7 +119,7 @@ class Traffic:
         client.close()
 
     def listen(self):
-        """Events are found in the trace by their ids; here they are only read."""
+        """Reads events; they are found in the trace by their ids."""
         while not self.ending.is_set():
             connection = http.client.HTTPConnection('127.0.0.1', self.daemon.port, timeout=0.5)
             try:
@@ -145,7 +146,8 @@ class Traffic:
 
 
 class Trace:
-    """What strace wrote: the order of writes to the -wal, its syncs, and what was sent."""
+    """What strace wrote: the order of writes to the -wal, its syncs, and the bytes that were sent.
+    """
 
     def __init__(self, path):
         self.written, self.syncs, self.sent, self.came, self.events = [], [], {}, {}, []
@@ -167,7 +169,8 @@ class Trace:
                     self.look(at, call, self.bytes(rest))
 
     def sync(self, at, thread, rest, where, under_way):
-        """`where`: the name of the file, or True for the end of a call that was begun before."""
+        """Notes a sync. `where` is the name of the file, or True for the end of a call that began
+        before."""
         if where is not True:
             if not where.endswith('hedge.db-wal'):
                 return
@@ -193,7 +196,8 @@ class Trace:
                 self.events.append((at, incarnation.decode(), int(revision)))
 
     def covered(self, written, later=0):
-        """When the sync returned that covers a write; `later` syncs after it."""
+        """Returns when the sync returned that covers a write; `later` counts further syncs after
+        it."""
         after = [returned for begun, returned in self.syncs if begun > written]
         return after[later] if len(after) > later else None
 
@@ -202,7 +206,7 @@ class Trace:
 
 
 class Verdict:
-    """Compares what was sent with what was covered."""
+    """Compares the answers that were sent with the changes that were covered by a sync."""
 
     def __init__(self, run, traffic, trace, later):
         self.run, self.trace, self.later, self.early, self.checked = run, trace, later, [], {}
@@ -221,8 +225,8 @@ class Verdict:
             self.compare('event', at, self.until(incarnation, None, revision), f'r{revision}')
 
     def until(self, incarnation, names, revision):
-        """When all was covered that this version shows; without `names` the revision alone, which
-        later renames leave as it is."""
+        """Returns when everything was covered that this version shows. Without `names` this is the
+        revision alone, which later renames do not change."""
         return max((cover for n, r, renames, cover in self.when.get(incarnation, ())
                     if r <= revision and (not renames if names is None else n <= names)),
                    default=None)

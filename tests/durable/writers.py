@@ -1,8 +1,8 @@
-"""writers.py - clients that change meshes in every way there is, and remember what was answered.
+"""writers.py - clients that change meshes in every possible way, and remember the answers.
 
-A `Change` is one request. What it was answered with says where it belongs: its entity tag names the
-incarnation, the metadata counter and the revision after it. One that was sent and never answered is
-in flight: it may have happened or not.
+A `Change` is one request. Its answer says where it belongs: the entity tag has the incarnation, and
+the metadata counter and the revision after the change. A request that was sent and never answered
+is in flight: it may have been executed or not.
 """
 import json
 import random
@@ -28,8 +28,8 @@ def did_nothing(change, answer):
 
 
 class Change:
-    """A request that changes a mesh. `revisions` and `names` are what it adds to both counters;
-    `entry` is how the history calls it: its action and its operations."""
+    """A request that changes a mesh. `revisions` and `names` are what it adds to the two counters;
+    `entry` is its entry in the history: its action and its operations."""
 
     def __init__(self, mesh, method, path, body=None, headers=None, revisions=1, names=0,
                  entry=None, name=None):
@@ -58,8 +58,8 @@ class Change:
 
 
 class Draw:
-    """Requests by chance. Ids are drawn from low numbers, so that most of them live; a request that
-    names what does not is refused and changes nothing."""
+    """Draws random requests. Ids are small numbers, so that most of the elements are live; a
+    request that names another one is refused and changes nothing."""
 
     def __init__(self, chance, label):
         self.chance, self.label, self.count = chance, label, 0
@@ -183,7 +183,8 @@ class Log:
         self.done, self.open, self.refused, self.strange = [], [], {}, []
 
     def take(self):
-        """What was noted since it was last taken: changes that were answered, and those in flight."""
+        """Returns what was noted since the last call: changes that were answered, and those in
+        flight."""
         with self.lock:
             done, self.done = self.done, []
             flying, self.open = self.open, []
@@ -191,7 +192,7 @@ class Log:
 
 
 class Writer(threading.Thread):
-    """Sends one change after another until it is stopped or the daemon is gone."""
+    """A client that sends one change after another until it is stopped or the daemon is gone."""
 
     def __init__(self, port, log, meshes, draw, limit=None, kinds=None, patient=True, pause=None):
         super().__init__(daemon=True)
@@ -270,7 +271,8 @@ class Writer(threading.Thread):
                                              if isinstance(made, dict) else [])])
 
     def refuse(self, change, answer):
-        """Answers of 500 and more, which only a disk or a budget in trouble may give."""
+        """Notes an answer of 500 or more as wrong; only a failing disk or a used-up budget may
+        cause one."""
         if not self.patient:
             self.log.strange.append(f'{change!r}: {answer.status} {answer.body[:200]!r}')
 
@@ -284,7 +286,7 @@ class Writer(threading.Thread):
 
 
 def write_for(port, meshes, chance, label, writers=4, **options):
-    """Starts writers; they share a log."""
+    """Starts writers, which share a log; returns the log and the threads."""
     log = Log()
     threads = [Writer(port, log, meshes, Draw(random.Random(chance.random()), f'{label}.{i}'),
                       **options) for i in range(writers)]

@@ -1,8 +1,9 @@
-"""attacks.py - THE table of attacks: what is sent, what is asked of it, and where that must end.
+"""attacks.py - the table of all attacks: what is sent, which requests follow, and how these must
+end.
 
-A row is a file of less than a megabyte and the requests that follow it. Its statuses are all that
-may answer: an attack that is refused must be refused with the right words, one that is a large but
-honest mesh must be answered.
+A row is a file of less than a megabyte and the requests about the mesh made from it. Its statuses
+are the only ones that may be answered: an attack that is refused must be refused by the right rule,
+and a mesh that is large but legitimate must be accepted.
 """
 import gzip
 import json
@@ -11,8 +12,9 @@ import meshes
 
 
 class Ask:
-    """A request about the mesh of its row, whose path goes before `path`. `most`: milliseconds that it
-    may hold a thread of the pool, where that is a limit of its own."""
+    """A request about the mesh of its row, whose path is put before `path`. `most`: the
+    milliseconds for which the request may hold a thread of the pool, if it has a limit of its own.
+    """
 
     def __init__(self, name, method, path='', body=b'', statuses=(200,), headers=(), most=None):
         self.name, self.method, self.path, self.statuses = name, method, path, statuses
@@ -38,7 +40,7 @@ def query(name, *questions, statuses=(200, 413)):
 
 
 def jobs(ask):
-    """Of a mesh so large that it must be a job."""
+    """Returns the request for a mesh so large that it must become a job."""
     return Ask(ask.name, ask.method, ask.path, ask.body, (202,), ask.headers)
 
 
@@ -114,7 +116,7 @@ def zipped(make):
 
 
 def listed(name, ops):
-    """A list of operations as long as a megabyte lets it be."""
+    """Returns a list of operations as long as a megabyte allows."""
     room, kept = 990000, []
     for op in ops:
         room -= len(json.dumps(op)) + 2
@@ -319,7 +321,7 @@ STRIDE = 16  # of ids, so that what one operation changes is not named by the ne
 
 
 def argument(parameter, count):
-    """A value for a parameter, such that much is to be done; None to leave it out."""
+    """Returns a value for a parameter that causes much work; None to leave the parameter out."""
     kind = parameter['type']
     if 'default' in parameter or not parameter['required']:
         return None
@@ -333,7 +335,7 @@ def argument(parameter, count):
 
 
 def repeated(operation, arguments, times):
-    """A list of operations, each at the hub but on another edge or face about it."""
+    """Returns a list of operations, each at the hub but on another edge or face around it."""
     kinds = {p['name']: p['type'] for p in operation['params']}
     ops = [{'op': operation['name'],
             **{name: (STRIDE * i if kinds.get(name) in ('halfedge', 'edge', 'face') else value)
@@ -342,7 +344,7 @@ def repeated(operation, arguments, times):
 
 
 def one_of_each(parameters, choose):
-    """Of each group of alternatives the one that `choose` picks of its list."""
+    """Returns, of each group of alternative parameters, the one that `choose` picks."""
     groups = {}
     for parameter in parameters:
         groups.setdefault(parameter.get('group', parameter['name']), []).append(parameter)
@@ -350,8 +352,9 @@ def one_of_each(parameters, choose):
 
 
 def operation_asks(operations, count):
-    """Each row twice: with what comes first of alternatives and with what comes last, and, where
-    it takes one element or many, with the hub alone. Any refusal that names a rule is an end."""
+    """Returns each operation twice: with the first and with the last of its alternative parameters
+    and, if it takes one element or many, once more with the hub alone. Any refusal that names a
+    rule is a good end."""
     asks, seen = [], set()
     for operation in operations:
         for choose in (lambda group: group[0], lambda group: group[-1]):

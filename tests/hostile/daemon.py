@@ -1,10 +1,10 @@
-"""daemon.py - a daemon under attack, and what its threads did meanwhile.
+"""daemon.py - a daemon under attack, and the processor time of its threads meanwhile.
 
-The figures are the system's own account of each thread's processor time, so that they do not depend
-on what else the machine does. The daemon has one worker; a thread of ours asks it for /livez again
-and again, and reads the worker's account at each answer. What the worker did between two answers is
-the most that it can have done without serving others: the longest is what it was held for. A pool
-thread is held for what it did from the beginning of a request to its end.
+The figures are the system's account of each thread's processor time, so they do not depend on what
+else the machine does. The daemon has one worker. A thread of this program requests /livez again and
+again, and reads the worker's time at each answer: what the worker did between two answers is the
+most that it can have done without serving others, and the longest of these times is how long it was
+held. A pool thread is held for the time that it works from the beginning of a request to its end.
 """
 import json
 import os
@@ -29,7 +29,7 @@ class Reply:
 
 
 class Connection:
-    """A socket that asks and reads one answer after another."""
+    """A socket on which requests are sent and their answers read, one after another."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(('127.0.0.1', port), timeout=PATIENCE)
@@ -51,7 +51,8 @@ class Connection:
             self.socket.settimeout(0.25)
 
     def be_impatient(self, ask):
-        """While an answer is awaited call ask() four times a second; what it raises ends that."""
+        """While an answer is awaited, calls ask() four times a second; an exception in it ends the
+        wait."""
         self.socket.settimeout(0.25)
         self.impatient = ask
 
@@ -75,7 +76,7 @@ class Connection:
         return line.decode('latin-1')
 
     def skip(self, count, kept):
-        """Read `count` bytes, of which `kept` gets the first."""
+        """Reads `count` bytes; `kept` gets the first ones."""
         while count > 0:
             if not self.rest and not self.more():
                 raise ConnectionError('cut off')
@@ -116,7 +117,8 @@ PROBE = 0.002  # seconds between two questions
 
 
 class Prober(threading.Thread):
-    """Asks for /livez until it is stopped; `most` is the longest hold of the worker, in ns."""
+    """Requests /livez until it is stopped; `most` is the longest time for which the worker was
+    held, in ns."""
 
     def __init__(self, daemon):
         super().__init__(daemon=True)
@@ -148,7 +150,8 @@ class Prober(threading.Thread):
 
 
 class Hold:
-    """What the threads did while the block ran: ns of the worker at once, and of a pool thread."""
+    """What the threads did while the block ran: the longest time that the worker was held, and the
+    time of a pool thread, in ns."""
 
     def __init__(self, daemon):
         self.daemon, self.worker, self.pool = daemon, 0, 0
@@ -207,14 +210,15 @@ class Daemon:
             return name in self.ended
 
     def await_end(self, name):
-        """The request's work has ended and nothing of it runs any more."""
+        """Waits until the work for the request has ended and nothing of it runs any more."""
         with self.ending:
             if not self.ending.wait_for(lambda: name in self.ended, PATIENCE):
                 raise RuntimeError(f'{name} does not end')
             return self.ended.pop(name)
 
     def spent(self, names):
-        """Nanoseconds of processor time by thread, of those with one of these names, None for all."""
+        """Returns the nanoseconds of processor time of each thread that has one of these names;
+        None: of all threads."""
         out = {}
         for thread, name in self.threads:
             if names is None or name in names:

@@ -1,7 +1,8 @@
 """meshes.py - files of less than a megabyte that are made to be slow.
 
-Each function gives a media type and the bytes of a file. Binary PLY with 16-bit indices holds the
-most faces in a megabyte."""
+Each function returns a media type and the bytes of a file. Binary PLY with 16-bit indices has the
+most faces in a megabyte.
+"""
 import json
 import math
 import random
@@ -11,7 +12,8 @@ LARGEST = 1000 * 1000
 
 
 def ply(points, faces, coordinate='float'):
-    """`coordinate` is float or short; indices have 16 bits, degrees as many as the largest needs."""
+    """Returns a PLY file. `coordinate` is float or short; indices have 16 bits, and degrees as many
+    as the largest one needs."""
     code = {'float': 'f', 'short': 'h', 'double': 'd'}[coordinate]
     wide = any(len(face) > 255 for face in faces)
     head = ('ply\nformat binary_little_endian 1.0\n'
@@ -37,14 +39,14 @@ def circle(count, radius=1.0, z=0.0, at=(0.0, 0.0)):
 
 
 def spokes(count, closed=True):
-    """Triangles about vertex 0 to a rim of `count` vertices."""
+    """Returns triangles from vertex 0 to a rim of `count` vertices."""
     return [(0, 1 + i, 1 + (i + 1) % count) for i in range(count if closed else count - 1)]
 
 
 # --- fans ---
 
 def fan(count):
-    """A flat disc: all triangles in one plane, about one vertex."""
+    """A flat disc: all triangles lie in one plane, around one vertex."""
     rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
     return ply([(0, 0, 0)] + rim, spokes(count), 'short')
 
@@ -55,20 +57,20 @@ def cone(count):
 
 
 def bipyramid(count):
-    """Two cones on one rim: closed, with two vertices of degree `count`."""
+    """Two cones on one rim: a closed mesh with two vertices of degree `count`."""
     rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
     below = [(count + 1, i % count + 1, i) for i in range(1, count + 1)]
     return ply([(0, 0, 20000)] + rim + [(0, 0, -20000)], spokes(count) + below, 'short')
 
 
 def folded_fan(count):
-    """A flat fan that goes back and forth: its triangles lie on one another."""
+    """A flat fan that goes back and forth, so that its triangles lie on each other."""
     rim = [(30000, (i % 2) * 2000 + i // 32 - 1000, 0) for i in range(count)]
     return ply([(0, 0, 0)] + rim, spokes(count, False), 'short')
 
 
 def wound_fan(count, turns=50):
-    """A flat fan that goes about its vertex many times."""
+    """A flat fan that goes around its vertex many times."""
     angle = 2 * math.pi * turns / count
     rim = [(round(32000 * math.cos(angle * i)), round(32000 * math.sin(angle * i)), 0)
            for i in range(count)]
@@ -76,20 +78,20 @@ def wound_fan(count, turns=50):
 
 
 def fan_at(count, place):
-    """A fan far from the origin, where coordinates are coarse."""
+    """A fan far from the origin, where the steps between doubles are large."""
     rim = [(place + x, place + y, z) for x, y, z in circle(count)]
     return ply([(place, place, 0.0)] + rim, spokes(count), 'double')
 
 
 def parabola(count):
-    """A fan of a convex polygon whose every diagonal has to be flipped again and again."""
+    """A fan of a convex polygon, of which delaunay flips the diagonals again and again."""
     rim = [(i / count, (i / count) ** 2, 0.0) for i in range(count)]
     faces = [(0, i, i + 1) for i in range(1, count - 1)]
     return ply(rim, faces, 'double')
 
 
 def pinwheel(count):
-    """Triangles that share nothing but one vertex: as many fans about it."""
+    """Triangles that share only one vertex: it has as many fans as triangles."""
     rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(2 * count)]
     return ply([(0, 0, 0)] + rim, [(0, 1 + 2 * i, 2 + 2 * i) for i in range(count)], 'short')
 
@@ -102,7 +104,8 @@ def lantern(count):
 
 
 def two_hubs(count, right, z):
-    """Two fans on one straight rim: the boxes of all triangles of one meet those of the other."""
+    """Two fans on one straight rim: the boxes around all triangles of one fan meet those of the
+    other."""
     rim = [(0, i - count // 2, 0) for i in range(count)]
     faces = [face for i in range(count - 1) for face in ((0, 1 + i, 2 + i),
                                                          (count + 1, 2 + i, 1 + i))]
@@ -110,14 +113,14 @@ def two_hubs(count, right, z):
 
 
 def loose_book(pages):
-    """Triangles that share no vertex and have one edge in one place."""
+    """Triangles that share no vertices, although they have one edge at the same place."""
     points = [point for x, y, _ in circle(pages, 30000)
               for point in ((0, 0, 0), (0, 0, 9000), (round(x), round(y), 4000))]
     return ply(points, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(pages)], 'short')
 
 
 def pyramid(count):
-    """A cone closed by one face below: each edge of the rim lies beside it."""
+    """A cone closed below by one face, which lies beside each edge of the rim."""
     rim = [(round(32767 * x), round(32767 * y), 0) for x, y, _ in circle(count)]
     return ply([(0, 0, 20000)] + rim, spokes(count) + [range(count, 0, -1)], 'short')
 
@@ -130,7 +133,7 @@ def prism(count):
 
 
 def stars(count, points, write=None):
-    """Stars that share nothing; hubs of as many edges as decimation still tries to collapse."""
+    """Separate stars, whose hubs have as many edges as decimation still tries to collapse."""
     vertices, faces = [], []
     for s in range(count):
         hub = len(vertices)
@@ -143,12 +146,13 @@ def stars(count, points, write=None):
 
 
 def stars_of_text(count, points):
-    """More of them than 16 bits can number."""
+    """Stars in a text file: more of them than 16-bit indices can have."""
     return stars(count, points, obj)
 
 
 def rows_far_apart(count):
-    """Two rows of points, joined so that flips grow with the square of their number."""
+    """Two rows of points, connected so that the number of flips grows with the square of their
+    number."""
     points = [(i % count, i // count, 0) for i in range(2 * count)]
     faces = [face for i in range(count - 1) for face in
              ((i, i + 1, count), (count + i + 1, count + i, count - 1))]
@@ -156,7 +160,7 @@ def rows_far_apart(count):
 
 
 def lattice(side):
-    """Points packed as densely as can be, sqrt(2) apart."""
+    """Points packed as densely as possible at a distance of sqrt(2)."""
     points = [(x, y, z) for x in range(side) for y in range(side) for z in range(side)
               if (x + y + z) % 2 == 0]
     return ply(points + [(0, 0, 999), (9, 0, 999), (0, 9, 999)],
@@ -166,7 +170,7 @@ def lattice(side):
 # --- polygons ---
 
 def comb_points(corners, z=0.0):
-    """A comb: teeth up from a base, so that most corners see few others."""
+    """The points of a comb, with teeth up from a base, so that most corners see few others."""
     teeth = corners // 2 - 1
     points = [(0.0, -1.0, z), (float(teeth), -1.0, z)]
     for i in range(teeth, 0, -1):
@@ -185,7 +189,7 @@ def combs(count, corners):
 
 
 def disc(corners):
-    """One convex face."""
+    """A disc as one convex face."""
     return ply(circle(corners), [range(corners)])
 
 
@@ -204,7 +208,7 @@ def star(corners):
 
 
 def zigzag(corners):
-    """A corner line that no plane holds, as one face."""
+    """A zigzag in space that lies in no plane, as one face."""
     half = corners // 2
     there = [(float(i), float(i % 2) * 3, float(i % 3)) for i in range(half)]
     back = [(float(i), 10.0 + float(i % 2) * 3, float(i % 5)) for i in range(half)]
@@ -212,7 +216,7 @@ def zigzag(corners):
 
 
 def saddles(side):
-    """Quads that are far from flat."""
+    """Quads that are far from planar."""
     points = [(float(x), float(y), float((x + y) % 2) * 5) for y in range(side)
               for x in range(side)]
     faces = [(y * side + x, y * side + x + 1, (y + 1) * side + x + 1, (y + 1) * side + x)
@@ -223,7 +227,7 @@ def saddles(side):
 # --- soups ---
 
 def needles(count):
-    """Triangles that all pass through the middle, each with each."""
+    """Triangles that all pass through one point, so that each intersects each other."""
     r = random.Random(13)
     points, faces = [], []
     for i in range(count):
@@ -235,7 +239,8 @@ def needles(count):
 
 
 def stack(count):
-    """Large triangles in planes that hardly differ: every box meets every other."""
+    """Large triangles in planes that hardly differ, so that every bounding box meets every other.
+    """
     points, faces = [], []
     for i in range(count):
         z = i * 1e-6
@@ -245,13 +250,14 @@ def stack(count):
 
 
 def plates(count):
-    """Equal triangles in one place."""
+    """Equal triangles at one place."""
     points = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)] * count
     return ply(points, [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(count)])
 
 
 def cells(count):
-    """Vertices in one cell of a grid that a far one stretches."""
+    """Vertices that lie in one cell of the search grid, because a far vertex makes the cells large.
+    """
     r = random.Random(14)
     points = [(r.random(), r.random(), r.random()) for _ in range(count - 3)]
     points += [(1e9, 0.0, 0.0), (0.0, 1e9, 0.0), (0.0, 0.0, 1e9)]
@@ -298,7 +304,8 @@ def many_groups(count):
 
 
 def runs(size):
-    """Vertices that gzip makes about fifty times smaller, which is less than it may."""
+    """Vertices that gzip makes about fifty times smaller, which is less than the ratio that is
+    allowed."""
     r = random.Random(15)
     return 'model/obj', b''.join(b'v %d 0 0\n' % r.randrange(1000) * 30
                                  for _ in range(size // 280)) + b'f 1 31 61\n'
@@ -309,22 +316,22 @@ def repeated_face(count):
 
 
 def book(pages):
-    """Faces on one edge, which repair has to split."""
+    """Faces on one edge, which the repair has to split."""
     points = [(0, 0, 0), (0, 0, 9)] + [(round(30000 * x), round(30000 * y), 0)
                                        for x, y, _ in circle(pages)]
     return ply(points, [(0, 1, 2 + i) for i in range(pages)], 'short')
 
 
 def parts(*files):
-    """Several files in one body."""
+    """Returns a body of several files."""
     body = b''.join(b'--x\r\nContent-Disposition: form-data; name="%s"\r\n\r\n%s\r\n'
                     % (name.encode(), text) for name, text in files)
     return 'multipart/form-data; boundary=x', body + b'--x--'
 
 
 def packed_zeros(count, views):
-    """A GLB whose views, all of the same stream, are corners at the origin: two bits say that 16
-    bytes are 0, and the first corner is written at the end."""
+    """A GLB whose buffer views, all of the same compressed stream, are corners at the origin: two
+    bits say that 16 bytes are 0, and the first corner is stored at the end."""
     stride = 16
     block = min(8192 // stride // 16 * 16, 256)
     blocks = [min(block, count - i) for i in range(0, count, block)]

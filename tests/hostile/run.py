@@ -1,17 +1,19 @@
-"""run.py - attacks a daemon, and says what each request may hold of it and what it held.
+"""run.py - attacks a daemon, and reports how long each request may hold a thread of the daemon, and
+how long it did.
 
     python3 tests/hostile/run.py --hedged build/hedged [--quick] [--parts rows,starving] [--only TEXT]
                                  [--seed N]
 
-The parts are PARTS below; `cancelling` abandons what was found slow in `rows`, which it needs.
+The parts are listed in PARTS below; `cancelling` abandons the requests that were slow in `rows`,
+which must run before it.
 
 No request of less than a megabyte may hold the worker for more than 50 ms or, unless it is answered
-as a job, a thread of the pool for more than a second; what is cancelled ends within 0.1 s; and while
-attacks are begun and abandoned an import finds a thread. Files of a million faces, which are sent
-at once, have a limit of their own in the table, as the manual has. These figures are processor time
-(daemon.py), multiplied by how much longer this machine, or a sanitizer, takes for a known import and
-check than the machine they were chosen on. An import waits for no more than a second of all other
-work, on whatever number of cores. The last line is `N passed, N failed`.
+as a job, a thread of the pool for more than a second. Cancelled work must end within 0.1 s, and
+while attacks are begun and abandoned, an import must find a thread. Files of a million faces, which
+are sent at once, have a limit of their own in the table, as the manual says. These figures are
+processor time (daemon.py), multiplied by how much longer this machine, or a sanitizer, takes for a
+known import and check than the machine on which the limits were chosen. An import may wait for no
+more than a second of all other work, on any number of cores. The last line is `N passed, N failed`.
 """
 import argparse
 import json
@@ -36,7 +38,7 @@ PARTS = ('rows', 'operations', 'corpus', 'cancelling', 'starving')
 
 
 def state_of(reply):
-    """A job's; its result may be longer than what is kept of an answer."""
+    """Returns the state of a job, whose result may be longer than what is kept of an answer."""
     return re.search(rb'"state": ?"(\w+)"', reply.body).group(1).decode()
 
 
@@ -70,7 +72,8 @@ class Field:
         return not self.options.only or self.options.only in name
 
     def calibrate(self):
-        """Processor time of an import and a check of 20,000 quads, the least of five."""
+        """Returns the processor time of an import and a check of 20,000 quads, the least of five.
+        """
         body = b'{"shape":"torus","major_segments":200,"minor_segments":100}'
         best = None
         for _ in range(5):
@@ -87,7 +90,7 @@ class Field:
         print(f'a known import and check: {best:.1f} ms, limits are {self.scale:.2f} times theirs')
 
     def measure(self, method, path, body, headers):
-        """A request's reply, None when it was cut off, and what it held."""
+        """Returns a request's reply, None if it was cut off, and for how long it held threads."""
         name = self.daemon.name_request()
         connection = Connection(self.daemon.port)
         reply = None
@@ -137,7 +140,8 @@ class Field:
         return reply
 
     def end_job(self, name, reply):
-        """Let a job run for a while; one that goes on is cancelled, and that is another row."""
+        """Lets a job run for a while; a job that goes on is cancelled, which is measured as a row
+        of its own."""
         path = reply.headers['location']
         begun = sum(self.daemon.spent(POOL).values())
         while True:
@@ -193,7 +197,8 @@ class Field:
     # --- cancelling ---
 
     def cancel(self, row, ask, how, chance):
-        """Begin what takes long, leave at some moment of it, and see how long it goes on."""
+        """Begins a request that takes long, disconnects at some moment of it, and measures how long
+        the work goes on."""
         name = self.daemon.name_request()
         connection = Connection(self.daemon.port)
         threads = self.daemon.spent(POOL)
@@ -233,13 +238,15 @@ class Field:
     # --- starving ---
 
     def import_once(self, body):
-        """Its status, and what all threads did until it was answered, in milliseconds."""
+        """Returns the status of an import, and the time that all threads worked until it was
+        answered, in milliseconds."""
         before = sum(self.daemon.spent(None).values())
         reply = self.daemon.send('PUT', '/v1/meshes/honest', body, ['Content-Type: model/obj'])
         return reply.status, (sum(self.daemon.spent(None).values()) - before) / MILLION
 
     def starve(self, chance):
-        """Abandoned requests, of those that take longest, while an honest client imports."""
+        """Abandons requests that take very long, one after another, while a legitimate client
+        imports a mesh."""
         body = meshes.obj([(i % 100, i // 100, 0) for i in range(20000)],
                           [(i, i + 1, i + 101) for i in range(19000) if i % 100 < 99])[1]
         body = body[:body.rindex(b'\n', 0, 560 * 1000) + 1]
