@@ -1,5 +1,5 @@
-// client.ts - a program in TypeScript against the types that openapi-typescript makes of the served
-// document. What the document gets wrong about a body or an answer does not compile here.
+// client.ts - a TypeScript client that uses the types which openapi-typescript makes of the served
+// OpenAPI document. If the document is wrong about a body or an answer, this does not compile.
 
 import createClient from 'openapi-fetch';
 
@@ -7,12 +7,13 @@ import type { components, paths } from './openapi.js';
 
 type Job = components['schemas']['job'];
 
-// 202, where an answer takes too long to wait for.
+// The status of an answer that takes too long to wait for, and becomes a job, is 202.
 function isJob(answer: object): answer is Job {
     return 'progress' in answer;
 }
 
-// Split the diagonal of a square and walk back to where the walk began. Returns what it met.
+// Splits the diagonal of a square, and walks until it is back where it began; returns the elements
+// that the walk met.
 export async function tour(baseUrl: string) {
     const client = createClient<paths>({ baseUrl });
     const mesh = { mesh: 'square' };
