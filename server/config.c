@@ -463,8 +463,8 @@ static bool check(const srv_config *config, char *message, size_t size)
     return true;
 }
 
-/* Reads the file, the environment and the arguments, in this order. `file` is NULL if there is no
- * file. */
+/* Sets the defaults, then reads the configuration file, the environment and the arguments, in this
+ * order. `file` is NULL if there is no configuration file. */
 static bool read_places(srv_config *config, const char *file, int argc, char *const *argv,
                         char *(*environment)(const char *name), char *message, size_t size)
 {

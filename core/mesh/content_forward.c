@@ -69,7 +69,8 @@ static he_status add_slot(he_content *c, he_error *err)
     return HE_OK;
 }
 
-/* Makes a slot for the column that record i adds, and issues rows in that column. */
+/* Makes a slot for the column that record i adds, and extends that column to all rows that are
+ * issued. */
 static he_status ready_column(he_content *c, const he_delta *delta, size_t i, void **objects,
                               size_t *refused, he_error *err)
 {

@@ -68,8 +68,7 @@ static void shorten_end(mending *g, size_t from)
 }
 
 /* Removes pairs of edges that run back on each other where the end of the loop meets its beginning.
- * Returns where the loop begins after that.
- * Returns where the loop begins then. */
+ * Returns the index at which the shortened loop begins. */
 static size_t shorten_both(mending *g, size_t from)
 {
     he_ids *loops = &g->loops;

@@ -36,8 +36,9 @@ typedef struct srv_parts {
     _Atomic bool ready;     /* the answer of /readyz */
 } srv_parts;
 
-/* Each opens its parts as `parts->config` says. Returns false, with the reason in the log, if one
- * cannot be opened; daemon.c closes what was opened before. */
+/* Each of these functions opens its parts of the daemon as `parts->config` says. Returns false,
+ * with the reason in the log, if a part cannot be opened; daemon.c closes what was opened
+ * before. */
 bool srv_open_tokens(srv_parts *parts); /* from their file, if there is one */
 bool srv_open_certificates(srv_parts *parts);
 bool srv_open_store(srv_parts *parts);   /* thread pools, journal, store, samples */

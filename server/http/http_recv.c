@@ -153,7 +153,7 @@ ssize_t gnutls_record_recv(gnutls_session_t session, void *buffer, size_t size)
         srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     }
     ssize_t got = receive_watched(c, buffer, size);
-    /* gnutls has codes of its own in place of -1. */
+    /* For a TLS connection libmicrohttpd expects an error code of gnutls, not the -1 of recv(). */
     return got == -1 ? GNUTLS_E_AGAIN : got;
 }
 
