@@ -41,8 +41,7 @@ static piece trim(const char *at, size_t length)
 }
 
 /* Reads the next piece of *rest, up to `separator`, which does not count inside quoted strings.
- * Returns false at the end.
- * Returns false at the end. */
+ * Returns false when no piece is left. */
 static bool next_piece(piece *rest, char separator, piece *out)
 {
     if (rest->at == NULL) {

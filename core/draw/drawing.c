@@ -298,7 +298,8 @@ void he_drawing_vertex(const he_drawing *d, uint32_t id, float out[HE_DRAWN_ROW]
     out[3] = halfedge == HE_NONE ? HE_DRAWN_ISOLATED : HE_DRAWN_USED;
 }
 
-/* Returns the first row of a face that was cut, NULL if it is a fan. */
+/* Returns the first of the rows of triangles into which a face was cut. Returns NULL if the face is
+ * drawn as a fan. */
 static const uint32_t *find_cut(const he_drawing *d, uint32_t face)
 {
     const uint32_t mask = ((uint32_t)1 << HE_DRAWN_SIDES) - 1;

@@ -17,7 +17,7 @@ typedef struct st_since {
     uint64_t incarnation, revision;
 } st_since;
 
-/* What a listener cannot get of what it asked for. */
+/* Says whether a listener gets all messages that it asked for and, if not, why. */
 typedef enum st_missed {
     ST_MISSED_NOTHING, /* it begins at the present, or where it asked for */
     ST_MISSED_HISTORY, /* the changes after since->revision are not in the queue, at best in the
