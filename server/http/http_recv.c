@@ -153,7 +153,7 @@ ssize_t gnutls_record_recv(gnutls_session_t session, void *buffer, size_t size)
         srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     }
     ssize_t got = receive_watched(c, buffer, size);
-    /* For TLS, libmicrohttpd expects GNUTLS_E_AGAIN where recv() returns -1. */
+    /* With TLS, libmicrohttpd expects GNUTLS_E_AGAIN where recv() returns -1. */
     return got == -1 ? GNUTLS_E_AGAIN : got;
 }
 
