@@ -9,7 +9,7 @@
 
 #include "api/json/text.h"
 #include "build/build.h"
-#include "store/durability_wait.h"
+#include "store/publish/durability_wait.h"
 
 /* Each row: X(constant, slug, HTTP status, title, explanation) */
 #define API_CODE_MAP(X)                                                                            \

@@ -7,7 +7,7 @@
 #ifndef HE_STORE_FOLLOWERS_H
 #define HE_STORE_FOLLOWERS_H
 
-#include "store/broadcast_queue.h"
+#include "store/publish/broadcast_queue.h"
 #include "store/store.h"
 
 /* Where a listener wants to continue. */

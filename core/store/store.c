@@ -1,7 +1,7 @@
 #include "store/store.h"
 
 #include "store/followers.h"
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "store/table.h"
 #include "system/clock.h"
 #include "system/lock.h"

@@ -26,8 +26,8 @@
  *     cache     the mesh's cached value
  *     keys      answers kept for keyed requests, of a mesh or of the store
  *     derived   objects that handlers derived from the mesh
- *     queue     messages for listeners of the mesh (broadcast_queue.h)
- *     waits     answers that wait until they are durable (durability_wait.h)
+ *     queue     messages for listeners of the mesh (publish/broadcast_queue.h)
+ *     waits     answers that wait until they are durable (publish/durability_wait.h)
  *     holders   how much each holder of meshes has (holder/holders.h)
  * The table of jobs (api/job/job_table.h) has a lock that is taken after a mesh's, and connections
  * that wait for events (server/http/http_live.h) one that is taken after all others. A thread that
@@ -37,9 +37,9 @@
 #define HE_STORE_STORE_H
 
 #include "mesh/delta.h"
-#include "store/durability_wait.h"
 #include "store/holder/holders.h"
-#include "store/store_counts.h"
+#include "store/publish/durability_wait.h"
+#include "store/publish/store_counts.h"
 #include "system/thread_pool.h"
 
 typedef struct st_store st_store;

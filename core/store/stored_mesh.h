@@ -2,12 +2,12 @@
 #ifndef HE_STORE_STORED_MESH_H
 #define HE_STORE_STORED_MESH_H
 
-#include "store/booking.h"
-#include "store/broadcast_queue.h"
 #include "store/holder/holders.h"
 #include "store/idempotency.h"
+#include "store/publish/booking.h"
+#include "store/publish/broadcast_queue.h"
+#include "store/publish/store_counts.h"
 #include "store/revision_log.h"
-#include "store/store_counts.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

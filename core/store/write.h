@@ -20,7 +20,7 @@
 #define HE_STORE_WRITE_H
 
 #include "base/watch.h"
-#include "store/booking.h"
+#include "store/publish/booking.h"
 #include "store/store.h"
 
 typedef enum st_write_kind {

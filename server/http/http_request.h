@@ -41,7 +41,7 @@
 #include "server/log/timing.h"
 #include "server/log/trace.h"
 #include "server/net/peers.h"
-#include "store/durability_wait.h"
+#include "store/publish/durability_wait.h"
 
 #include <microhttpd.h>
 #include <stdatomic.h>

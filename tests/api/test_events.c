@@ -10,7 +10,7 @@
 #include "mesh/column.h"
 #include "mesh/write.h"
 #include "op/op.h"
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>

@@ -4,7 +4,7 @@
 #include "tests/unit/fixture.h"
 
 #include "base/mem.h"
-#include "store/broadcast_queue.h"
+#include "store/publish/broadcast_queue.h"
 
 #include <pthread.h>
 #include <stdio.h>

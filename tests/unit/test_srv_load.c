@@ -12,7 +12,7 @@
 #include "mesh/compact.h"
 #include "mesh/write.h"
 #include "store/followers.h"
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "store/table.h"
 #include "stored/stored.h"
 

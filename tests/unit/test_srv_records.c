@@ -5,7 +5,7 @@
 
 #include "edit/local/poke.h"
 #include "mesh/compact.h"
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "stored/stored.h"
 
 enum { BUDGET = 1 << 20 };

@@ -6,7 +6,7 @@
 
 #include "edit/local/vertex.h"
 
-#include "store/durability_wait.h"
+#include "store/publish/durability_wait.h"
 #include "tests/seed.h"
 
 enum { MANY = 1000 };

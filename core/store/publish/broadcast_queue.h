@@ -23,7 +23,7 @@
 #ifndef HE_STORE_BROADCAST_QUEUE_H
 #define HE_STORE_BROADCAST_QUEUE_H
 
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "system/histogram.h"
 
 #include <pthread.h>

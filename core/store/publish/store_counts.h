@@ -6,7 +6,7 @@
 #ifndef HE_STORE_STORE_COUNTS_H
 #define HE_STORE_STORE_COUNTS_H
 
-#include "store/broadcast_queue.h"
+#include "store/publish/broadcast_queue.h"
 #include "system/histogram.h"
 
 #include <stdatomic.h>

@@ -1,4 +1,4 @@
-#include "store/durability_wait.h"
+#include "store/publish/durability_wait.h"
 
 #include "base/mem.h"
 #include "system/clock.h"

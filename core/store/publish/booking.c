@@ -1,7 +1,7 @@
-#include "store/booking.h"
+#include "store/publish/booking.h"
 
 #include "base/mem.h"
-#include "store/limits.h"
+#include "store/publish/limits.h"
 #include "stored/stored.h"
 
 st_status st_book(const st_journal *journal, const st_room_need *need, st_booking *out)

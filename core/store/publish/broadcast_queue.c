@@ -1,4 +1,4 @@
-#include "store/broadcast_queue.h"
+#include "store/publish/broadcast_queue.h"
 
 #include "base/mem.h"
 #include "system/clock.h"
