@@ -1,5 +1,5 @@
-/* A store on a disk while memory or disk space runs out: each request must be done completely or
- * not at all, a loss must be reported however late, and no thread may be blocked for ever. */
+/* A store on a disk while memory or disk space runs out: a loss must be reported however late, and
+ * no thread may be blocked for ever. test_srv_starved.c makes single allocations fail. */
 #include "tests/disk.h"
 #include "tests/store_folder.h"
 #include "tests/unit/fixture.h"
@@ -98,120 +98,6 @@ static st_status disk_status(void)
     st_health health;
     st_store_health(store, &health);
     return health.status;
-}
-
-/* --- memory: the N-th allocation fails --- */
-
-static _Atomic long calls, fails_at;
-
-static void *failing_resize(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
-}
-
-/* Makes the N-th allocation from now on fail; 0: none fails. The hook itself is set while the
- * journal's thread does not run. */
-static void fail_memory_at(long n)
-{
-    atomic_store(&calls, 0);
-    atomic_store(&fails_at, n);
-}
-
-static bool was_done(st_status status)
-{
-    assert_true(status == ST_OK || status == ST_NO_MEMORY);
-    return status == ST_OK;
-}
-
-typedef struct did {
-    bool made;
-    uint64_t revision; /* of the mesh m; 0: m was not changed */
-} did;
-
-/* Loads the mesh m, which is only on the disk, reads and changes it, makes the mesh n, and lists
- * both. */
-static void use_all(did *out)
-{
-    st_mesh *mesh = NULL, *made = NULL;
-    st_snapshot *snapshot = NULL;
-    st_mesh_info info;
-    st_card cards[2];
-    size_t count = 0;
-    if (was_done(st_load(store, "m", &mesh))) {
-        if (was_done(st_snapshot_take(mesh, &snapshot))) {
-            st_snapshot_release(snapshot);
-        }
-        if (was_done(edit(mesh, &info))) {
-            out->revision = info.revision;
-        }
-        st_release(mesh);
-    }
-    he_mesh *content = he_mesh_new();
-    if (content != NULL) {
-        out->made = was_done(st_create(store, "n", "", content, NULL, &made));
-        if (out->made) {
-            st_release(made);
-        } else {
-            he_mesh_free(content);
-        }
-    }
-    if (was_done(st_cards(store, "", cards, 2, &count))) {
-        assert_int_equal(count, out->made ? 2 : 1);
-    }
-    assert_int_equal(disk_status(), ST_OK);
-}
-
-/* Requires that everything that was reported as done is in the store, and nothing else. */
-static void compare(const did *done)
-{
-    open_store();
-    st_mesh *mesh = load("m"), *made = NULL;
-    assert_int_equal(revision_of(mesh), done->revision == 0 ? 1 : done->revision);
-    assert_int_equal(st_load(store, "n", &made), done->made ? ST_OK : ST_ABSENT);
-    if (done->made) {
-        st_release(made);
-    }
-    st_release(mesh);
-    close_store();
-}
-
-/* Each allocation of a request fails in turn. The start of a store, which allocates most often, is
- * tested in test_srv_journal_faults.c. */
-static void without_memory_each_request_is_whole_or_not_at_all(void **state)
-{
-    (void)state;
-    static const he_mem_hook hook = {failing_resize, NULL};
-    unsigned runs = 0, all = 0, none = 0;
-    bool fired = true;
-    fail_memory_at(0);
-    he_mem_set_hook(&hook);
-    for (long n = 1; fired; n += 1 + n / 32, runs++) {
-        did done = {.revision = 0};
-        open_store();
-        make("m");
-        close_store();
-        open_store();
-        fail_memory_at(n);
-        use_all(&done);
-        close_store();
-        fired = atomic_load(&calls) >= n;
-        fail_memory_at(0);
-        compare(&done);
-        all += done.made && done.revision == 2;
-        none += done.revision == 0;
-        folder_remove(folder);
-        folder_make(folder);
-    }
-    printf("note: %u requests for memory failed, each alone; m was not changed in %u runs, and all "
-           "was "
-           "done in %u\n",
-           runs - 1, none, all);
-    assert_true(runs > 50 && none > 5 && all > 5);
 }
 
 /* --- a full disk --- */
@@ -376,7 +262,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-        STORE_TEST(without_memory_each_request_is_whole_or_not_at_all),
         STORE_TEST(a_handler_that_slept_through_a_full_disk_is_told_of_its_loss),
         STORE_TEST(a_budget_filled_while_four_writers_write_stops_nobody_for_good),
 #undef STORE_TEST
