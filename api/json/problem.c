@@ -3,6 +3,7 @@
 #include "api/json/json_out.h"
 #include "api/limits.h"
 #include "repair/repair.h"
+#include "system/memory.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -305,16 +306,34 @@ static void write_report(const api_problem *problem, api_out *out)
     api_out_key_u64(out, "total", report->total);
 }
 
+/* Functions that run out of memory do not know why; the client gets to know whether the budget is
+ * used up. */
+static int named_code(int code)
+{
+    return code == HE_NO_MEMORY && st_memory_was_over_budget() ? API_MEMORY_BUDGET : code;
+}
+
+const char *api_problem_unwritten(void)
+{
+    return st_memory_was_over_budget()
+               ? "{\"type\":\"/problems/memory_budget\",\"title\":\"The memory budget is used up\","
+                 "\"status\":507,\"detail\":\"no memory for the "
+                 "request\",\"code\":\"memory_budget\"}"
+               : "{\"type\":\"/problems/no_memory\",\"title\":\"Out of memory\",\"status\":507,"
+                 "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
+}
+
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text)
 {
     api_out out;
     api_out_init(&out, text);
-    const char *slug = api_code_slug(problem->code);
+    const int code = named_code(problem->code);
+    const char *slug = api_code_slug(code);
     char type[64];
     snprintf(type, sizeof type, "/problems/%s", slug);
     api_out_object_begin(&out);
     api_out_key_string(&out, "type", type);
-    api_out_key_string(&out, "title", api_code_title(problem->code));
+    api_out_key_string(&out, "title", api_code_title(code));
     api_out_key_i64(&out, "status", api_problem_http(problem));
     api_out_key_string(&out, "detail", problem->detail);
     api_out_key_string(&out, "code", slug);

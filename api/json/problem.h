@@ -224,8 +224,8 @@
       "The change was not made, or is lost. Reads go on, meshes can be deleted, and changes are "  \
       "taken again as soon as there is room.")                                                     \
     X(MEMORY_BUDGET, "memory_budget", 507, "The memory budget is used up",                         \
-      "What the request would store does not fit the configured budget. Delete a mesh and try "    \
-      "again.")                                                                                    \
+      "What the request needs does not fit the configured budget beside what is in use. Delete a " \
+      "mesh and try again, or try again later.")                                                   \
     X(QUOTA, "quota", 507, "The token's quota is used up",                                         \
       "The token that made the mesh may hold only so many meshes, or so many bytes of memory in "  \
       "them; the detail says which. Nothing was changed. Delete a mesh of that token, or make "    \
@@ -302,7 +302,11 @@ int api_problem_http(const api_problem *problem);
  * help. */
 enum { API_RETRY = 24 };
 const char *api_problem_retry(const api_problem *problem, char out[API_RETRY]);
-/* Appends the problem as a JSON object to `text`; `request_id` may be NULL. */
+/* Returns the JSON object that is sent, with status 507, if there is no memory to write one; a
+ * literal. */
+const char *api_problem_unwritten(void);
+/* Appends the problem as a JSON object to `text`; `request_id` may be NULL. HE_NO_MEMORY is written
+ * as API_MEMORY_BUDGET if it was the memory budget that refused. */
 void api_problem_write(const api_problem *problem, const char *request_id, api_text *text);
 /* Writes the HTML page that explains a code, served at /problems/{code}. */
 void api_problem_page(int code, api_text *text);

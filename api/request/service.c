@@ -118,17 +118,14 @@ static void drop_answer(api_exchange *x)
 
 static void answer_problem(api_exchange *x)
 {
-    static const char no_memory[] =
-        "{\"type\":\"/problems/no_memory\",\"title\":\"Out of memory\",\"status\":507,"
-        "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
     drop_answer(x);
     api_text_empty(&x->text);
     api_problem_write(&x->problem, x->request.request_id, &x->text);
     x->answered = true;
     if (x->text.failed) {
         x->answer.status = 507;
-        x->answer.bytes = no_memory;
-        x->answer.length = sizeof no_memory - 1;
+        x->answer.bytes = api_problem_unwritten();
+        x->answer.length = (int64_t)strlen(x->answer.bytes);
     } else {
         x->answer.status = api_problem_http(&x->problem);
         x->answer.bytes = x->text.bytes;
@@ -218,6 +215,27 @@ static st_shown shown(const api_exchange *x)
     return st_shown_all(x->store, x->since);
 }
 
+/* The answer to a write may wait for the disk, and then for its client. Until then it needs only
+ * its own bytes: the body is freed, and the mesh may be evicted. */
+static void let_go(api_exchange *x)
+{
+    if (x->route == NULL || !(x->route->flags & API_WRITES) || x->keyed != NULL ||
+        x->free_stream != NULL || x->blob.self != NULL) {
+        return;
+    }
+    if (x->free_state != NULL) {
+        x->free_state(x->state);
+        x->free_state = NULL;
+        x->state = NULL;
+    }
+    api_document_clear(&x->document);
+    api_text_clear(&x->body);
+    st_snapshot_release(x->snapshot);
+    x->snapshot = NULL;
+    st_release(x->mesh);
+    x->mesh = NULL;
+}
+
 static api_step finish(api_exchange *x)
 {
     end_claim(x);
@@ -254,6 +272,7 @@ static api_step finish(api_exchange *x)
     if (x->phase != API_PHASE_JOB) {
         api_coded_answer(x); /* kept answers (keys, jobs) are uncompressed */
     }
+    let_go(x);
     x->phase = API_PHASE_DONE;
     return API_READY;
 }

@@ -11,6 +11,7 @@ enum { SMALL = 64 * 1024, RESERVE_SHARE = 16 };
 static _Atomic uint64_t used;
 static _Atomic uint64_t outside; /* bytes of `used` that are counted by st_memory_count */
 static _Atomic uint64_t budget_bytes;
+static _Atomic bool over_budget; /* the budget refused the last block that was refused */
 static _Thread_local bool is_unrefused;
 static _Thread_local const st_memory_giver *asked;
 
@@ -74,10 +75,12 @@ static void *resize(void *context, void *memory, size_t size)
     }
     size_t growth = size > before ? size - before : 0;
     if (growth > 0 && !take(growth)) {
+        atomic_store_explicit(&over_budget, true, memory_order_relaxed);
         return NULL;
     }
     void *resized = realloc(memory, size);
     if (resized == NULL) {
+        atomic_store_explicit(&over_budget, false, memory_order_relaxed);
         give_back(growth);
         return NULL;
     }
@@ -145,6 +148,11 @@ bool st_memory_is_full(void)
 {
     uint64_t budget = st_memory_budget();
     return budget != 0 && st_memory_used() >= budget - budget / RESERVE_SHARE;
+}
+
+bool st_memory_was_over_budget(void)
+{
+    return atomic_load_explicit(&over_budget, memory_order_relaxed);
 }
 
 /* The process counts as idle if it worked at least WORKED_MICROS since memory was last returned,

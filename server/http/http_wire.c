@@ -27,9 +27,6 @@ void srv_wire_answer(srv_wire *wire, const api_answer *answer)
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
                       api_text *text)
 {
-    static const char no_memory[] =
-        "{\"type\":\"/problems/no_memory\",\"title\":\"Out of memory\",\"status\":507,"
-        "\"detail\":\"no memory for the request\",\"code\":\"no_memory\"}";
     wire->bytes = "";
     wire->length = 0;
     wire->status = 204;
@@ -37,8 +34,8 @@ void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *re
         api_text_empty(text);
         api_problem_write(problem, request_id, text);
         wire->status = text->failed ? 507 : api_problem_http(problem);
-        wire->bytes = text->failed ? no_memory : text->bytes;
-        wire->length = text->failed ? (int64_t)sizeof no_memory - 1 : (int64_t)text->length;
+        wire->bytes = text->failed ? api_problem_unwritten() : text->bytes;
+        wire->length = text->failed ? (int64_t)strlen(wire->bytes) : (int64_t)text->length;
         srv_wire_add(wire, "Content-Type", "application/problem+json");
         srv_wire_add(wire, "X-Content-Type-Options", "nosniff");
     }

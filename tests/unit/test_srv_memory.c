@@ -1,7 +1,8 @@
-/* The memory of the daemon: freed memory must be returned to the system once the process is
- * idle. */
+/* The memory of the daemon: freed memory must be returned to the system once the process is idle,
+ * and a refusal must say whether the budget is the reason. */
 #include "tests/unit/fixture.h"
 
+#include "api/json/problem.h"
 #include "base/mem.h"
 #include "system/memory.h"
 
@@ -111,9 +112,35 @@ static void large_blocks_have_huge_pages_only_in_mappings_of_their_own(void **st
 }
 #endif
 
+static void expect_code(const char *code)
+{
+    const api_problem problem = {.code = HE_NO_MEMORY, .detail = "no memory for it"};
+    char member[64];
+    api_text text = {0};
+    (void)snprintf(member, sizeof member, "\"code\":\"%s\"", code);
+    api_problem_write(&problem, NULL, &text);
+    api_text_add_char(&text, '\0');
+    assert_non_null(strstr(text.bytes, member));
+    assert_non_null(strstr(text.bytes, "\"status\":507"));
+    assert_non_null(strstr(api_problem_unwritten(), member));
+    api_text_clear(&text);
+}
+
+static void a_refusal_names_the_budget_if_that_is_used_up(void **state)
+{
+    (void)state;
+    expect_code("no_memory");
+    st_memory_install(1 << 20);
+    assert_null(he_mem_alloc(2 << 20));
+    assert_true(st_memory_was_over_budget());
+    expect_code("memory_budget");
+    he_mem_set_hook(NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_refusal_names_the_budget_if_that_is_used_up),
         cmocka_unit_test(pages_are_given_back_once_after_work_when_it_rests),
 #if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
         cmocka_unit_test(what_is_freed_between_used_blocks_goes_back_to_the_system),
