@@ -7,14 +7,12 @@
 #include "server/boot/start.h"
 #include "server/boot/watch.h"
 #include "server/net/notify.h"
+#include "system/memory.h"
 
 #include <time.h>
 #include <unistd.h>
 
-enum {
-    LOG_RING = 8192,
-    STOP_MILLIS = 4000 /* of the five seconds that a stop may take */
-};
+enum { STOP_MILLIS = 4000 /* of the five seconds that a stop may take */ };
 
 /* The main thread serves no requests; it does periodic work until a signal stops it. */
 static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *reason)
@@ -86,14 +84,15 @@ int srv_daemon_run(const srv_started *started)
     srv_parts parts = {.started = started, .config = started->config};
     sigset_t signals;
     srv_signals_begin(&signals);
-    parts.log = srv_log_new(STDERR_FILENO, LOG_RING, &settings);
+    srv_choose_budget(started->config);
+    parts.log = srv_log_new(STDERR_FILENO, srv_log_capacity(st_memory_budget()), &settings);
     if (parts.log == NULL) {
         srv_line_write(STDERR_FILENO, settings.json, SRV_LEVEL_ERROR,
                        "no memory or threads to start");
         return 1;
     }
     srv_start_tell(parts.log, started->config, started->environment);
-    srv_choose_budget(parts.log, started->config);
+    srv_tell_budget(parts.log, started->config);
 
     bool open = srv_open_tokens(&parts) && srv_open_certificates(&parts) &&
                 srv_open_store(&parts) && srv_open_service(&parts) && srv_open_http(&parts);

@@ -59,16 +59,27 @@ void srv_choose_connections(const srv_config *config, srv_http_options *options)
     options->workers = config->workers == 0 ? srv_cores() : (size_t)config->workers;
 }
 
-void srv_choose_budget(srv_log *log, const srv_config *config)
+static st_memory_limit find_limit(void)
 {
-    const uint64_t mib = UINT64_C(1) << 20;
-    const st_memory_limit limit = st_memory_limit_find("", st_memory_limit_machine());
-    uint64_t budget = config->memory_budget;
-    if (budget == 0 && limit.bytes == UINT64_MAX) {
+    return st_memory_limit_find("", st_memory_limit_machine());
+}
+
+void srv_choose_budget(const srv_config *config)
+{
+    const uint64_t limit = find_limit().bytes;
+    const uint64_t chosen = limit == UINT64_MAX ? 0 : limit / 4 * 3;
+    st_memory_set_budget(config->memory_budget == 0 ? chosen : config->memory_budget);
+    st_resident_watch();
+}
+
+void srv_tell_budget(srv_log *log, const srv_config *config)
+{
+    const uint64_t mib = UINT64_C(1) << 20, budget = st_memory_budget();
+    const st_memory_limit limit = find_limit();
+    if (budget == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "no memory budget: the system does not say what the machine has");
-    } else if (budget == 0) {
-        budget = limit.bytes / 4 * 3;
+    } else if (config->memory_budget == 0) {
         srv_log_tell(log, SRV_LEVEL_INFO,
                      "memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
                      " MiB that %s allows",
@@ -81,6 +92,4 @@ void srv_choose_budget(srv_log *log, const srv_config *config)
     } else {
         srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB as told", budget / mib);
     }
-    st_memory_set_budget(budget);
-    st_resident_watch();
 }

@@ -11,7 +11,9 @@ size_t srv_cores(void); /* at least one */
  * whose limit is raised to the maximum that the system allows. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options);
 
-/* Sets the memory budget and logs it with its reason. */
-void srv_choose_budget(srv_log *log, const srv_config *config);
+/* Sets the memory budget. */
+void srv_choose_budget(const srv_config *config);
+/* Logs the memory budget with its reason. */
+void srv_tell_budget(srv_log *log, const srv_config *config);
 
 #endif

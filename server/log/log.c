@@ -17,7 +17,10 @@ enum {
     GATHER_MILLIS = 20, /* the line of a request is written at most this late */
     BATCH = 16,         /* entries formatted at once */
     POLL_MILLIS = 100,
-    ENDING_MILLIS = 500
+    ENDING_MILLIS = 500,
+    LEAST_ENTRIES = 256,
+    MOST_ENTRIES = 8192,
+    RING_SHARE = 64 /* of the memory budget */
 };
 
 /* One entry of the ring: a line of the daemon itself, or the record of a request. */
@@ -146,6 +149,14 @@ static void *run(void *context)
     }
     pthread_mutex_unlock(&log->lock);
     return NULL;
+}
+
+size_t srv_log_capacity(uint64_t budget)
+{
+    const uint64_t count = budget / RING_SHARE / sizeof(entry);
+    return budget == 0 || count > MOST_ENTRIES ? MOST_ENTRIES
+           : count < LEAST_ENTRIES             ? LEAST_ENTRIES
+                                               : (size_t)count;
 }
 
 srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings)

@@ -3,6 +3,7 @@
 #include "tests/unit/fixture.h"
 
 #include "server/log/log.h"
+#include "system/memory.h"
 
 #include <cjson/cJSON.h>
 #include <pthread.h>
@@ -339,6 +340,30 @@ static void a_log_ends_without_a_reader(void **state)
     close(ends[1]);
 }
 
+/* What the ring of a daemon with this budget takes. */
+static uint64_t ring_bytes(uint64_t budget)
+{
+    const uint64_t before = st_memory_used();
+    srv_log *log = srv_log_new(STDERR_FILENO, srv_log_capacity(budget), &(srv_log_settings){0});
+    assert_non_null(log);
+    const uint64_t bytes = st_memory_used() - before;
+    srv_log_free(log);
+    return bytes;
+}
+
+static void the_ring_takes_little_of_a_small_budget(void **state)
+{
+    (void)state;
+    enum { MIB = 1 << 20 };
+    st_memory_install(0);
+    assert_in_range(ring_bytes(1), 1, 256 * 1024);
+    assert_in_range(ring_bytes(16 * MIB), 200 * 1024, 260 * 1024);
+    assert_in_range(ring_bytes(64 * MIB), MIB - MIB / 16, MIB + 4096);
+    assert_int_equal(ring_bytes(0), ring_bytes((uint64_t)MIB * MIB));
+    assert_in_range(ring_bytes(0), 4 * MIB, 6 * MIB);
+    he_mem_set_hook(NULL);
+}
+
 static void a_log_without_memory_is_none(void **state)
 {
     (void)state;
@@ -383,6 +408,7 @@ int main(void)
         cmocka_unit_test(lines_come_in_the_order_in_which_they_were_said),
         cmocka_unit_test(lines_that_find_no_place_are_counted),
         cmocka_unit_test(a_log_ends_without_a_reader),
+        cmocka_unit_test(the_ring_takes_little_of_a_small_budget),
         cmocka_unit_test(a_log_without_memory_is_none),
         cmocka_unit_test(a_program_without_a_log_says_one_line),
     };
