@@ -113,10 +113,19 @@ static void publish(api_exchange *x, writing *w, const char *op, int status, boo
     api_answer_json(x, w->dry_run ? 200 : status);
 }
 
+static const api_in *expected_of(const writing *w)
+{
+    return w->has_expected ? &w->expected : NULL;
+}
+
+static bool may_write(api_exchange *x, const writing *w)
+{
+    return w->dry_run || api_gate_may_change(x);
+}
+
 static he_mesh *write_begin(api_exchange *x, writing *w)
 {
-    bool begun = (w->dry_run || api_gate_may_change(x)) &&
-                 api_write_begin(x, w->has_expected ? &w->expected : NULL);
+    bool begun = may_write(x, w) && api_write_begin(x, expected_of(w));
     return begun ? x->write.content : NULL;
 }
 
@@ -323,16 +332,10 @@ static size_t count_columns(const he_mesh *mesh)
     return count;
 }
 
-void api_attribute_put(api_exchange *x)
+/* Puts the column into the content of the write that was begun, and commits that. */
+static void put(api_exchange *x, writing *w)
 {
-    writing *w = x->state;
-    if (!(w->octets ? decode_octets(x, w) : decode_json(x, w))) {
-        return;
-    }
-    he_mesh *mesh = write_begin(x, w);
-    if (mesh == NULL) {
-        return;
-    }
+    he_mesh *mesh = x->write.content;
     he_error err = {0};
     bool is_new = he_mesh_find_column(mesh, x->kind, x->attribute) == NULL;
     bool good = !is_new || count_columns(mesh) < API_MAX_ATTRIBUTES ||
@@ -346,6 +349,44 @@ void api_attribute_put(api_exchange *x)
         w->column = NULL;
     }
     publish(x, w, is_new ? "attribute_create" : "attribute_replace", is_new ? 201 : 200, good);
+}
+
+/* A copy of the mesh gets the column, so that the record is written to the disk without the lock.
+ */
+static void put_claimed(api_exchange *x)
+{
+    he_error err = {0};
+    if (!api_write_claim(x, expected_of(x->state))) {
+        return;
+    }
+    if (st_write_copy(&x->write, &x->watch, &err) != HE_OK) {
+        api_fail_core(x, &err);
+        return;
+    }
+    he_mesh_watch(x->write.content, NULL);
+    put(x, x->state);
+}
+
+/* Is the column too large to be encoded under the lock? The elements of all kinds are an upper
+ * bound where the request does not give each a value. */
+static bool is_large(const api_exchange *x, const writing *w)
+{
+    st_mesh_info info;
+    const uint64_t rows = w->octets || w->has_at ? w->count : st_read_card(x->mesh, &info);
+    return st_store_stages(x->store, rows * w->column->row_bytes);
+}
+
+void api_attribute_put(api_exchange *x)
+{
+    writing *w = x->state;
+    if (!(w->octets ? decode_octets(x, w) : decode_json(x, w)) || !may_write(x, w)) {
+        return;
+    }
+    if (is_large(x, w)) {
+        api_defer(x, put_claimed);
+    } else if (api_write_begin(x, expected_of(w))) {
+        put(x, w);
+    }
 }
 
 /* --- PATCH --- */

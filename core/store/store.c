@@ -188,6 +188,11 @@ void st_store_unstage(const st_store *store, st_stage *stage)
     }
 }
 
+bool st_store_stages(const st_store *store, uint64_t bytes)
+{
+    return store->journal.keeps && bytes > ST_BODY_BYTES;
+}
+
 void st_store_take_out(st_store *store, st_mesh *mesh)
 {
     bool found;

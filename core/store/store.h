@@ -220,6 +220,9 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
 st_status st_store_stage(const st_store *store, const he_mesh *content, st_stage **out);
 void st_store_unstage(const st_store *store,
                       st_stage *stage); /* for a stage that no write took; takes NULL */
+/* Is a record of so many bytes staged, so that a write which makes one had better claim its mesh?
+ * Only the commit of a claim can stage an edit; any other encodes it under the lock. */
+bool st_store_stages(const st_store *store, uint64_t bytes);
 /* Lists up to `limit` meshes that are in memory with ids after `after` ("" for the start), in the
  * order of ids, each with a reference. */
 size_t st_list(st_store *store, const char *after, st_mesh **out, size_t limit);

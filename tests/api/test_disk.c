@@ -1,6 +1,7 @@
 /* What the API answers when the disk is full or has failed, and when changes that a client has seen
  * were lost. */
 #include "tests/api/request.h"
+#include "store/table.h"
 #include "store/write.h"
 #include "tests/slow_journal.h"
 
@@ -233,6 +234,80 @@ static void a_short_list_takes_the_lock_until_it_turns_out_to_change_much(void *
     bench_free(b);
 }
 
+/* --- a large attribute --- */
+
+static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void **state)
+{
+    (void)state;
+    enum { SIDE = 400, ROWS = (SIDE + 1) * (SIDE + 1) };
+    static const char path[] = "/v1/meshes/m/attributes/vertices/a";
+    static double values[ROWS];
+    char body[80];
+    api_bench *b = begin();
+    slow_journal_advance(&journal, UINT64_MAX);
+    /* Of a small mesh it is encoded under the lock. */
+    bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
+    bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
+    (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
+                   SIDE);
+    bench_done(bench_expect(201, bench_post(b, "/v1/meshes?id=m", body)));
+    assert_int_equal(journal.staged_edits, 0);
+    staging_for = b;
+    journal.staging = look_and_write;
+    values[0] = 1;
+    const char *const octets[] = {"Content-Type", "application/octet-stream", NULL};
+    bench_done(bench_expect(201, bench_send_bytes(b, "PUT",
+                                                  "/v1/meshes/m/attributes/vertices/a?type=double",
+                                                  octets, (const char *)values, sizeof values)));
+    assert_int_equal(journal.staged_edits, 1);
+    assert_true(journal.record.staged_edit && journal.record.body == NULL);
+    journal.staging = NULL;
+    /* One value for all of them, and a rehearsal, which stages nothing. */
+    bench_done(bench_expect(200, bench_send(b, "PUT", path, NULL,
+                                            "{\"type\":\"double\",\"value\":2,\"dry_run\":true}")));
+    assert_int_equal(journal.staged_edits, 1);
+    bench_done(
+        bench_expect(200, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\",\"value\":2}")));
+    assert_int_equal(journal.staged_edits, 2);
+    bench_done(bench_expect(200, bench_post(b, "/v1/meshes/m/undo", NULL)));
+    bench_reply r = bench_expect(200, bench_get(b, "/v1/meshes/m/attributes/vertices/a?ids=0,1"));
+    assert_non_null(strstr(r.body, "\"values\":[1,0]"));
+    bench_reply_free(&r);
+    /* What the mesh refuses is refused as it is for a small one. */
+    bench_done(
+        bench_expect(422, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/edges/b?type=double",
+                                           octets, (const char *)values, sizeof values)));
+    bench_free(b);
+}
+
+/* --- an answer that waits --- */
+
+/* The answer to a write is ready, but it was not sent yet. */
+static void a_mesh_can_be_evicted_while_the_answer_that_made_it_waits(void **state)
+{
+    (void)state;
+    enum { MIB = 1 << 20 };
+    api_bench *b = begin();
+    st_store_measures measures;
+    bench_reply made = bench_expect(201, bench_post(b, "/v1/meshes?id=o", "{\"shape\":\"cube\"}"));
+    bench_reply edited =
+        bench_expect(200, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}"));
+    st_memory_set_budget(MIB);
+    st_memory_count(MIB);
+    st_make_room(bench_store(b), 1);
+    st_store_measure(bench_store(b), &measures);
+    assert_int_equal(measures.meshes_in_memory, 2); /* their changes are not on the disk yet */
+    slow_journal_advance(&journal, slow_journal_newest(&journal));
+    st_make_room(bench_store(b), 1);
+    st_store_measure(bench_store(b), &measures);
+    assert_int_equal(measures.meshes_in_memory, 0);
+    st_memory_count(-MIB);
+    st_memory_set_budget(0);
+    bench_reply_free(&made);
+    bench_reply_free(&edited);
+    bench_free(b);
+}
+
 /* --- readiness --- */
 
 static void readiness_tells_how_the_disk_is(void **state)
@@ -264,6 +339,8 @@ int main(void)
         cmocka_unit_test(a_change_that_is_too_large_to_be_kept_names_the_limit),
         cmocka_unit_test(a_long_list_keeps_no_reader_and_no_writer_of_another_mesh),
         cmocka_unit_test(a_short_list_takes_the_lock_until_it_turns_out_to_change_much),
+        cmocka_unit_test(a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh),
+        cmocka_unit_test(a_mesh_can_be_evicted_while_the_answer_that_made_it_waits),
         cmocka_unit_test(readiness_tells_how_the_disk_is),
     };
     return cmocka_run_group_tests_name("disk", tests, NULL, NULL);
