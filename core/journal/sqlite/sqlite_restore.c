@@ -75,7 +75,7 @@ static const char *const texts[STATEMENTS] = {
              "WHERE (mesh, holder, text) > (?1, ?2, ?3) ORDER BY mesh, holder, text LIMIT 1",
     [KEPT_PUT] = "UPDATE kept SET incarnation = 0, revision = 0, metadata = 0, sum = ?4 "
                  "WHERE mesh = ?1 AND holder = ?2 AND text = ?3",
-    [JOB] = "SELECT " ST_JOB_COLUMNS " FROM job WHERE tag <> '' LIMIT 1",
+    [JOB] = "SELECT " ST_JOB_COLUMNS " FROM job WHERE tag <> '' AND id > ?1 ORDER BY id LIMIT 1",
     [JOB_PUT] = "UPDATE job SET tag = '', sum = ?2 WHERE id = ?1",
 };
 
@@ -131,10 +131,11 @@ static st_sql take_tags_of_keys(st_db *db)
 /* Removes the ETags of jobs' answers: the states that they name may be gone. */
 static st_sql take_tags_of_jobs(st_db *db)
 {
+    char last[ST_JOB_ID + 1] = "";
     for (;;) {
         sqlite3_stmt *s;
         st_job job;
-        st_sql outcome = st_db_find(db, JOB, &s, "");
+        st_sql outcome = st_db_find(db, JOB, &s, "t", last);
         if (outcome != ST_SQL_ROW) {
             return outcome;
         }
@@ -150,6 +151,7 @@ static st_sql take_tags_of_jobs(st_db *db)
         if (outcome != ST_SQL_DONE) {
             return outcome;
         }
+        memcpy(last, job.id, sizeof last);
     }
 }
 
