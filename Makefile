@@ -457,10 +457,13 @@ $(BUILD)/tests/bench/store: $(BUILD)/obj/tests/bench/store.o $(LIBRARIES)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)
 
-bench-store: $(HEDGED) $(BUILD)/tests/bench/store | $(INSTALLED) ## what durable edits cost, beside the same bytes written and synced, and beside memory
+# ONLY chooses rows: writers is tests/bench/store.c, tests/bench/store_daemon.py has the others.
+STORE_ROWS = $(or $(ONLY),writers snapshots start log reads)
+bench-store: $(HEDGED) $(BUILD)/tests/bench/store | $(INSTALLED) ## what durable edits cost, beside the same bytes written and synced, and beside memory; ONLY="writers snapshots start log reads" for some, ROUNDS=
 	@mkdir -p build/durable
-	@$(BUILD)/tests/bench/store build/durable
-	@python3 -B tests/bench/store_daemon.py --hedged $(abspath $(HEDGED)) --work build/durable
+	@$(if $(filter writers,$(STORE_ROWS)),$(BUILD)/tests/bench/store build/durable $(lastword $(GIVEN_ROUNDS)))
+	@$(if $(filter-out writers,$(STORE_ROWS)),python3 -B tests/bench/store_daemon.py --hedged $(abspath $(HEDGED)) \
+	    --work build/durable --only $(filter-out writers,$(STORE_ROWS)) $(GIVEN_ROUNDS))
 
 bench-events: $(HEDGED) $(BUILD)/tests/bench/http/listeners ## a thousand listeners: memory, and time to reach them all
 	@sh tests/bench/events.sh $(HEDGED) $(BUILD)/tests/bench/http/listeners

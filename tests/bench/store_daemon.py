@@ -2,7 +2,7 @@
 of tests/bench/store.c.
 
     python3 tests/bench/store_daemon.py --hedged build/hedged --work FOLDER [--rounds N] [--side N]
-        [--only ROW]
+        [--only ROW...]
 
 FOLDER is on the disk to be measured. The large meshes have SIDE x SIDE quads, by default a million.
 The time of an edit is that from the request to the durable answer, for one client over one
@@ -235,13 +235,13 @@ def main():
     parser.add_argument('--work', required=True)
     parser.add_argument('--rounds', type=int, default=3)
     parser.add_argument('--side', type=int, default=1024)
-    parser.add_argument('--only', choices=ROWS)
+    parser.add_argument('--only', nargs='+', choices=ROWS, default=list(ROWS))
     options = parser.parse_args()
     bench = Bench(options)
     try:
         print(f'large: {bench.side * bench.side:,} faces; medians of {bench.rounds} rounds')
         for name, row in ROWS.items():
-            if options.only in (None, name):
+            if name in options.only:
                 row(bench)
     finally:
         shutil.rmtree(bench.work, ignore_errors=True)
