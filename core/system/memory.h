@@ -49,8 +49,8 @@ uint64_t st_memory_budget(void);
 bool st_memory_has(uint64_t bytes);
 /* Returns true if a large block would be refused now. */
 bool st_memory_is_full(void);
-/* Did the budget refuse the last block that was refused, and not the C library? Threads are not told
- * apart: a block may be refused to a thread that works for another one. */
+/* Did the budget refuse the last block that was refused, and not the C library? Threads are not
+ * told apart: a block may be refused to a thread that works for another one. */
 bool st_memory_was_over_budget(void);
 
 /* What st_memory_rests remembers: the processor time of the process at its last call, and when

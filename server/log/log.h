@@ -23,8 +23,8 @@ typedef struct srv_log_settings {
     uint64_t slow_us; /* longer requests get a line about their time; 0: none does */
 } srv_log_settings;
 
-/* Returns how many entries the ring of a daemon with this memory budget holds: a sixty-fourth of the
- * budget, within limits. `budget` is in bytes, 0 for none. */
+/* Returns how many entries the ring of a daemon with this memory budget holds: a sixty-fourth of
+ * the budget, within limits. `budget` is in bytes, 0 for none. */
 size_t srv_log_capacity(uint64_t budget);
 /* Makes a log that writes to `fd`, which it borrows. Returns NULL when memory or threads are
  * out. */

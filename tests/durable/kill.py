@@ -12,7 +12,7 @@ import time
 
 from daemon import Gone, Refused
 from replay import Replay, Wrong
-from writers import Writer, Draw, write_for
+from writers import Change, Writer, Draw, write_for
 
 MESHES = ['a', 'b', 'c']
 LARGE = 'large'
@@ -22,12 +22,23 @@ MOST_KEYS = 3  # of a mesh, whose requests are sent again after a kill
 # The name under which a kill is counted if it came in time, for each moment at which it is aimed.
 AIM = {'writing': 'kills while writing', 'snapshot': 'kills in a snapshot',
        'loading': 'kills while loading', 'starting': 'kills while starting'}
-LARGE_KINDS = [('put', 1), ('whole_move', 8)]
+LARGE_KINDS = [('put', 1), ('whole_move', 8), ('splits', 1), ('column', 1)]
+SPLITS = 4500       # so many are done on a copy, and their record takes more than a mebibyte
+MANY_ROUNDS = 40    # from which on each of LARGE_KINDS is sure to come
 
 
 class Mover(Draw):
     """A client that moves all of a mesh, so that snapshots become due, or replaces it by a content
-    that is staged."""
+    that is staged; so are its long lists, and its attributes with a value for each edge."""
+
+    def change_splits(self, mesh):
+        ops = [{'op': 'edge_split', 'edge': self.chance.randrange(50000), 't': 0.5}
+               for _ in range(SPLITS)]
+        return Change(mesh, 'POST', '/edits', {'ops': ops}, {'Prefer': 'wait=600'})
+
+    def change_column(self, mesh):
+        body = {'type': 'double', 'components': 4, 'value': [self.number() for _ in range(4)]}
+        return Change(mesh, 'PUT', '/attributes/edges/stress', body)
 
     def change_whole_move(self, mesh):
         while True:
@@ -224,4 +235,5 @@ def prove(run):
     kills.replay.close()
     run.expect_fired('in flight', 'requests sent again',
                      *('of kind ' + kind for kind, _ in Draw.KINDS),
+                     *('of kind ' + kind for kind, _ in LARGE_KINDS if run.rounds >= MANY_ROUNDS),
                      *(AIM[moment] for moment in sorted(set(plan))))

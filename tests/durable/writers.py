@@ -170,7 +170,7 @@ class Draw:
         change = getattr(self, 'change_' + kind)(mesh)
         change.kind = kind
         # Requests that may be sent twice need a key; one that becomes a job has one, too.
-        if kind not in ('put', 'delete', 'attribute', 'no_attribute') and self.chance.random() < .5:
+        if change.method not in ('PUT', 'DELETE') and self.chance.random() < .5:
             change.key = self.name()
         return change
 
