@@ -22,9 +22,9 @@ MOST_KEYS = 3  # of a mesh, whose requests are sent again after a kill
 # The name under which a kill is counted if it came in time, for each moment at which it is aimed.
 AIM = {'writing': 'kills while writing', 'snapshot': 'kills in a snapshot',
        'loading': 'kills while loading', 'starting': 'kills while starting'}
-LARGE_KINDS = [('put', 1), ('whole_move', 8), ('splits', 1), ('column', 1)]
+LARGE_KINDS = [('put', 2), ('whole_move', 6), ('splits', 4), ('column', 4)]
 SPLITS = 4500       # so many are done on a copy, and their record takes more than a mebibyte
-MANY_ROUNDS = 40    # from which on each of LARGE_KINDS is sure to come
+MANY_ROUNDS = 100   # from which on each of LARGE_KINDS is sure to be sent
 
 
 class Mover(Draw):
@@ -164,6 +164,9 @@ class Kills:
         self.run.count('changes', len(done))
         for change in done:
             self.run.count('of kind ' + change.kind)
+        for change in [*done, *flying]:
+            if change.mesh == LARGE:
+                self.run.count(f'sent to {LARGE} of kind {change.kind}')
         self.run.count('in flight', len(flying))
         self.pending = done, flying
         if again:
@@ -235,5 +238,6 @@ def prove(run):
     kills.replay.close()
     run.expect_fired('in flight', 'requests sent again',
                      *('of kind ' + kind for kind, _ in Draw.KINDS),
-                     *('of kind ' + kind for kind, _ in LARGE_KINDS if run.rounds >= MANY_ROUNDS),
+                     *(f'sent to {LARGE} of kind {kind}' for kind, _ in LARGE_KINDS
+                       if run.rounds >= MANY_ROUNDS),
                      *(AIM[moment] for moment in sorted(set(plan))))
