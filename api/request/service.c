@@ -78,14 +78,19 @@ api_limited *api_service_limited(api_service *service)
 
 /* --- the end of an exchange --- */
 
-static bool has_header(const api_exchange *x, const char *name)
+static const char *header_of_answer(const api_answer *answer, const char *name)
 {
-    for (size_t i = 0; i < x->answer.header_count; i++) {
-        if (strcmp(x->answer.headers[i].name, name) == 0) {
-            return true;
+    for (size_t i = 0; i < answer->header_count; i++) {
+        if (strcmp(answer->headers[i].name, name) == 0) {
+            return answer->headers[i].value;
         }
     }
-    return false;
+    return NULL;
+}
+
+static bool has_header(const api_exchange *x, const char *name)
+{
+    return header_of_answer(&x->answer, name) != NULL;
 }
 
 /* Sets a header of any answer. Its name and value must stay valid as long as the exchange, so that
@@ -215,18 +220,12 @@ static st_shown shown(const api_exchange *x)
     return st_shown_all(x->store, x->since);
 }
 
-/* The answer to a write may wait for the disk, and then for its client. Until then it needs only
- * its own bytes: the body is freed, and the mesh may be evicted. */
-static void let_go(api_exchange *x)
+/* Frees what the handler worked on. */
+static void free_work(api_exchange *x)
 {
-    if (x->route == NULL || !(x->route->flags & API_WRITES) || x->keyed != NULL ||
-        x->free_stream != NULL || x->blob.self != NULL) {
-        return;
-    }
     if (x->free_state != NULL) {
         x->free_state(x->state);
         x->free_state = NULL;
-        x->state = NULL;
     }
     api_document_clear(&x->document);
     api_text_clear(&x->body);
@@ -234,6 +233,16 @@ static void let_go(api_exchange *x)
     x->snapshot = NULL;
     st_release(x->mesh);
     x->mesh = NULL;
+}
+
+/* The answer to a write may wait for the disk, and then for its client. Until then it needs only
+ * its own bytes: the body is freed, and the mesh may be evicted. */
+static void let_go(api_exchange *x)
+{
+    if (x->route != NULL && (x->route->flags & API_WRITES) && x->keyed == NULL &&
+        x->free_stream == NULL && x->blob.self == NULL) {
+        free_work(x);
+    }
 }
 
 static api_step finish(api_exchange *x)
@@ -390,16 +399,6 @@ static void answer_job(api_exchange *x, const api_job *job)
         api_answer_header(x, "Preference-Applied", "respond-async");
     }
     api_answer_json(x, 202);
-}
-
-static const char *header_of_answer(const api_answer *answer, const char *name)
-{
-    for (size_t i = 0; i < answer->header_count; i++) {
-        if (strcmp(answer->headers[i].name, name) == 0) {
-            return answer->headers[i].value;
-        }
-    }
-    return NULL;
 }
 
 /* Returns the answer's bytes for a job to keep; NULL when memory is out or there are none. */
@@ -756,24 +755,16 @@ void api_free(api_exchange *x)
     if (x->free_stream != NULL) {
         x->free_stream(x->stream);
     }
-    if (x->free_state != NULL) {
-        x->free_state(x->state);
-    }
     free_blob(x);
     api_unpack_free(x->unpack);
     api_pack_free(x->pack);
     he_mem_free(x->coded);
-    api_document_clear(&x->document);
-    api_text_clear(&x->body);
     api_text_clear(&x->text);
     end_claim(x);
-    st_snapshot_release(x->snapshot);
     if (x->keyed != NULL) {
         st_keyed_end(x->keyed);
     }
-    if (x->mesh != NULL) {
-        st_release(x->mesh);
-    }
+    free_work(x);
     api_token_release(x->token);
     api_arena_clear(&x->arena);
     he_mem_free(x);

@@ -245,7 +245,7 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     char body[80];
     api_bench *b = begin();
     slow_journal_advance(&journal, UINT64_MAX);
-    /* Of a small mesh it is encoded under the lock. */
+    /* The attribute of a small mesh is encoded under the lock. */
     bench_done(bench_expect(201, bench_send(b, "PUT", path, NULL, "{\"type\":\"double\"}")));
     bench_done(bench_expect(204, bench_send(b, "DELETE", "/v1/meshes/m", NULL, NULL)));
     (void)snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE,
