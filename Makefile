@@ -263,6 +263,8 @@ $(BUILD)/tests/api/test_gate: private LDFLAGS += \
 
 $(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_signal)
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
+$(BUILD)/tests/unit/test_srv_slow: private LDFLAGS += \
+    $(call wrap,st_clock_micros st_clock_wait pthread_rwlock_rdlock api_end st_pool_submit st_waits_add)
     $(call wrap,pthread_mutex_lock shutdown)
 
 ORACLED    := $(filter-out $(BUILD)/tests/unit/test_srv_%, \
