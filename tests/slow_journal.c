@@ -127,7 +127,13 @@ static void tell_health(void *self, st_health *out)
     const slow_journal *journal = self;
     *out = (st_health){.status = journal->refuse == ST_FULL || journal->refuse == ST_FAILED
                                      ? journal->refuse
-                                     : ST_OK};
+                                     : ST_OK,
+                       .fulls = journal->fulls};
+}
+
+static void tell_measures(void *self, st_journal_measures *out)
+{
+    *out = ((const slow_journal *)self)->measures;
 }
 
 /* Keeps the records of the newest group, so that tests can examine them. The caller must hold the
@@ -205,6 +211,7 @@ st_journal slow_journal_open_keeping(slow_journal *journal)
     kept.keys = journal_keys_none;
     kept.count = count_none;
     kept.health = tell_health;
+    kept.measure = tell_measures;
     return kept;
 }
 

@@ -21,10 +21,12 @@ typedef struct slow_journal {
     st_stage *stage;  /* the staged content of the newest group's first record */
     /* the result of reserving and staging, except that deletions are accepted if it is ST_FULL */
     st_status refuse;
-    void (*staging)(void);   /* called while an edit is staged; NULL: not called */
-    size_t staged_edits;     /* edits staged so far */
-    size_t out;              /* rooms and stages that were neither published nor given back */
-    pthread_mutex_t telling; /* held while the listener is called */
+    uint64_t fulls;               /* how often it was full, as it reports */
+    st_journal_measures measures; /* what it reports of itself */
+    void (*staging)(void);        /* called while an edit is staged; NULL: not called */
+    size_t staged_edits;          /* edits staged so far */
+    size_t out;                   /* rooms and stages that were neither published nor given back */
+    pthread_mutex_t telling;      /* held while the listener is called */
     bool is_heard;
     st_journal_listener listener;
 } slow_journal;

@@ -39,6 +39,8 @@ void api_ready_get(api_exchange *x)
     api_out_object_begin(&x->out);
     api_out_key_string(&x->out, "status", "ready");
     api_out_key_string(&x->out, "store", health.status == ST_FULL ? "full" : "writable");
+    const bool full = options->is_full != NULL && options->is_full(options->ready_context);
+    api_out_key_string(&x->out, "memory", full ? "full" : "free");
     api_out_object_end(&x->out);
     api_answer_json(x, 200);
 }

@@ -678,7 +678,8 @@ static const api_route routes[] = {
      .doc = "503 `not_ready` while it starts and stops, and 503 `store_failed` when a write or a "
             "sync of the disk failed: then no change is taken until it is started again. A full "
             "disk is no reason to take it out of service, for reads go on and meshes can be "
-            "deleted: `\"store\": \"full\"` with 200, until there is space again."},
+            "deleted: `\"store\": \"full\"` with 200, until there is space again. So is memory: "
+            "`\"memory\": \"full\"` with 200 while no mesh can leave it and new ones are refused."},
     {.method = "GET",
      .path = "/metrics",
      .name = "metrics_get",

@@ -423,6 +423,8 @@ const api_member api_answer_members[] = {
     {"health", "status", "#health_name", REQUIRED, NULL},
     {"readiness", "status", "#health_name", REQUIRED, NULL},
     {"readiness", "store", "#store_name", REQUIRED, "While it is full only removals are taken."},
+    {"readiness", "memory", "#memory_name", REQUIRED,
+     "While it is full, requests that need much of it are refused."},
 
     {"version", "name", "text", REQUIRED, NULL},
     {"version", "version", "text", REQUIRED, NULL},

@@ -107,6 +107,7 @@ static const struct {
                    "{\"$ref\":\"#/components/schemas/document\"}]}"},
     {"role_name", "{\"type\":\"string\",\"enum\":[\"read\",\"write\",\"admin\",\"metrics\"]}"},
     {"health_name", "{\"type\":\"string\",\"enum\":[\"alive\",\"ready\"]}"},
+    {"memory_name", "{\"type\":\"string\",\"enum\":[\"free\",\"full\"]}"},
     {"store_name", "{\"type\":\"string\",\"enum\":[\"writable\",\"full\"]}"},
     {"element", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/vertex\"},"
                 "{\"$ref\":\"#/components/schemas/halfedge\"},"

@@ -35,6 +35,9 @@
     X(CONNECTIONS_LATE, "hedge_connections_timed_out_total", COUNTER, "stage",                     \
       "Connections that were closed for taking too long, by what they took too long for: idle, "   \
       "head, body, answer.")                                                                       \
+    X(HANDSHAKES, "hedge_tls_handshakes_total", COUNTER, "result",                                 \
+      "TLS handshakes that ended: completed, or failed (refused, left by the client, or too "      \
+      "slow).")                                                                                    \
     X(LIMITED, "hedge_limited_total", COUNTER, "client,limit",                                     \
       "Requests and connections that were refused since one client had as much as it may, by the " \
       "kind of client and the limit.")                                                             \
@@ -60,6 +63,8 @@
       "Bytes that count towards the memory budget: contents of meshes, their histories, "          \
       "snapshots for readers, events for listeners, answers of jobs, connections, and all else.")  \
     X(MEMORY_BUDGET, "hedge_memory_budget_bytes", GAUGE, "", "The memory budget; 0 for none.")     \
+    X(MEMORY_FULL, "hedge_memory_full", GAUGE, "",                                                 \
+      "1 while no mesh can leave memory and requests that need much of it are refused, else 0.")   \
     /* events */                                                                                   \
     X(STREAMS, "hedge_event_streams", GAUGE, "about",                                              \
       "Event streams that are open, by what they are about: mesh or job.")                         \
@@ -106,6 +111,8 @@
     X(POOL_REFUSED, "hedge_pool_tasks_refused_total", COUNTER, "pool,share",                       \
       "Tasks that were refused since as many waited as may.")                                      \
     /* the program */                                                                              \
+    X(LOG_DROPPED, "hedge_log_lines_dropped_total", COUNTER, "",                                   \
+      "Lines of the log that were dropped since they were not read in time.")                      \
     X(BUILD_INFO, "hedge_build_info", GAUGE, "version,commit",                                     \
       "1, with the version and the commit that the server was built from.")                        \
     X(PROCESSOR, "process_cpu_seconds_total", COUNTER, "", "Processor time that was spent.")       \

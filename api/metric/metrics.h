@@ -105,6 +105,8 @@ typedef enum api_counter {
     API_COUNT_LATE_HEAD,
     API_COUNT_LATE_BODY,
     API_COUNT_LATE_ANSWER,
+    API_COUNT_HANDSHAKES, /* of TLS, by result */
+    API_COUNT_HANDSHAKES_FAILED,
     API_COUNTERS
 } api_counter;
 

@@ -251,6 +251,8 @@ static void put_family(sources *s, api_metric_id id)
     static const api_counter late[] = {API_COUNT_LATE_IDLE, API_COUNT_LATE_HEAD,
                                        API_COUNT_LATE_BODY, API_COUNT_LATE_ANSWER};
     static const char *const stages[] = {"idle", "head", "body", "answer", NULL};
+    static const api_counter handshakes[] = {API_COUNT_HANDSHAKES, API_COUNT_HANDSHAKES_FAILED};
+    static const char *const results[] = {"completed", "failed", NULL};
     const api_options *options = &s->service->options;
     const st_journal_measures *journal = &s->store.journal;
     switch (id) {
@@ -287,6 +289,9 @@ static void put_family(sources *s, api_metric_id id)
     case API_METRIC_ID_CONNECTIONS_LATE:
         put_counters(s, late, stages);
         break;
+    case API_METRIC_ID_HANDSHAKES:
+        put_counters(s, handshakes, results);
+        break;
     case API_METRIC_ID_LIMITED:
         put_limited(s);
         break;
@@ -322,6 +327,9 @@ static void put_family(sources *s, api_metric_id id)
         break;
     case API_METRIC_ID_MEMORY_BUDGET:
         put_count(s, st_memory_budget());
+        break;
+    case API_METRIC_ID_MEMORY_FULL:
+        put(s, options->is_full != NULL && options->is_full(options->ready_context));
         break;
     case API_METRIC_ID_STREAMS:
         put_of(s, "mesh", (double)s->store.listeners);
@@ -390,6 +398,9 @@ static void put_family(sources *s, api_metric_id id)
     case API_METRIC_ID_POOL_RUNNING:
     case API_METRIC_ID_POOL_REFUSED:
         put_pools(s, id);
+        break;
+    case API_METRIC_ID_LOG_DROPPED:
+        put_count(s, options->log_dropped == NULL ? 0 : options->log_dropped(options->log));
         break;
     case API_METRIC_ID_BUILD_INFO: {
         const char *commit = options->commit == NULL ? "" : options->commit;

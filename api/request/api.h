@@ -103,7 +103,9 @@ typedef struct api_options {
                   const char **type, const char **etag, bool *immutable);
     void *asset_context;
     bool (*ready)(void *context); /* for /readyz; NULL: always ready */
-    void *ready_context;
+    /* Returns true if memory is short and no mesh can leave it, for /readyz; NULL: never short. */
+    bool (*is_full)(void *context);
+    void *ready_context; /* of both */
     /* Returns how many bytes the process holds by its own count, and the most it may hold (0: no
      * limit). NULL: not reported. */
     void (*memory)(uint64_t *used, uint64_t *budget);
@@ -124,7 +126,10 @@ typedef struct api_options {
     const he_exec *exec; /* threads for parallel parts of large work; NULL: none */
     st_pool *pool;       /* runs backfills from the history; NULL: listeners fetch the mesh again */
     st_pool *makers;     /* threads that compute pieces of answers, named in metrics; NULL: none */
-    const char *commit;  /* git commit of the build; "" or NULL if unknown */
+    /* Returns how many lines of the log were dropped; NULL: not reported. */
+    uint64_t (*log_dropped)(const void *log);
+    const void *log;
+    const char *commit; /* git commit of the build; "" or NULL if unknown */
 } api_options;
 
 /* The table of routes: api/describe/routes.h. */

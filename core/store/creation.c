@@ -133,7 +133,7 @@ static st_status create_as(st_store *store, const char *id, const char *name, he
  * back. */
 static bool has_room(st_store *store)
 {
-    st_make_room(store, st_memory_budget() / 64);
+    st_make_room(store, st_memory_budget() / ST_MEMORY_SHORT_SHARE);
     return !st_memory_is_full();
 }
 

@@ -235,6 +235,14 @@ static bool give_room(void *context, uint64_t bytes)
     return freed;
 }
 
+bool st_store_is_full(st_store *store)
+{
+    if (st_memory_is_short()) {
+        st_make_room(store, st_memory_budget() / ST_MEMORY_SHORT_SHARE);
+    }
+    return st_memory_is_short();
+}
+
 void st_store_giver(st_store *store, st_memory_giver *out)
 {
     *out = (st_memory_giver){give_room, store};

@@ -142,6 +142,10 @@ void st_store_serve(const st_store *store);
 /* Must be called about once a second. While less than an eighth of the memory budget is free, it
  * evicts meshes that were not used for a minute, the least recently used first. */
 void st_store_rest(st_store *store);
+/* Returns true if memory is short (st_memory_is_short) although every mesh was evicted that can be.
+ * Takes the locks of st_store_rest, and waits a quarter of a second for the disk if that may
+ * help. */
+bool st_store_is_full(st_store *store);
 /* Frees memory that can be made again: the cached copies and the bodies of kept answers that no
  * thread reads, and objects derived from meshes. The caller must hold no lock. */
 void st_store_shed(st_store *store);

@@ -155,6 +155,13 @@ bool st_memory_was_over_budget(void)
     return atomic_load_explicit(&over_budget, memory_order_relaxed);
 }
 
+bool st_memory_is_short(void)
+{
+    uint64_t budget = st_memory_budget();
+    return budget != 0 &&
+           st_memory_used() + budget / ST_MEMORY_SHORT_SHARE > budget - budget / RESERVE_SHARE;
+}
+
 /* The process counts as idle if it worked at least WORKED_MICROS since memory was last returned,
  * and less than RESTING_MICROS since the last call. Every thread has a heap of its own, and glibc
  * returns only what is free at the end of one. Pages in between stay: after minutes of mixed

@@ -47,11 +47,16 @@ uint64_t st_memory_budget(void);
 /* Returns true if this much memory is free, including the part that is reserved for small
  * blocks. */
 bool st_memory_has(uint64_t bytes);
-/* Returns true if a large block would be refused now. */
+/* Returns true if a block that is barely large would be refused now. */
 bool st_memory_is_full(void);
-/* Did the budget refuse the last block that was refused, and not the C library? Threads are not
- * told apart: a block may be refused to a thread that works for another one. */
+/* Returns true if the budget refused the last block that was refused, and not the C library.
+ * Threads are not told apart: a block may be refused to a thread that works for another one. */
 bool st_memory_was_over_budget(void);
+/* Returns true if a block of this share of the budget would be refused now. Where requests need
+ * large blocks, memory that is used up never becomes full: the block that would fill it is
+ * refused. */
+enum { ST_MEMORY_SHORT_SHARE = 64 };
+bool st_memory_is_short(void);
 
 /* What st_memory_rests remembers: the processor time of the process at its last call, and when
  * memory was last returned; in microseconds. */

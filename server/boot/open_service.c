@@ -14,6 +14,12 @@ static bool is_ready(void *context)
     return atomic_load(&parts->ready);
 }
 
+static bool is_full(void *context)
+{
+    const srv_parts *parts = context;
+    return atomic_load(&parts->full);
+}
+
 static bool load_page(srv_parts *parts)
 {
     char folder[PATH_MAX], message[320];
@@ -68,6 +74,7 @@ static bool open_service(srv_parts *parts)
                             .asset = srv_assets_find,
                             .asset_context = parts->assets,
                             .ready = is_ready,
+                            .is_full = is_full,
                             .ready_context = parts,
                             .memory = count_memory,
                             .tokens = parts->tokens,
@@ -80,6 +87,8 @@ static bool open_service(srv_parts *parts)
                             .jobs = parts->job_table,
                             .pool = parts->pool,
                             .makers = parts->makers,
+                            .log_dropped = srv_log_dropped,
+                            .log = parts->log,
                             .commit = srv_commit,
                             .plain_answers = parts->config->no_compression,
                             .exec = st_parallel_exec(parts->parallel),

@@ -34,6 +34,7 @@ typedef struct srv_parts {
     srv_http *http;
     char url[SRV_URL_TEXT]; /* with the port that is in use */
     _Atomic bool ready;     /* the answer of /readyz */
+    _Atomic bool full;      /* what it says about memory: see watch.h */
 } srv_parts;
 
 /* Each of these functions opens its parts of the daemon as `parts->config` says. Returns false,

@@ -2,6 +2,7 @@
 
 #include "server/boot/parts.h"
 #include "server/boot/start.h"
+#include "server/boot/watch.h"
 #include "server/config_option.h"
 #include "server/net/notify.h"
 #include "server/tokens.h"
@@ -128,7 +129,9 @@ bool srv_reload(void *context, char *message, size_t size)
         }
     }
     if (ok) {
-        snprintf(state, sizeof state, "READY=1\nSTATUS=listening on %s", parts->url);
+        char status[SRV_STATUS];
+        srv_watch_describe(parts, status);
+        snprintf(state, sizeof state, "READY=1\nSTATUS=%s", status);
     } else {
         snprintf(state, sizeof state, "READY=1\nSTATUS=not reloaded: %s", why);
     }

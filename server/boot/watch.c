@@ -5,6 +5,7 @@
 #include "system/clock.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <time.h>
 
 static uint64_t processor_micros(void)
@@ -47,6 +48,24 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
     }
 }
 
+void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS])
+{
+    st_health health;
+    st_store_health(parts->store, &health);
+    snprintf(text, SRV_STATUS, "listening on %s%s", parts->url,
+             health.status == ST_FULL     ? "; the disk is full, and changes are refused"
+             : health.status == ST_FAILED ? "; the disk failed, and no change is taken any more"
+                                          : "");
+}
+
+static void tell_systemd(const srv_parts *parts)
+{
+    char status[SRV_STATUS], text[SRV_STATUS + 16];
+    srv_watch_describe(parts, status);
+    snprintf(text, sizeof text, "STATUS=%s", status);
+    srv_notify(text);
+}
+
 /* Notifies systemd twice within its timeout if a worker still answers. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
@@ -63,12 +82,16 @@ static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
     }
 }
 
-void srv_watch_look(srv_watch *watch, const srv_parts *parts)
+void srv_watch_look(srv_watch *watch, srv_parts *parts)
 {
     const st_health before = watch->health;
     feed_watchdog(parts, &watch->fed);
     st_memory_rests(&watch->rest, processor_micros());
     st_store_rest(parts->store);
+    atomic_store(&parts->full, st_store_is_full(parts->store));
     st_store_health(parts->store, &watch->health);
     tell_health(parts->log, &before, &watch->health, srv_config_folder(parts->config));
+    if (watch->health.status != before.status) {
+        tell_systemd(parts);
+    }
 }

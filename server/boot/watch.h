@@ -1,5 +1,5 @@
-/* watch.h - periodic work of the main thread: checking the disk, and checking for systemd's
- * watchdog whether a worker still answers. */
+/* watch.h - periodic work of the main thread: checking the disk and memory, telling systemd about
+ * them, and checking for its watchdog whether a worker still answers. */
 #ifndef HE_SERVER_BOOT_WATCH_H
 #define HE_SERVER_BOOT_WATCH_H
 
@@ -12,9 +12,15 @@ typedef struct srv_watch {
     uint64_t fed; /* when systemd was last notified that a worker answered, st_clock_micros */
 } srv_watch;
 
+/* Writes what `systemctl status` shows of a daemon that runs: "listening on URL", and what is wrong
+ * with the disk. */
+enum { SRV_STATUS = SRV_URL_TEXT + 128 };
+void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS]);
+
 /* Does the periodic work; it must be called about once a second, with a `watch` that is zero at
- * first. Returns unused memory to the system, logs when the disk is full, has space again or
- * failed, and notifies systemd's watchdog. */
-void srv_watch_look(srv_watch *watch, const srv_parts *parts);
+ * first. Returns unused memory to the system, finds out whether memory is full, reports in the log
+ * and to systemd when the disk is full, has space again or failed, and notifies systemd's
+ * watchdog. */
+void srv_watch_look(srv_watch *watch, srv_parts *parts);
 
 #endif

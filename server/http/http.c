@@ -99,13 +99,17 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
     } else {
         srv_connection *c = *slot;
+        api_metrics *metrics = api_metrics_of(http->options.service);
+        if (c != NULL && atomic_load(&c->stage) == SRV_STAGE_HANDSHAKE) {
+            api_count(metrics, API_COUNT_HANDSHAKES_FAILED);
+        }
         if (c != NULL) {
             srv_recv_forget(c->socket);
             srv_peers_leave(http->peers, c->of_peer);
             srv_certificate_release(c->certificate);
         }
         srv_deadlines_remove(http->deadlines, c);
-        api_count(api_metrics_of(http->options.service), API_COUNT_CLOSED);
+        api_count(metrics, API_COUNT_CLOSED);
         *slot = NULL;
     }
 }

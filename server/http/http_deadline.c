@@ -392,6 +392,7 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     }
     c->socket = socket;
     c->session = session;
+    c->metrics = d->options.metrics;
     c->counts_sent = peer->sa_family == AF_UNIX;
     c->of_peer = SRV_NO_PEER;
     c->buffer = buffer;

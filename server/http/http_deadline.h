@@ -79,6 +79,7 @@ typedef struct srv_connection {
     _Atomic uint64_t bytes;   /* received in this stage */
     bool drain;               /* drain the socket after closing */
     gnutls_session_t session; /* NULL: plain */
+    api_metrics *metrics;     /* count its handshake; NULL: not counted */
     srv_certificates *certificates;
     srv_certificate *certificate; /* a reference from the handshake on; NULL: none */
     bool is_proxy;                /* a trusted proxy: what it says about its client is believed */

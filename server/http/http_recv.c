@@ -150,6 +150,7 @@ ssize_t gnutls_record_recv(gnutls_session_t session, void *buffer, size_t size)
         return srv_tls_receive(session, buffer, size);
     }
     if (atomic_load_explicit(&c->stage, memory_order_relaxed) == SRV_STAGE_HANDSHAKE) {
+        api_count(c->metrics, API_COUNT_HANDSHAKES);
         srv_connection_enter(c, SRV_STAGE_IDLE, st_clock_micros());
     }
     ssize_t got = receive_watched(c, buffer, size);

@@ -42,7 +42,8 @@ struct srv_log {
     bool urgent; /* a line of the daemon itself is waiting: do not gather */
     entry *ring;
     size_t capacity, first, count;
-    uint64_t dropped;
+    uint64_t dropped; /* and not yet told of in the log */
+    _Atomic uint64_t all_dropped;
     int waited; /* polls without success since the end began; used by the thread only */
     pthread_t thread;
 };
@@ -215,12 +216,24 @@ srv_log_settings srv_log_get(const srv_log *log)
     };
 }
 
+uint64_t srv_log_dropped(const void *log)
+{
+    return atomic_load_explicit(&((const srv_log *)log)->all_dropped, memory_order_relaxed);
+}
+
+/* Counts a line that is dropped. The lock is held. */
+static void drop(srv_log *log)
+{
+    log->dropped++;
+    atomic_fetch_add_explicit(&log->all_dropped, 1, memory_order_relaxed);
+}
+
 /* Returns a free entry of the ring; if there is none, counts a dropped one and returns NULL. The
  * lock is held. */
 static entry *take_entry(srv_log *log)
 {
     if (log->count == log->capacity) {
-        log->dropped++;
+        drop(log);
         return NULL;
     }
     return &log->ring[(log->first + log->count++) % log->capacity];
@@ -239,7 +252,7 @@ static void add_line(srv_log *log, api_text *text)
 {
     pthread_mutex_lock(&log->lock);
     if (text->failed) {
-        log->dropped++;
+        drop(log);
     } else {
         entry *e = take_entry(log);
         if (e != NULL) {

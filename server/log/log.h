@@ -35,6 +35,9 @@ void srv_log_free(srv_log *log);
 
 /* All functions below may be called by any thread at any time. */
 
+/* Returns how many lines were dropped so far. `log` is a srv_log. */
+uint64_t srv_log_dropped(const void *log);
+
 void srv_log_set(srv_log *log, const srv_log_settings *settings);
 srv_log_settings srv_log_get(const srv_log *log);
 

@@ -331,6 +331,42 @@ static void readiness_tells_how_the_disk_is(void **state)
     bench_free(b);
 }
 
+/* Does the page of metrics have this line? */
+static void expect_metric(const bench_reply *page, const char *line)
+{
+    char whole[120];
+    snprintf(whole, sizeof whole, "\n%s\n", line);
+    if (strstr(page->body, whole) == NULL) {
+        fail_msg("the page has no line %s", line);
+    }
+}
+
+static void metrics_tell_how_the_disk_is(void **state)
+{
+    (void)state;
+    api_bench *b = begin();
+    journal.refuse = ST_FULL;
+    journal.fulls = 2;
+    journal.measures = (st_journal_measures){
+        .checkpoints = {.buckets = {3}}, .behind = 4, .lost = 5, .queued = 6, .most_queued = 7};
+    bench_reply page = bench_expect(200, bench_get(b, "/metrics"));
+    expect_metric(&page, "hedge_store_state{state=\"writable\"} 0");
+    expect_metric(&page, "hedge_store_state{state=\"full\"} 1");
+    expect_metric(&page, "hedge_store_disk_full_total 2");
+    expect_metric(&page, "hedge_store_checkpoint_duration_seconds_count 3");
+    expect_metric(&page, "hedge_store_records_pending 4");
+    expect_metric(&page, "hedge_store_records_lost_total 5");
+    expect_metric(&page, "hedge_store_queue_bytes 6");
+    expect_metric(&page, "hedge_store_queue_limit_bytes 7");
+    bench_done(page);
+    journal.refuse = ST_FAILED;
+    page = bench_expect(200, bench_get(b, "/metrics"));
+    expect_metric(&page, "hedge_store_state{state=\"full\"} 0");
+    expect_metric(&page, "hedge_store_state{state=\"failed\"} 1");
+    bench_done(page);
+    bench_free(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -342,6 +378,7 @@ int main(void)
         cmocka_unit_test(a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh),
         cmocka_unit_test(a_mesh_can_be_evicted_while_the_answer_that_made_it_waits),
         cmocka_unit_test(readiness_tells_how_the_disk_is),
+        cmocka_unit_test(metrics_tell_how_the_disk_is),
     };
     return cmocka_run_group_tests_name("disk", tests, NULL, NULL);
 }

@@ -493,6 +493,9 @@ static void a_slow_listener_is_told_to_fetch_anew(void **state)
     }
     assert_int_equal(stream_follow(b, slow, &copy), 1);
     stream_require(b, &copy, "a resync");
+    bench_reply page = bench_expect(200, bench_get(b, "/metrics"));
+    assert_non_null(strstr(page.body, "\nhedge_event_streams_behind_total 1\n"));
+    bench_done(page);
     assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
     assert_int_equal(stream_follow(b, slow, &copy), 0);
     stream_require(b, &copy, "the edit after it");

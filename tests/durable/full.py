@@ -7,6 +7,7 @@ be there, before and after a restart.
 """
 import os
 import random
+import socket
 import subprocess
 import sys
 import threading
@@ -38,6 +39,36 @@ class Stubborn(Patient):
     def refuse(self, change, answer):
         self.refusals = 0
         super().refuse(change, answer)
+
+
+class Systemd:
+    """The other end of NOTIFY_SOCKET, as systemd is of a service of Type=notify."""
+
+    def __init__(self):
+        name = f'hedge-full-{os.getpid()}'
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.socket.bind('\0' + name)
+        self.heard = []
+        os.environ['NOTIFY_SOCKET'] = '@' + name
+        threading.Thread(target=self.hear, daemon=True).start()
+
+    def hear(self):
+        while True:
+            self.heard.append(self.socket.recv(4096).decode())
+
+    def statuses(self):
+        """What `systemctl status` showed one after the other."""
+        return [line[7:] for text in list(self.heard) for line in text.splitlines()
+                if line.startswith('STATUS=')]
+
+
+def shows_in_turn(statuses):
+    """Listening, full, without that again, and so on; at last it stops."""
+    told = [status.partition('; ')[2] for status in statuses]
+    return len(told) > 3 and statuses[-1] == 'stopping' and all(
+        status.startswith('listening on http://') for status in statuses[:-1]) and all(
+        text == ('the disk is full, and changes are refused' if i % 2 else '')
+        for i, text in enumerate(told[:-1]))
 
 
 def fill(run, client):
@@ -100,6 +131,7 @@ def follow_all(run, client, replay, done, flying, when):
 def prove(run):
     in_own_mounts()
     folder = run.folder()
+    systemd = Systemd()
     for _ in range(run.rounds):
         os.makedirs(folder, exist_ok=True)
         subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=' + SIZE, 'tmpfs', folder], check=True)
@@ -128,11 +160,14 @@ def prove(run):
         client.close()
         run.judge('it stops', daemon.stop() == 0, daemon.log())
         run.judge('the log tells of it', says_in_turn(daemon.log(), folder), daemon.log())
+        run.judge('systemd is told of it', shows_in_turn(systemd.statuses()), systemd.statuses())
+        systemd.heard.clear()
         daemon = run.start()
         client = daemon.client()
         follow_all(run, client, replay, [], [], 'after a restart')
         client.close()
         run.judge('it stops', daemon.stop() == 0, daemon.log())
+        systemd.heard.clear()
         replay.close()
         subprocess.run(['umount', folder], check=True)
     run.expect_fired('times full', 'changes refused', 'deleted')

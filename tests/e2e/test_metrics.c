@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -150,6 +151,224 @@ static void what_happens_is_counted(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
+/* --- what is refused and closed --- */
+
+static const char *const refused[] = {
+    "hedge_connections_refused_total{reason=\"limit\"}",
+    "hedge_connections_timed_out_total{stage=\"head\"}",
+    "hedge_limited_total{client=\"address\",limit=\"requests\"}",
+};
+
+/* Metrics that do not move, and the option that sets each. */
+static const struct {
+    const char *sample, *option, *value;
+    double expected;
+} settled[] = {
+    {"hedge_connections_limit", "--max-connections", "3", 3},
+    {"hedge_meshes_limit", "--max-meshes", "77", 77},
+    {"hedge_memory_budget_bytes", "--memory-budget", "256M", 256 << 20},
+    {"hedge_event_streams_limit{about=\"mesh\"}", "--max-listeners", "5", 5},
+};
+
+enum { SETTLED = sizeof settled / sizeof *settled };
+
+/* Three connections, the first of which asks for nothing, and a fourth that is refused. */
+static void exceed_connections(const daemon_process *d)
+{
+    static const char head[] = "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    char byte;
+    int fds[2];
+    for (int i = 0; i < 2; i++) {
+        fds[i] = client_connect(d, 0);
+        assert_true(write(fds[i], head, i == 0 ? 10 : sizeof head - 1) > 0);
+    }
+    assert_int_equal(read(fds[1], &byte, 1), 1);
+    char *answer = client_raw(d, head, sizeof head - 1, 1, false);
+    assert_int_equal(client_raw_status(answer), 503);
+    free(answer);
+    close(fds[1]);
+    while (read(fds[0], &byte, 1) > 0) { /* the head does not come in time */
+    }
+    close(fds[0]);
+}
+
+static void what_is_refused_and_what_is_set_is_on_the_page(void **state)
+{
+    (void)state;
+    const char *arguments[2 * SETTLED + 5] = {"--header-timeout", "1", "--address-requests", "1"};
+    size_t count = 4;
+    for (size_t i = 0; i < SETTLED; i++) {
+        arguments[count++] = settled[i].option;
+        arguments[count++] = settled[i].value;
+    }
+    daemon_process *d = daemon_start(arguments);
+    client *c = client_new(d);
+    reply page = read_page(c);
+    assert_non_null(strstr(page.body, "\nhedge_build_info{version=\""));
+    for (size_t i = 0; i < SETTLED; i++) {
+        if (value_of(&page, settled[i].sample) != settled[i].expected) {
+            fail_msg("%s is %g", settled[i].sample, value_of(&page, settled[i].sample));
+        }
+    }
+    reply_done(page);
+    long status = 200;
+    while (status == 200) {
+        reply r = client_get(c, "/v1/meshes");
+        status = r.status;
+        reply_free(&r);
+    }
+    assert_int_equal(status, 429);
+    exceed_connections(d);
+    reply r = client_get(c, "/metrics");
+    while (r.status == 503) { /* until those connections have left */
+        reply_free(&r);
+        r = client_get(c, "/metrics");
+    }
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        if (value_of(&r, refused[i]) < 1) {
+            fail_msg("%s is %g", refused[i], value_of(&r, refused[i]));
+        }
+    }
+    reply_free(&r);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* More meshes than the memory budget holds. */
+static void meshes_that_leave_memory_are_counted(void **state)
+{
+    (void)state;
+    static const char grid[] = "{\"shape\":\"grid\",\"columns\":100,\"rows\":100}";
+    char store[FOLDER_PATH + 20], path[40];
+    snprintf(store, sizeof store, "sqlite:%s/many", folder);
+    daemon_process *d = daemon_start(ARGUMENTS("--store", store, "--memory-budget", "40M"));
+    client *c = client_new(d);
+    double left = 0;
+    for (int i = 0; i < 60 && left == 0; i++) {
+        snprintf(path, sizeof path, "/v1/meshes?id=m%d", i);
+        reply_done(reply_expect(201, client_post(c, path, grid)));
+        reply page = read_page(c);
+        left = value_of(&page, "hedge_mesh_evictions_total");
+        reply_done(page);
+    }
+    assert_true(left > 0);
+    client_free(c);
+    assert_int_equal(daemon_stop(d), 0);
+}
+
+/* --- every row of the table --- */
+
+/* Metrics that tests of other programs move, since they need a disk that fails, threads that stop
+ * or a listener that does not read. */
+static const struct {
+    const char *metric, *file;
+} elsewhere[] = {
+    {"hedge_tls_handshakes_total", "tests/e2e/test_tls.c"},
+    {"hedge_memory_full", "tests/e2e/test_memory.c"},
+    {"hedge_event_streams_behind_total", "tests/api/test_events.c"},
+    {"hedge_store_state", "tests/api/test_disk.c"},
+    {"hedge_store_disk_full_total", "tests/api/test_disk.c"},
+    {"hedge_store_checkpoint_duration_seconds", "tests/api/test_disk.c"},
+    {"hedge_store_records_pending", "tests/api/test_disk.c"},
+    {"hedge_store_records_lost_total", "tests/api/test_disk.c"},
+    {"hedge_store_queue_bytes", "tests/api/test_disk.c"},
+    {"hedge_store_queue_limit_bytes", "tests/api/test_disk.c"},
+    {"hedge_pool_tasks_waiting", "tests/unit/test_srv_pool.c"},
+    {"hedge_pool_tasks_waiting_limit", "tests/unit/test_srv_pool.c"},
+    {"hedge_pool_tasks_running", "tests/unit/test_srv_pool.c"},
+    {"hedge_pool_tasks_refused_total", "tests/unit/test_srv_pool.c"},
+};
+
+/* Metrics that no test moves, each with the reason. */
+static const struct {
+    const char *metric, *reason;
+} unmoved[] = {
+    {"hedge_log_lines_dropped_total",
+     "thousands of lines are dropped only while standard error is blocked, which in a daemon no "
+     "test can time; test_srv_log compares the number that the page shows with what was dropped"},
+    {"hedge_build_info", "it is always 1"},
+    {"process_resident_memory_bytes", "the kernel's number; test_srv_counters reads it"},
+    {"process_virtual_memory_bytes", "the kernel's number; test_srv_counters reads it"},
+    {"process_max_fds", "the limit of the process; test_srv_counters reads it"},
+    {"process_start_time_seconds", "it never changes; test_srv_counters reads it"},
+};
+
+/* Is it a sample of the metric: its name, the suffix of a histogram, labels? */
+static bool is_sample_of(const char *sample, const char *metric)
+{
+    static const char *const suffixes[] = {"", "_sum", "_count"};
+    const size_t length = strlen(metric), named = strcspn(sample, "{");
+    bool found = false;
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes && !found; i++) {
+        const size_t more = strlen(suffixes[i]);
+        found = named == length + more && strncmp(sample, metric, length) == 0 &&
+                strncmp(sample + length, suffixes[i], more) == 0;
+    }
+    return found;
+}
+
+static int count_in(const char *const *samples, size_t count, const char *metric)
+{
+    int found = 0;
+    for (size_t i = 0; i < count; i++) {
+        found += is_sample_of(samples[i], metric);
+    }
+    return found;
+}
+
+/* Does the source hold the name, and not only as the beginning of another one? */
+static bool names(const char *path, const char *metric)
+{
+    static char text[1 << 18];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    const size_t length = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[length] = '\0';
+    bool found = false;
+    for (const char *at = text; !found && (at = strstr(at, metric)) != NULL; at++) {
+        char name[120];
+        snprintf(name, sizeof name, "%.*s", (int)strspn(at, "abcdefghijklmnopqrstuvwxyz_"), at);
+        found = is_sample_of(name, metric);
+    }
+    return found;
+}
+
+static void every_metric_is_moved_by_a_test_or_has_its_reason(void **state)
+{
+    (void)state;
+    static const char *const evicted[] = {"hedge_mesh_evictions_total",
+                                          "hedge_mesh_load_duration_seconds_count"};
+    size_t listed = 0; /* of the two lists above, which must not name what is no metric */
+    for (api_metric_id id = 0; id < API_METRIC_COUNT; id++) {
+        const char *metric = api_metric_at(id)->name;
+        int found = count_in(moved, sizeof moved / sizeof *moved, metric) > 0;
+        found += count_in(refused, sizeof refused / sizeof *refused, metric) > 0;
+        found += count_in(evicted, sizeof evicted / sizeof *evicted, metric) > 0;
+        for (size_t i = 0; i < SETTLED; i++) {
+            found += is_sample_of(settled[i].sample, metric);
+        }
+        for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++) {
+            if (strcmp(elsewhere[i].metric, metric) == 0) {
+                found++;
+                listed++;
+                if (!names(elsewhere[i].file, metric)) {
+                    fail_msg("%s does not name %s", elsewhere[i].file, metric);
+                }
+            }
+        }
+        for (size_t i = 0; i < sizeof unmoved / sizeof *unmoved; i++) {
+            found += strcmp(unmoved[i].metric, metric) == 0;
+            listed += strcmp(unmoved[i].metric, metric) == 0;
+        }
+        if (found != 1) {
+            fail_msg("%s is moved by %d of these tests, or has no reason not to be", metric, found);
+        }
+    }
+    assert_int_equal(listed,
+                     sizeof elsewhere / sizeof *elsewhere + sizeof unmoved / sizeof *unmoved);
+}
+
 /* --- promtool --- */
 
 static int run(const char *command)
@@ -235,6 +454,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_happens_is_counted),
+        cmocka_unit_test(what_is_refused_and_what_is_set_is_on_the_page),
+        cmocka_unit_test(meshes_that_leave_memory_are_counted),
+        cmocka_unit_test(every_metric_is_moved_by_a_test_or_has_its_reason),
         cmocka_unit_test(the_page_has_every_metric_and_promtool_finds_no_fault),
         cmocka_unit_test(the_rules_for_alerts_are_good_and_name_metrics_that_there_are),
     };

@@ -234,6 +234,17 @@ static void a_handshake_that_is_not_finished_is_closed(void **state)
     int fd = client_connect(d, 0);
     assert_true(read(fd, &byte, 1) <= 0);
     close(fd);
+    /* It is counted when its connection has been closed, which may be a moment later. */
+    client *c = client_new(d);
+    client_trust(c, certificate);
+    bool failed;
+    do {
+        reply r = reply_expect(200, client_get(c, "/metrics"));
+        assert_non_null(strstr(r.body, "\nhedge_tls_handshakes_total{result=\"completed\"} 1\n"));
+        failed = strstr(r.body, "\nhedge_tls_handshakes_total{result=\"failed\"} 1\n") != NULL;
+        reply_free(&r);
+    } while (!failed);
+    client_free(c);
     assert_int_equal(daemon_stop(d), 0);
 }
 

@@ -28,7 +28,14 @@ static bool not_ready(void *context)
     return *(bool *)context;
 }
 
-static bool is_ready = true;
+static bool is_ready = true, memory_is_full;
+
+static bool is_full(void *context)
+{
+    (void)context;
+    return memory_is_full;
+}
+
 static st_store *store;
 static st_mesh *only; /* the mesh "m" */
 static api_service *service;
@@ -40,6 +47,7 @@ static int set_up(void **state)
                            .max_upload = 100,
                            .asset = find_asset,
                            .ready = not_ready,
+                           .is_full = is_full,
                            .ready_context = &is_ready};
     store = st_store_new(&(st_store_options){
         .undo_budget = 1 << 20, .max_meshes = 10, .journal = st_journal_memory()});
@@ -432,6 +440,15 @@ static void readiness_is_the_servers_to_say(void **state)
     assert_non_null(answer_header(api_answer_of(x), "Retry-After"));
     api_free(x);
     is_ready = true;
+    for (int full = 0; full < 2; full++) {
+        memory_is_full = full == 1;
+        x = send_line(&r, &headers);
+        assert_int_equal(api_answer_of(x)->status, 200);
+        assert_non_null(strstr(api_answer_of(x)->bytes,
+                               full == 1 ? "\"memory\":\"full\"" : "\"memory\":\"free\""));
+        api_free(x);
+    }
+    memory_is_full = false;
 }
 
 static void too_long_a_target_is_414(void **state)

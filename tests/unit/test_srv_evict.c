@@ -470,6 +470,20 @@ static void a_creation_waits_for_the_disk_before_it_is_refused(void **state)
     close_slow();
 }
 
+static void memory_is_full_when_no_mesh_can_leave_it(void **state)
+{
+    (void)state;
+    open_full_and_slow();
+    disk_moves = false;
+    assert_true(st_memory_is_short());
+    assert_true(st_store_is_full(store));
+    assert_int_equal(in_memory(), 1);
+    disk_moves = true;
+    assert_false(st_store_is_full(store));
+    assert_int_equal(in_memory(), 0);
+    close_slow();
+}
+
 static void a_request_waits_for_the_disk_before_it_is_refused(void **state)
 {
     (void)state;
@@ -562,6 +576,7 @@ int main(void)
         cmocka_unit_test(a_request_gets_what_cold_meshes_hold),
         cmocka_unit_test(a_request_under_locks_is_not_stopped),
         cmocka_unit_test(a_creation_waits_for_the_disk_before_it_is_refused),
+        cmocka_unit_test(memory_is_full_when_no_mesh_can_leave_it),
         cmocka_unit_test(a_request_waits_for_the_disk_before_it_is_refused),
         cmocka_unit_test(what_was_not_used_for_a_minute_leaves),
         cmocka_unit_test(what_is_resident_beside_counted_blocks_has_meshes_leave),

@@ -429,6 +429,9 @@ static void a_failed_sync_on_a_full_disk_ends_writing(void **state)
     kept_mesh lost = mesh;
     told_wait(&told, kept_append(j, kept_edit(&lost), &lost, "1", 1));
     assert_int_equal(told.loss.status, ST_FULL);
+    st_journal_measures measures;
+    j->measure(j->self, &measures);
+    assert_int_equal(measures.lost, 1);
     disk_fail_at(1);
     disk_fill(false);
     assert_string_equal(health_of(j).reason, "");
@@ -487,6 +490,11 @@ static void a_slow_disk_bounds_the_queue(void **state)
     }
     assert_int_equal(kept_status(), ST_BEHIND);
     assert_true(queued > 8 && queued < QUEUE / 500);
+    st_journal_measures measures;
+    j->measure(j->self, &measures);
+    assert_int_equal(measures.behind, queued);
+    assert_true(measures.queued > QUEUE / 2 && measures.queued <= QUEUE);
+    assert_int_equal(measures.most_queued, QUEUE);
     const st_room_need large = {.records = 1, .bytes = (size_t)4 * QUEUE};
     st_room *room = NULL;
     assert_int_equal(j->reserve(j->self, &large, &room), ST_BEHIND);

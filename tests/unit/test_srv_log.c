@@ -297,6 +297,7 @@ static void lines_that_find_no_place_are_counted(void **state)
     /* Freeing the log waits for the writing thread, which waits for space in the pipe, so another
      * thread frees it. */
     pthread_t thread;
+    const uint64_t counted = srv_log_dropped(log);
     assert_int_equal(pthread_create(&thread, NULL, free_log, log), 0);
     size_t got = 0;
     unsigned long lines = 0, dropped = 0;
@@ -317,6 +318,7 @@ static void lines_that_find_no_place_are_counted(void **state)
     }
     pthread_join(thread, NULL);
     assert_int_equal(lines + dropped, RECORDS);
+    assert_int_equal(counted, dropped);
     assert_true(lines >= 1);
     assert_non_null(strstr(text, "\"level\":\"warning\",\"event\":\"dropped\""));
     close(ends[0]);

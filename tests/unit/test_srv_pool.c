@@ -2,6 +2,10 @@
  * condition at which blocked tasks wait until the test opens it. */
 #include "system/thread_pool.h"
 
+#include "api/describe/routes.h"
+#include "api/request/api.h"
+#include "store/store.h"
+
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -279,6 +283,44 @@ static void a_flow_is_a_client_with_a_mesh(void **state)
     assert_true(st_pool_flow("a", "") != st_pool_flow("", "a"));
 }
 
+/* One task runs, one waits, and one is refused. */
+static void the_page_of_metrics_has_the_numbers_of_a_pool(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "\nhedge_pool_tasks_waiting{pool=\"work\",share=\"brief\"} 1\n",
+        "\nhedge_pool_tasks_waiting_limit{pool=\"work\",share=\"brief\"} 1\n",
+        "\nhedge_pool_tasks_running{pool=\"work\",share=\"brief\"} 1\n",
+        "\nhedge_pool_tasks_refused_total{pool=\"work\",share=\"brief\"} 1\n",
+    };
+    st_pool *pool = st_pool_new("test", 1, 1);
+    st_store *store = st_store_new(
+        &(st_store_options){.undo_budget = 1, .max_meshes = 1, .journal = st_journal_memory()});
+    assert_non_null(pool);
+    assert_non_null(store);
+    api_service *service =
+        api_service_new(store, api_routes(), &(api_options){.version = "test", .pool = pool});
+    assert_non_null(service);
+    send_to_gate(pool, ST_SHARE_BRIEF);
+    await_at_gate(ST_SHARE_BRIEF, 1);
+    submit(pool, "b", 1, 0);
+    assert_false(st_pool_submit(pool, &(st_task){.work = note, .context = (void *)"c"}));
+    const api_request request = {
+        .method = "GET", .path = "/metrics", .query = "", .request_id = "test"};
+    api_exchange *x = api_handle(service, &request, NULL, 0);
+    assert_non_null(x);
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        if (strstr(api_answer_of(x)->bytes, lines[i]) == NULL) {
+            fail_msg("the page lacks %s", lines[i]);
+        }
+    }
+    api_free(x);
+    open_gate();
+    st_pool_free(pool);
+    api_service_free(service);
+    st_store_free(store);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -291,6 +333,7 @@ int main(void)
         cmocka_unit_test_setup(long_work_is_not_passed_over_for_ever, reset),
         cmocka_unit_test_setup(a_thread_is_woken_only_for_something_to_do, reset),
         cmocka_unit_test(a_flow_is_a_client_with_a_mesh),
+        cmocka_unit_test_setup(the_page_of_metrics_has_the_numbers_of_a_pool, reset),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -468,6 +468,34 @@ static void test_every_allocation_may_fail(void **state)
     fail_msg("no end of failing allocations");
 }
 
+/* Memory is used up when the next large block does not fit, although a smaller one still would. */
+static void memory_is_short_before_it_is_full(void **state)
+{
+    (void)state;
+    enum { FILLING = 8 << 20 };
+    st_store_free(store);
+    st_memory_install(0);
+    open_store(BUDGET, MESHES);
+    void *filling = he_mem_alloc(FILLING);
+    assert_non_null(filling);
+    const uint64_t used = st_memory_used();
+    st_memory_set_budget(used / 93 * 100);
+    assert_false(st_memory_is_full());
+    assert_true(st_memory_is_short());
+    assert_null(he_mem_alloc(st_memory_budget() / ST_MEMORY_SHORT_SHARE));
+    st_memory_set_budget(used / 90 * 100);
+    assert_false(st_memory_is_short());
+    void *more = he_mem_alloc(st_memory_budget() / ST_MEMORY_SHORT_SHARE);
+    assert_non_null(more);
+    he_mem_free(more);
+    st_memory_set_budget(0);
+    assert_false(st_memory_is_short());
+    he_mem_free(filling);
+    st_store_free(store);
+    he_mem_set_hook(NULL);
+    open_store(BUDGET, MESHES);
+}
+
 static void test_memory_budget(void **state)
 {
     (void)state;
@@ -718,6 +746,7 @@ int main(void)
         TEST(test_snapshots),
         TEST(test_cache),
         TEST(test_every_allocation_may_fail),
+        TEST(memory_is_short_before_it_is_full),
         TEST(test_memory_budget),
         TEST(test_what_is_derived_goes_with_shedding_and_the_mesh),
         TEST(test_deltas_by_revision),
