@@ -33,6 +33,10 @@ size_t srv_config_find_unknown(char *const *environment, char *names, size_t siz
     return count;
 }
 
+/* The column of --help in which descriptions begin is after this many characters of options. A
+ * longer option has a line of its own. */
+enum { FLAG_WIDTH = 26 };
+
 void srv_config_help(FILE *out)
 {
     fprintf(out, "hedged " SRV_VERSION " - a server for half-edge meshes\n\n"
@@ -45,12 +49,16 @@ void srv_config_help(FILE *out)
         srv_option_variable(row, variable);
         snprintf(flag, sizeof flag, "--%s%s%s", row->name, row->argument == NULL ? "" : " ",
                  row->argument == NULL ? "" : row->argument);
-        fprintf(out, "  %-26s %s", flag, row->doc);
+        if (strlen(flag) > FLAG_WIDTH) {
+            fprintf(out, "  %s\n", flag);
+            flag[0] = '\0';
+        }
+        fprintf(out, "  %-*s %s", FLAG_WIDTH, flag, row->doc);
         if (!srv_option_is_switch(row) && row->fallback[0] != '\0') {
             fprintf(out, " (%s)", row->fallback);
         }
         if (srv_option_is_setting(row) || row->kind == SRV_SOURCE) {
-            fprintf(out, "\n  %-26s %s", "", variable);
+            fprintf(out, "\n  %-*s %s", FLAG_WIDTH, "", variable);
         }
         fputc('\n', out);
     }

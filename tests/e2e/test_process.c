@@ -41,6 +41,53 @@ static void test_options(void **state)
     expect_run(ARGUMENTS("--listen", "0.0.0.0:0"), 2, "other machines");
 }
 
+/* The short spellings give what the long ones do. */
+static void help_and_version_have_short_spellings(void **state)
+{
+    (void)state;
+    static const char *const spellings[][2] = {{"-h", "--help"}, {"-V", "--version"}};
+    static char outputs[2][32768];
+    for (size_t i = 0; i < 2; i++) {
+        for (size_t j = 0; j < 2; j++) {
+            assert_int_equal(daemon_run(ARGUMENTS(spellings[i][j]), outputs[j], sizeof outputs[j]),
+                             0);
+        }
+        assert_string_equal(outputs[0], outputs[1]);
+    }
+    int lines = 0;
+    for (const char *line = strstr(outputs[0], "hedged "); line != NULL; lines++) {
+        line = strchr(line, '\n');
+        line = line == NULL || line[1] == '\0' ? NULL : line + 1;
+    }
+    assert_int_equal(lines, 1);
+    assert_non_null(strstr(outputs[0], "(commit "));
+}
+
+/* Every description begins in one column, also where an option is too long to stand before it. */
+static void help_is_in_two_columns(void **state)
+{
+    (void)state;
+    enum { COLUMN = 29 };
+    static char output[32768];
+    int options = 0, long_ones = 0;
+    assert_int_equal(daemon_run(ARGUMENTS("--help"), output, sizeof output), 0);
+    char *rest = strstr(output, "  --");
+    assert_non_null(rest);
+    for (char *line = strtok_r(rest, "\n", &rest); line != NULL;
+         line = strtok_r(NULL, "\n", &rest)) {
+        const bool begins = strncmp(line, "  --", 4) == 0;
+        const bool alone = begins && strstr(line + 2, "  ") == NULL && strlen(line) > COLUMN - 1 &&
+                           line[COLUMN - 1] != ' ';
+        options += begins;
+        long_ones += alone;
+        if (!alone && (strlen(line) <= COLUMN || line[COLUMN - 1] != ' ' || line[COLUMN] == ' ' ||
+                       (!begins && strspn(line, " ") != COLUMN))) {
+            fail_msg("\"%s\" has no description in column %d", line, COLUMN);
+        }
+    }
+    assert_true(options > 40 && long_ones > 0);
+}
+
 static void test_port_in_use(void **state)
 {
     (void)state;
@@ -251,6 +298,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_options),
+        cmocka_unit_test(help_and_version_have_short_spellings),
+        cmocka_unit_test(help_is_in_two_columns),
         cmocka_unit_test(test_port_in_use),
         cmocka_unit_test(test_samples_and_log),
         cmocka_unit_test(test_log_lines),
