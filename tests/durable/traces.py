@@ -5,17 +5,25 @@ to the write-ahead log (-wal). Its write is the first one that contains this mar
 the first one of the -wal that begins after that write: only when this sync has returned may an
 answer, an event or a list show the change. A removal leaves no such mark: it counts as written by
 the first write to the -wal after its request came.
+
+Over TLS nobody can read what is sent. So one client sends changes one after the other on a connection
+that it has used before: what the daemon sends between the arrival of a request and that of the next
+one is its answer.
 """
+import contextlib
 import http.client
 import os
 import random
 import re
+import ssl
 import subprocess
 import threading
 
+from daemon import PATIENCE, Client
 
 MESHES = ['a', 'b', 'c']
 CALLS = 'fdatasync,fsync,pwrite64,write,writev,sendto,sendmsg,sendfile,recvfrom,recvmsg,read'
+RECEIVE = ('recvfrom', 'recvmsg', 'read')
 LINE = re.compile(r'^(\d+) +(?:<\.\.\. )?(\w+)(?: resumed>|\()(.*)$')
 FILE = re.compile(r'^\d+<((?:\\x[0-9a-f]{2})*)>')
 DATA = re.compile(r'"((?:\\x[0-9a-f]{2})*)"')
@@ -151,6 +159,7 @@ class Trace:
 
     def __init__(self, path):
         self.written, self.syncs, self.sent, self.came, self.events = [], [], {}, {}, []
+        self.received, self.answered = [], []  # on sockets, whatever it was
         under_way = {}
         with open(path, encoding='latin-1') as file:
             for at, line in enumerate(file):
@@ -166,7 +175,10 @@ class Trace:
                 elif file_name.endswith('hedge.db-wal'):
                     self.written.append((at, self.bytes(rest)))
                 elif '/' not in file_name:
-                    self.look(at, call, self.bytes(rest))
+                    data = self.bytes(rest)
+                    if data and file_name.startswith('socket:'):
+                        (self.received if call in RECEIVE else self.answered).append(at)
+                    self.look(at, call, data)
 
     def sync(self, at, thread, rest, where, under_way):
         """Notes a sync. `where` is the name of the file, or True for the end of a call that began
@@ -186,7 +198,7 @@ class Trace:
         return b''.join(unhex(part) for part in DATA.findall(text))
 
     def look(self, at, call, data):
-        if call in ('recvfrom', 'recvmsg', 'read'):
+        if call in RECEIVE:
             for name in REQUEST.findall(data):
                 self.came[name.decode()] = at
         else:
@@ -259,6 +271,91 @@ class Verdict:
                              name)
 
 
+@contextlib.contextmanager
+def traced(daemon, path):
+    """What the daemon calls meanwhile is written to `path`."""
+    strace = subprocess.Popen(['strace', '-f', '-y', '-xx', '-s', '70000', '-e', 'trace=' + CALLS,
+                               '-e', 'signal=none', '-o', path, '-p', str(daemon.process.pid)],
+                              stderr=subprocess.PIPE, text=True)
+    said = strace.stderr.readline()
+    if 'attached' not in said:
+        raise RuntimeError('strace: ' + said)
+    try:
+        yield
+    finally:
+        strace.terminate()
+        strace.wait()
+
+
+class SecureClient(Client):
+    """Over TLS; whose certificate it is makes no difference here."""
+
+    def __init__(self, port):
+        super().__init__(port)
+        self.connection = http.client.HTTPSConnection(
+            '127.0.0.1', port, timeout=PATIENCE, context=ssl._create_unverified_context())
+
+
+def make_certificate(run):
+    certificate, key = run.folder('certificate.pem'), run.folder('key.pem')
+    subprocess.run(['openssl', 'req', '-x509', '-newkey', 'ec', '-pkeyopt',
+                    'ec_paramgen_curve:prime256v1', '-nodes', '-subj', '/CN=localhost', '-days', '2',
+                    '-keyout', key, '-out', certificate], check=True, capture_output=True)
+    return ['--tls-cert', certificate, '--tls-key', key]
+
+
+def change_over_tls(client, chance):
+    """Sends changes; their marks, in order."""
+    marks = []
+    for i in range(30):
+        x = chance.random()
+        if i % 5 == 4:
+            mark = f'name-{x}'
+            answer = client.send('PATCH', '/v1/meshes/a', {'name': mark})
+        else:
+            mark = f'key-{x}'
+            answer = client.send('POST', '/v1/meshes/a/edits',
+                                 {'op': 'vertex_move', 'vertex': i % 8, 'to': [x, 0, 0]},
+                                 {'Idempotency-Key': mark})
+        if answer.status == 200:
+            marks.append(mark.encode())
+    return marks
+
+
+def early_over_tls(trace, marks, later):
+    """How many answers came before the sync that covers their change; how many were found."""
+    early = found = 0
+    for mark in marks:
+        written = trace.find(mark)
+        covered = written and trace.covered(written, later)
+        came = max((at for at in trace.received if written and at < written), default=None)
+        answered = next((at for at in trace.answered if came is not None and at > came), None)
+        if covered and answered:
+            found += 1
+            early += answered < covered
+    return early, found
+
+
+def trace_tls_round(run, number):
+    daemon = run.start(make_certificate(run), folder=run.folder(f'secure-{number}'))
+    client = SecureClient(daemon.port)
+    client.send('PUT', '/v1/meshes/a', {'shape': 'cube'})
+    local = client.connection.sock
+    path = run.folder('trace')
+    with traced(daemon, path):
+        marks = change_over_tls(client, run.chance)
+    run.judge('all is sent on one connection', client.connection.sock is local, '')
+    client.close()
+    run.judge('it stops', daemon.stop() == 0, daemon.log())
+    trace = Trace(path)
+    early, found = early_over_tls(trace, marks, 0)
+    run.count('answers over TLS', found)
+    run.judge('each change over TLS is found', found == len(marks) > 20, (found, len(marks)))
+    run.judge('no answer over TLS was early', early == 0, f'{early} of {found} were')
+    run.count('seen as early over TLS with the next sync', early_over_tls(trace, marks, 1)[0])
+    os.remove(path)
+
+
 def trace_round(run, number):
     folder = run.folder(f'store-{number}')
     daemon = run.start(folder=folder)
@@ -266,16 +363,9 @@ def trace_round(run, number):
     for mesh in MESHES:
         client.send('PUT', f'/v1/meshes/{mesh}', {'shape': 'cube'})
     path = run.folder('trace')
-    strace = subprocess.Popen(['strace', '-f', '-y', '-xx', '-s', '70000', '-e', 'trace=' + CALLS,
-                               '-e', 'signal=none', '-o', path, '-p', str(daemon.process.pid)],
-                              stderr=subprocess.PIPE, text=True)
-    said = strace.stderr.readline()
-    if 'attached' not in said:
-        raise RuntimeError('strace: ' + said)
-    traffic = Traffic(daemon, run.chance)
-    traffic.run(60)
-    strace.terminate()
-    strace.wait()
+    with traced(daemon, path):
+        traffic = Traffic(daemon, run.chance)
+        traffic.run(60)
     run.judge('it stops', daemon.stop() == 0, daemon.log())
     trace = Trace(path)
     verdict = Verdict(run, traffic, trace, 0)
@@ -293,7 +383,9 @@ def trace_round(run, number):
 def prove(run):
     for number in range(run.rounds):
         trace_round(run, number)
-    run.expect_fired('syncs', 'seen as early with the next sync',
+        trace_tls_round(run, number)
+    run.expect_fired('syncs', 'seen as early with the next sync', 'answers over TLS',
+                     'seen as early over TLS with the next sync',
                      *(f'answers of kind {kind}' for kind in (
                          'edit', 'list', 'rename', 'create', 'delete', 'read', 'page of meshes',
                          '404', 'job', 'event')))
