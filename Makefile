@@ -258,8 +258,9 @@ $(BUILD)/tests/api/test_space_threads: private LDFLAGS += \
 
 $(BUILD)/tests/api/test_gate: private LDFLAGS += \
     $(call wrap,api_gate_enter api_gate_sees api_gate_may_create api_gate_may_change api_role_allows \
-    api_token_is_current api_token_is_equal api_token_owns api_token_ranges api_tokens_find \
-    st_keyed_begin)
+    api_token_is_current api_token_is_equal api_token_matches api_token_owns api_token_ranges \
+    api_token_sees api_tokens_find api_tokens_watch api_rating_enter api_rating_charge \
+    api_rates_admit st_holders_move api_job_submit api_tickets_take st_keyed_begin st_clock_utc)
 
 $(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_signal)
 $(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
