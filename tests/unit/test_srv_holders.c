@@ -283,6 +283,78 @@ static void many_who_make_meshes_at_once_never_make_more_than_they_may(void **st
     assert_int_equal(bytes_of("crowd"), bytes);
 }
 
+typedef struct grower {
+    char id[8];
+    int grown, refused;
+    bool beyond; /* it saw more bytes than the holder may have */
+    uint64_t most;
+} grower;
+
+enum { GROWTHS = 6 };
+
+/* Pokes faces until the content takes more memory, again and again, refused or not. */
+static void *grow_often(void *context)
+{
+    grower *g = context;
+    st_mesh *mesh = NULL;
+    if (st_load(store, g->id, &mesh) != ST_OK) {
+        return NULL;
+    }
+    for (int i = 0; i < GROWTHS; i++) {
+        st_write w;
+        st_status status = st_write_begin(mesh, NULL, &w);
+        if (status != ST_OK) {
+            break;
+        }
+        const size_t bytes = he_mesh_bytes(w.content);
+        he_status poked = HE_OK;
+        for (uint32_t f = 0; poked == HE_OK && he_mesh_bytes(w.content) == bytes; f++) {
+            poked = he_face_poke(w.content, (he_face){f}, NULL, NULL, NULL, NULL, NULL);
+        }
+        if (poked != HE_OK || st_write_changes(&w, NULL) != HE_OK) {
+            st_write_abort(&w);
+            break;
+        }
+        status = st_write_commit(&w, "face_poke");
+        g->grown += status == ST_OK;
+        g->refused += status == ST_QUOTA;
+        g->beyond = g->beyond || bytes_of("crowd") > g->most;
+    }
+    st_release(mesh);
+    return NULL;
+}
+
+static void many_who_grow_meshes_at_once_never_take_more_than_they_may(void **state)
+{
+    (void)state;
+    pthread_t threads[THREADS];
+    grower growers[THREADS];
+    int grown = 0, refused = 0;
+    for (int i = 0; i < THREADS; i++) {
+        growers[i] = (grower){.grown = 0};
+        snprintf(growers[i].id, sizeof growers[i].id, "g%d", i);
+        assert_int_equal(create(growers[i].id, "crowd"), ST_OK);
+    }
+    const uint64_t most = 3 * bytes_of("crowd");
+    limit("crowd", 0, most);
+    for (int i = 0; i < THREADS; i++) {
+        growers[i].most = most;
+        assert_int_equal(pthread_create(&threads[i], NULL, grow_often, &growers[i]), 0);
+    }
+    for (int i = 0; i < THREADS; i++) {
+        assert_int_equal(pthread_join(threads[i], NULL), 0);
+        assert_int_equal(growers[i].grown + growers[i].refused, GROWTHS);
+        assert_false(growers[i].beyond);
+        grown += growers[i].grown;
+        refused += growers[i].refused;
+    }
+    assert_true(grown > 0 && refused > 0);
+    const uint64_t bytes = bytes_of("crowd");
+    assert_true(bytes <= most);
+    open_again();
+    assert_int_equal(bytes_of("crowd"), bytes);
+}
+
 static void what_was_lost_counts_no_more(void **state)
 {
     (void)state;
@@ -343,6 +415,8 @@ int main(void)
             what_would_grow_beyond_the_bytes_is_refused_and_changes_nothing, make_folder,
             remove_folder),
         cmocka_unit_test_setup_teardown(many_who_make_meshes_at_once_never_make_more_than_they_may,
+                                        make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(many_who_grow_meshes_at_once_never_take_more_than_they_may,
                                         make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(what_was_lost_counts_no_more, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(limits_are_set_whole_or_not_at_all, keep_in_memory, forget),
