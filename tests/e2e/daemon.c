@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -86,6 +87,8 @@ static int spawn(const char *const *head, const char *const *tail, outlet to, bo
     *pid = fork();
     assert_true(*pid >= 0);
     if (*pid == 0) {
+        /* A test that fails stops no daemon: the kernel does when its program has ended. */
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
         dup2(to.writes, STDERR_FILENO);
         if (with_stdout) {
             dup2(to.writes, STDOUT_FILENO);
