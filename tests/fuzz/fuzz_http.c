@@ -1,9 +1,11 @@
 /* The bytes of a connection, which http_syntax.h checks before libmicrohttpd reads them. In
  * whatever pieces they arrive, and however little room there is for the output, the same bytes must
  * be passed on, with the same fault in the same request. Nothing after a fault may change the
- * result. Lines and chunks that are passed on must end as RFC 9112 says. */
+ * result. Lines and chunks that are passed on must end as RFC 9112 says. The same bytes are also
+ * tried as the value of a traceparent. */
 #include "fuzz/fuzz.h"
 #include "server/http/syntax/http_syntax.h"
+#include "server/log/trace.h"
 #include "unit/fixture.h"
 
 enum { PIECES = 4, ENDING = 32, STEPS = 6 };
@@ -74,9 +76,38 @@ static size_t find_fault(passed *p, const char *bytes, size_t size)
     return size;
 }
 
+/* As the value of a traceparent, the bytes are answered by one that is well formed: of their own
+ * trace if they are, else of another. */
+static void check_trace(const uint8_t *input, size_t size)
+{
+    static srv_spans spans = {.seed = 1, .next = 1};
+    static const char digits[] = "0123456789abcdef";
+    char *value = malloc(size + 1);
+    srv_trace trace;
+    assert_non_null(value);
+    memcpy(value, input, size);
+    value[size] = '\0';
+    srv_trace_read(&spans, value, 1, &trace);
+    const char *answer = trace.answered;
+    FUZZ_REQUIRE(strlen(answer) == SRV_TRACEPARENT && strncmp(answer, "00-", 3) == 0 &&
+                     strspn(answer + 3, digits) == SRV_TRACE_ID && answer[35] == '-' &&
+                     strspn(answer + 36, digits) == SRV_SPAN_ID && answer[52] == '-' &&
+                     answer[53] == '0' && (answer[54] == '0' || answer[54] == '1'),
+                 "%s is no traceparent", answer);
+    const bool goes_on = trace.parent_id[0] != '\0';
+    FUZZ_REQUIRE(!goes_on || (strncmp(value + 3, trace.trace_id, SRV_TRACE_ID) == 0 &&
+                              strncmp(value + 36, trace.parent_id, SRV_SPAN_ID) == 0),
+                 "%s goes on as %s", value, answer);
+    FUZZ_REQUIRE(goes_on || strlen(value) < SRV_TRACEPARENT ||
+                     strncmp(value + 3, trace.trace_id, SRV_TRACE_ID) != 0,
+                 "%s is malformed and goes on", value);
+    free(value);
+}
+
 void fuzz_one(const uint8_t *input, size_t size)
 {
     uint64_t seed = fuzz_hash(input, size);
+    check_trace(input, size);
     char *bytes = malloc(size + 1);
     passed whole = {.bytes = malloc(size + 2 * ENDING)}, cut = {.bytes = malloc(size + 2 * ENDING)};
     assert_non_null(bytes);
