@@ -82,7 +82,7 @@ SUPPORT_C  := $(sort $(filter-out $(PROGRAM_C) $(ORACLE_C), \
                 $(wildcard tests/*.c $(foreach suite,$(SUITES),tests/$(suite)/*.c))))
 SIDE_C     := $(sort $(wildcard tests/bench/side/*.c))
 OURS_C     := $(sort $(wildcard tests/bench/ours/*.c))
-BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c $(SIDE_C) $(OURS_C)
+BENCH_C    := tests/bench/space.c tests/bench/polygons.c tests/bench/store.c tests/bench/checks.c $(SIDE_C) $(OURS_C)
 PEER_CC    := $(sort $(wildcard tests/bench/peers/*.cc))
 FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # The sources that all fuzz targets are linked with, besides the libraries; libFuzzer has a main
@@ -263,10 +263,10 @@ $(BUILD)/tests/api/test_gate: private LDFLAGS += \
     api_token_sees api_tokens_find api_tokens_watch api_rating_enter api_rating_charge \
     api_rates_admit st_holders_move api_job_submit api_tickets_take st_keyed_begin st_clock_utc)
 
-$(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_signal)
-$(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
 $(BUILD)/tests/unit/test_srv_slow: private LDFLAGS += \
     $(call wrap,st_clock_micros st_clock_wait pthread_rwlock_rdlock api_end st_pool_submit st_waits_add)
+$(BUILD)/tests/unit/test_srv_pool: private LDFLAGS += $(call wrap,pthread_cond_signal)
+$(BUILD)/tests/unit/test_srv_sweep: private LDFLAGS += \
     $(call wrap,pthread_mutex_lock shutdown)
 
 ORACLED    := $(filter-out $(BUILD)/tests/unit/test_srv_%, \
@@ -452,11 +452,11 @@ bench: $(SIDES) | $(INSTALLED) ## the kernel beside OpenMesh and CGAL; BENCH=bui
 bench-space: $(SPACE) ## rays, nearest points, intersections, curvature, triangulation: our figures alone
 	@for program in $(SPACE); do $$program; done
 
-bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
-	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare
+bench-http: $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks | $(INSTALLED) ## requests a second, beside a bare libmicrohttpd
+	@sh tests/bench/http.sh $(HEDGED) $(BUILD)/tests/bench/http/bare $(BUILD)/tests/bench/checks
 	@sh tests/bench/http_store.sh $(HEDGED) build/durable
 
-$(BUILD)/tests/bench/store: $(BUILD)/obj/tests/bench/store.o $(LIBRARIES)
+$(addprefix $(BUILD)/tests/bench/,store checks): $(BUILD)/%: $(BUILD)/obj/%.o $(LIBRARIES)
 	@mkdir -p $(@D)
 	@echo "LD $@"
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(DAEMON_LIBS)

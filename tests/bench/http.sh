@@ -2,9 +2,11 @@
 # Requests a second of hedged and of a bare libmicrohttpd program that sends the same bytes, in turn
 # and in one run: each server has one worker, wrk has one thread and 64 connections.
 #
-#   http.sh HEDGED BARE [ROUNDS [SECONDS]]
+# Besides that, what a check of a token and the counting of a request cost by themselves (checks.c).
+#
+#   http.sh HEDGED BARE CHECKS [ROUNDS [SECONDS]]
 set -eu
-hedged=$1 bare=$2 rounds=${3:-5} seconds=${4:-3}
+hedged=$1 bare=$2 checks=$3 rounds=${4:-5} seconds=${5:-3}
 command -v wrk >/dev/null || { echo "http.sh: wrk is not installed" >&2; exit 1; }
 . "$(dirname "$0")/daemon.sh"
 mkfifo "$work/stdin" "$work/port"
@@ -78,8 +80,14 @@ row "GET an element" element 0.8
 row "GET an element with a token" token-element 0.8
 row "GET an adjacency" adjacency 0.8
 row "POST an edit" edit 0.5
-awk -v with="$(median token-element)" -v without="$(median element)" 'BEGIN {
-    printf "%-28s %8.2f us a request   target 1.00\n", "a token costs", 1e6 / with - 1e6 / without }'
+"$checks" >"$work/checks"
+awk -v get="$(median element)" '
+function row(name, value, unit, target) {
+    printf "%-28s %8.2f %-12s target %.2f   %s\n", name, value, unit, target,
+        (value <= target ? "met" : "falls short")
+}
+$1 == "token" { row("a check of a token", $2, "us", 1) }
+$1 == "metrics" { row("metrics", $2 * get / 1e4, "% of a GET", 2) }' "$work/checks"
 # For each request both servers call recvfrom once and sendmsg once, and nothing else; these two
 # calls take two thirds of hedged's time.
 cat <<'NOTE'
