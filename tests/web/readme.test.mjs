@@ -3,13 +3,13 @@
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
-import { mkdtemp, readFile, rm } from 'node:fs/promises';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { test } from 'node:test';
 import { promisify } from 'node:util';
 
-import { startDaemon } from './daemon.mjs';
+import { program, startDaemon } from './daemon.mjs';
 
 const read = (name) => readFile(new URL(`../../${name}`, import.meta.url), 'utf8');
 const readme = await read('README.md');
@@ -175,6 +175,21 @@ test('the lines about compressed bodies work as pasted', async (t) => {
     t.after(() => rm(folder, { recursive: true }));
     const [made, sent] = parsed(await runCurls(`cd ${folder}\n${block}`));
     assert.equal(sent.counts.faces, made.counts.faces);
+});
+
+test('the lines about tokens work as pasted', async (t) => {
+    const folder = await mkdtemp(path.join(tmpdir(), 'hedge-readme-'));
+    t.after(() => rm(folder, { recursive: true }));
+    const [token, line] = (await run(program, ['--new-token', 'alice', 'write'])).split('\n');
+    await writeFile(path.join(folder, 'tokens'), line);
+    const { url } = await startDaemon(t, '--tokens', path.join(folder, 'tokens'));
+    const block = shellWith('/v1/tickets', url);
+    const [who, , ticket] = parsed(await runCurls(block.replace('hedge_...', token)));
+    assert.deepEqual(who, { name: 'alice', role: 'write', prefixes: [], expires: null });
+    const file = await fetch(`${url}${ticket.path}`);
+    assert.equal(file.status, 200);
+    assert.match(await file.text(), /^v /m);
+    assert.equal((await fetch(`${url}${ticket.path}`)).status, 401);
 });
 
 test('the Python lines work as pasted', async (t) => {
