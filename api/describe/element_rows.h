@@ -1,8 +1,8 @@
 /* element_rows.h - rows of the table of routes that differ only in the kind of element.
  *
- * They make rows such as vertices_list, vertex_get and vertex_faces: `one` and `many` are the names
- * of the kind, `what` is the name of a relation in core/query/adjacency.h. The table in routes.c
- * includes ELEMENT_ROWS and defines the header `next_page` that they use. */
+ * They make rows such as list_vertices, get_vertex and list_vertex_faces: `one` and `many` are the
+ * names of the kind, `what` is the name of a relation in core/query/adjacency.h. The table in
+ * routes.c includes ELEMENT_ROWS and defines the header `next_page` that they use. */
 #ifndef HE_API_DESCRIBE_ELEMENT_ROWS_H
 #define HE_API_DESCRIBE_ELEMENT_ROWS_H
 
@@ -12,7 +12,7 @@
 
 #define ELEMENTS(of, one, many, words)                                                            \
     {                                                                                             \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = many "_list", .kind = (of),   \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many, .name = "list_" many, .kind = (of),   \
         .run = api_elements_list, .role = API_ROLE_READ, .reads = API_READS_LOCKED,               \
         .cost = api_elements_cost, .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,      \
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
@@ -25,7 +25,7 @@
 
 #define ELEMENT(of, one, many, text)                                                            \
     {                                                                                           \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}", .name = one "_get",         \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}", .name = "get_" one,         \
         .kind = (of), .run = api_element_get, .role = API_ROLE_READ, .reads = API_READS_LOCKED, \
         .produces = json, .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, \
         .response = (one), .summary = "One " one " with all its links",                         \
@@ -34,9 +34,9 @@
 
 #define ADJACENCY(of, one, many, what, title, text)                                              \
     {                                                                                            \
-        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}/" what, .name = one "_" what,  \
-        .kind = (of), .relation = (what), .run = api_relation_get, .role = API_ROLE_READ,        \
-        .reads = API_READS_LOCKED, .produces = json,                                             \
+        .method = "GET", .path = "/v1/meshes/{mesh}/" many "/{id}/" what,                        \
+        .name = "list_" one "_" what, .kind = (of), .relation = (what), .run = api_relation_get, \
+        .role = API_ROLE_READ, .reads = API_READS_LOCKED, .produces = json,                      \
         .parameters = {&api_parameter_revision, &api_parameter_turning},                         \
         .statuses = {200, 304, 410}, .response = one "_" what, .summary = (title), .doc = (text) \
     }

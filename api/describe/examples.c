@@ -3,7 +3,7 @@
 #include <string.h>
 
 static const api_example examples[] = {
-    {.route = "mesh_put",
+    {.route = "replace_mesh",
      .target = "/v1/meshes/kite",
      .consumes = "application/json",
      .request = "{\"name\":\"kite\",\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]],\"faces\":[[0,"
@@ -18,7 +18,7 @@ static const api_example examples[] = {
                  "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"json\","
                  "\"vertices\":4,\"faces\":2,\"repairs\":[],\"warnings\":[]}}"},
-    {.route = "meshes_create",
+    {.route = "create_mesh",
      .target = "/v1/meshes?id=box",
      .consumes = "application/json",
      .request = "{\"shape\":\"cube\",\"size\":2}",
@@ -32,7 +32,7 @@ static const api_example examples[] = {
                  "\"memory_bytes\":760,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"shape\","
                  "\"vertices\":8,\"faces\":6,\"repairs\":[],\"warnings\":[]}}"},
-    {.route = "meshes_create",
+    {.route = "create_mesh",
      .target = "/v1/meshes?id=tile&name=tile",
      .consumes = "model/obj",
      .request = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -46,7 +46,7 @@ static const api_example examples[] = {
                  "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"obj\","
                  "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
-    {.route = "meshes_create",
+    {.route = "create_mesh",
      .target = "/v1/meshes?id=tile-off&repair=drop_duplicates",
      .consumes = "model/x-off",
      .request = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 1 2 0\n",
@@ -61,7 +61,7 @@ static const api_example examples[] = {
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"off\","
                  "\"vertices\":3,\"faces\":2,\"repairs\":[{\"repair\":\"drop_duplicates\","
                  "\"count\":1,\"gone\":[1],\"into\":[0],\"lines\":[7]}],\"warnings\":[]}}"},
-    {.route = "meshes_create",
+    {.route = "create_mesh",
      .target = "/v1/meshes?id=tile-gltf",
      .consumes = "model/gltf+json",
      .request = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,"
@@ -79,7 +79,7 @@ static const api_example examples[] = {
                  "\"memory_bytes\":312,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\",\"import\":{\"format\":\"gltf\","
                  "\"vertices\":3,\"faces\":1,\"repairs\":[],\"warnings\":[]}}"},
-    {.route = "meshes_list",
+    {.route = "list_meshes",
      .target = "/v1/meshes",
      .status = 200,
      .produces = "application/json",
@@ -93,7 +93,7 @@ static const api_example examples[] = {
                  "{\"id\":\"tile-off\",\"name\":\"\",\"revision\":1,"
                  "\"counts\":{\"vertices\":3,\"halfedges\":6,\"edges\":3,\"faces\":1}}],"
                  "\"next\":null,\"listeners\":0}"},
-    {.route = "mesh_get",
+    {.route = "get_mesh",
      .target = "/v1/meshes/kite",
      .status = 200,
      .produces = "application/json",
@@ -104,7 +104,7 @@ static const api_example examples[] = {
                  "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":1,\"volume\":null,"
                  "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\"}"},
-    {.route = "mesh_patch",
+    {.route = "update_mesh",
      .target = "/v1/meshes/kite",
      .consumes = "application/merge-patch+json",
      .request = "{\"name\":\"Kite\"}",
@@ -117,23 +117,23 @@ static const api_example examples[] = {
                  "\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]},\"area\":1,\"volume\":null,"
                  "\"memory_bytes\":408,\"created\":\"2026-01-01T12:00:00.000Z\","
                  "\"modified\":\"2026-01-01T12:00:00.000Z\"}"},
-    {.route = "content_get",
+    {.route = "export_mesh",
      .target = "/v1/meshes/kite/content",
      .status = 200,
      .produces = "application/json",
      .response = "{\"name\":\"Kite\",\"vertices\":[\n[0,0,0],\n[1,0,0],\n[1,1,0],\n[0,1,0]],"
                  "\n\"faces\":[\n[0,1,2],\n[0,2,3]]}\n"},
-    {.route = "content_get",
+    {.route = "export_mesh",
      .target = "/v1/meshes/kite/content",
      .status = 200,
      .produces = "model/obj",
      .response = "# 4 vertices, 2 faces\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"},
-    {.route = "content_get",
+    {.route = "export_mesh",
      .target = "/v1/meshes/kite/content",
      .status = 200,
      .produces = "model/x-off",
      .response = "OFF\n4 2 5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"},
-    {.route = "mesh_copy",
+    {.route = "copy_mesh",
      .target = "/v1/meshes/kite/copy",
      .consumes = "application/json",
      .request = "{\"id\":\"kite-2\",\"name\":\"Another kite\"}",
@@ -147,7 +147,7 @@ static const api_example examples[] = {
                  "0]},\"area\":1,\"volume\":null,\"memory_bytes\":408,"
                  "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000"
                  "Z\"}"},
-    {.route = "vertices_list",
+    {.route = "list_vertices",
      .target = "/v1/meshes/kite/vertices",
      .status = 200,
      .produces = "application/json",
@@ -157,7 +157,7 @@ static const api_example examples[] = {
                  "\"position\":[1,1,0],\"halfedge\":3,\"degree\":3,\"boundary\":true,"
                  "\"isolated\":false},{\"id\":3,\"position\":[0,1,0],\"halfedge\":7,\"degree\":2,"
                  "\"boundary\":true,\"isolated\":false}],\"next\":null}"},
-    {.route = "edges_list",
+    {.route = "list_edges",
      .target = "/v1/meshes/kite/edges",
      .status = 200,
      .produces = "application/x-ndjson",
@@ -170,7 +170,7 @@ static const api_example examples[] = {
                  "\"boundary\":true}\n{\"id\":4,\"halfedges\":[8,9],\"vertices\":[3,0],"
                  "\"faces\":[1,null],\"length\":1,\"boundary\":true}\n{\"end\":true,"
                  "\"count\":5}\n"},
-    {.route = "halfedges_list",
+    {.route = "list_halfedges",
      .target = "/v1/meshes/kite/halfedges",
      .status = 200,
      .produces = "application/json",
@@ -190,7 +190,7 @@ static const api_example examples[] = {
                  "\"origin\":3,\"target\":0,\"edge\":4,\"face\":1,\"boundary\":false},{\"id\":9,"
                  "\"twin\":8,\"next\":7,\"prev\":1,\"origin\":0,\"target\":3,\"edge\":4,"
                  "\"face\":null,\"boundary\":true}],\"next\":null}"},
-    {.route = "edges_list",
+    {.route = "list_edges",
      .target = "/v1/meshes/kite/edges",
      .status = 200,
      .produces = "application/json",
@@ -202,7 +202,7 @@ static const api_example examples[] = {
                  "\"vertices\":[2,3],\"faces\":[1,null],\"length\":1,\"boundary\":true},{\"id\":4,"
                  "\"halfedges\":[8,9],\"vertices\":[3,0],\"faces\":[1,null],\"length\":1,"
                  "\"boundary\":true}],\"next\":null}"},
-    {.route = "faces_list",
+    {.route = "list_faces",
      .target = "/v1/meshes/kite/faces",
      .status = 200,
      .produces = "application/json",
@@ -212,105 +212,105 @@ static const api_example examples[] = {
                  "\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,8],"
                  "\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
                  "0.6666666666666666,0]}],\"next\":null}"},
-    {.route = "vertex_get",
+    {.route = "get_vertex",
      .target = "/v1/meshes/kite/vertices/2",
      .status = 200,
      .produces = "application/json",
      .response = "{\"id\":2,\"position\":[1,1,0],\"halfedge\":3,\"degree\":3,\"boundary\":true,"
                  "\"isolated\":false}"},
-    {.route = "halfedge_get",
+    {.route = "get_halfedge",
      .target = "/v1/meshes/kite/halfedges/0",
      .status = 200,
      .produces = "application/json",
      .response = "{\"id\":0,\"twin\":1,\"next\":2,\"prev\":4,\"origin\":0,\"target\":1,"
                  "\"edge\":0,\"face\":0,\"boundary\":false}"},
-    {.route = "edge_get",
+    {.route = "get_edge",
      .target = "/v1/meshes/kite/edges/2",
      .status = 200,
      .produces = "application/json",
      .response = "{\"id\":2,\"halfedges\":[4,5],\"vertices\":[2,0],\"faces\":[0,1],"
                  "\"length\":1.4142135623730951,\"boundary\":false}"},
-    {.route = "face_get",
+    {.route = "get_face",
      .target = "/v1/meshes/kite/faces/1",
      .status = 200,
      .produces = "application/json",
      .response = "{\"id\":1,\"halfedge\":5,\"degree\":3,\"vertices\":[0,2,3],\"halfedges\":[5,6,"
                  "8],\"area\":0.5,\"normal\":[0,0,1],\"centroid\":[0.3333333333333333,"
                  "0.6666666666666666,0]}"},
-    {.route = "vertex_vertices",
+    {.route = "list_vertex_vertices",
      .target = "/v1/meshes/kite/vertices/2/vertices",
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"vertices\",\"ids\":[1,3,0]}"},
-    {.route = "vertex_outgoing",
+    {.route = "list_vertex_outgoing",
      .target = "/v1/meshes/kite/vertices/2/outgoing",
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"outgoing\",\"ids\":[3,6,4]}"},
-    {.route = "vertex_incoming",
+    {.route = "list_vertex_incoming",
      .target = "/v1/meshes/kite/vertices/2/incoming",
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"incoming\",\"ids\":[2,7,5]}"},
-    {.route = "vertex_edges",
+    {.route = "list_vertex_edges",
      .target = "/v1/meshes/kite/vertices/2/edges",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"edges\",\"ids\":[1,3,2]}"},
-    {.route = "vertex_faces",
+    {.route = "list_vertex_faces",
      .target = "/v1/meshes/kite/vertices/2/faces",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"vertex\":2},\"relation\":\"faces\",\"ids\":[1,0]}"},
-    {.route = "halfedge_loop",
+    {.route = "list_halfedge_loop",
      .target = "/v1/meshes/kite/halfedges/4/loop",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"halfedge\":4},\"relation\":\"loop\",\"ids\":[4,0,2]}"},
-    {.route = "halfedge_ring",
+    {.route = "list_halfedge_ring",
      .target = "/v1/meshes/kite/halfedges/4/ring",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"halfedge\":4},\"relation\":\"ring\",\"ids\":[4,3,6]}"},
-    {.route = "edge_vertices",
+    {.route = "list_edge_vertices",
      .target = "/v1/meshes/kite/edges/2/vertices",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"vertices\",\"ids\":[2,0]}"},
-    {.route = "edge_halfedges",
+    {.route = "list_edge_halfedges",
      .target = "/v1/meshes/kite/edges/2/halfedges",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"halfedges\",\"ids\":[4,5]}"},
-    {.route = "edge_faces",
+    {.route = "list_edge_faces",
      .target = "/v1/meshes/kite/edges/2/faces",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"edge\":2},\"relation\":\"faces\",\"ids\":[0,1]}"},
-    {.route = "face_vertices",
+    {.route = "list_face_vertices",
      .target = "/v1/meshes/kite/faces/0/vertices",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"vertices\",\"ids\":[0,1,2]}"},
-    {.route = "face_halfedges",
+    {.route = "list_face_halfedges",
      .target = "/v1/meshes/kite/faces/0/halfedges",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"halfedges\",\"ids\":[0,2,4]}"},
-    {.route = "face_edges",
+    {.route = "list_face_edges",
      .target = "/v1/meshes/kite/faces/0/edges",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"edges\",\"ids\":[0,1,2]}"},
-    {.route = "face_faces",
+    {.route = "list_face_faces",
      .target = "/v1/meshes/kite/faces/0/faces",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"of\":{\"face\":0},\"relation\":\"faces\",\"ids\":[1]}"},
-    {.route = "query_post",
+    {.route = "query_mesh",
      .target = "/v1/meshes/kite/query",
      .consumes = "application/json",
      .request = "{\"queries\":[{\"relation\":\"faces\",\"of\":{\"vertex\":2}},"
@@ -335,7 +335,7 @@ static const api_example examples[] = {
          "\"barycentric\":[{\"vertex\":0,\"weight\":0.5},{\"vertex\":3,"
          "\"weight\":0.5}]}},{\"closest\":null},{\"pairs\":[],\"total\":0,"
          "\"complete\":true}]}"},
-    {.route = "traverse_post",
+    {.route = "traverse_mesh",
      .target = "/v1/meshes/kite/traverse",
      .consumes = "application/json",
      .request = "{\"walk\":\"path\",\"from\":{\"halfedge\":0},\"path\":[\"next\",\"next\","
@@ -344,19 +344,19 @@ static const api_example examples[] = {
      .produces = "application/json",
      .response = "{\"revision\":1,\"walk\":\"path\",\"from\":{\"halfedge\":0},\"path\":[\"next\","
                  "\"next\",\"twin\"],\"repeat\":1,\"halfedges\":[0,2,4,5],\"end\":5}"},
-    {.route = "boundaries_get",
+    {.route = "list_boundaries",
      .target = "/v1/meshes/kite/boundaries",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"loops\":[{\"halfedge\":1,\"length\":4,\"halfedges\":[1,9,7,"
                  "3],\"vertices\":[1,0,3,2]}]}"},
-    {.route = "components_get",
+    {.route = "list_components",
      .target = "/v1/meshes/kite/components",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":1,\"by\":\"edge\",\"components\":[{\"faces\":2,\"vertices\":4,"
                  "\"face\":0}]}"},
-    {.route = "check_get",
+    {.route = "check_mesh",
      .target = "/v1/meshes/kite/check?self_intersections=true&merge=0.5&flat=0.25",
      .status = 200,
      .produces = "application/json",
@@ -366,7 +366,7 @@ static const api_example examples[] = {
                  "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":0,"
                  "\"self_intersection\":0},\"thresholds\":{\"merge\":0.5,\"flat\":0.25,"
                  "\"small\":0.014142135623730951},\"complete\":true}"},
-    {.route = "edits_post",
+    {.route = "apply_edits",
      .target = "/v1/meshes/kite/edits",
      .consumes = "application/json",
      .request = "{\"expected_revision\":1,\"ops\":[{\"op\":\"edge_split\",\"edge\":2,\"t\":0.5},"
@@ -378,7 +378,7 @@ static const api_example examples[] = {
                  "\"edges\":[5,6,7],\"faces\":[2,3]},\"deleted\":{\"vertices\":[],\"edges\":[],"
                  "\"faces\":[]},\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,"
                  "1]},\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{}}"},
-    {.route = "edits_post",
+    {.route = "apply_edits",
      .target = "/v1/meshes/kite/edits",
      .consumes = "application/json",
      .request = "{\"op\":\"edge_flip\",\"edge\":0}",
@@ -387,7 +387,7 @@ static const api_example examples[] = {
      .response = "{\"type\":\"/problems/boundary_edge\",\"title\":\"The edge is on the boundary\""
                  ",\"status\":422,\"detail\":\"edge 0 has only one face\","
                  "\"code\":\"boundary_edge\",\"element\":{\"kind\":\"edge\",\"id\":0}}"},
-    {.route = "edits_list",
+    {.route = "list_edits",
      .target = "/v1/meshes/kite/edits",
      .status = 200,
      .produces = "application/json",
@@ -398,7 +398,7 @@ static const api_example examples[] = {
                  "\"undoable\":true,\"bytes\":952,"
                  "\"time\":\"2026-01-01T12:00:00.000Z\"}],\"undo\":1,\"redo\":0,\"oldest\":1,"
                  "\"dropped\":0,\"bytes\":1135,\"budget\":268435456,\"next\":null}"},
-    {.route = "undo_post",
+    {.route = "undo_edits",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
      .request = "{\"expected_revision\":2}",
@@ -408,7 +408,7 @@ static const api_example examples[] = {
                  "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
-    {.route = "redo_post",
+    {.route = "redo_edits",
      .target = "/v1/meshes/kite/redo",
      .consumes = "application/json",
      .request = "{\"expected_revision\":3}",
@@ -419,7 +419,7 @@ static const api_example examples[] = {
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{\"edges\":[[5,2]],\"faces\":[[2,0],[3,1]]},\"merged\":{},"
                  "\"undo\":1,\"redo\":0}"},
-    {.route = "events_get",
+    {.route = "follow_mesh",
      .target = "/v1/meshes/kite/events?since=3",
      .status = 200,
      .produces = "text/event-stream",
@@ -443,7 +443,7 @@ static const api_example examples[] = {
          "event: bye\n"
          "data: {\"reason\":\"stopping\"}\n"
          "\n"},
-    {.route = "undo_post",
+    {.route = "undo_edits",
      .target = "/v1/meshes/kite/undo",
      .consumes = "application/json",
      .request = "{\"to_revision\":1}",
@@ -453,34 +453,34 @@ static const api_example examples[] = {
                  "\"faces\":[]},\"deleted\":{\"vertices\":[4],\"edges\":[5,6,7],\"faces\":[2,3]},"
                  "\"modified\":{\"vertices\":[1],\"edges\":[0,2,4],\"faces\":[0,1]},"
                  "\"parents\":{},\"merged\":{},\"undo\":0,\"redo\":1}"},
-    {.route = "vertex_faces",
+    {.route = "list_vertex_faces",
      .target = "/v1/meshes/kite/vertices/4/faces?revision=4",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":4,\"of\":{\"vertex\":4},\"relation\":\"faces\","
                  "\"ids\":[2,0,1,3]}"},
-    {.route = "jobs_list",
+    {.route = "list_jobs",
      .target = "/v1/jobs",
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"items\":[{\"id\":\"" API_EXAMPLE_JOB
-         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\",\"operation\":\"create_mesh\",\"state\":\"done\",\"phase\":\"measuring\","
          "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
          "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
          "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result_link\":\"/v1/"
          "jobs/" API_EXAMPLE_JOB "/result\"},{\"id\":\"" API_EXAMPLE_WAITING
-         "\",\"operation\":\"mesh_put\",\"state\":\"queued\",\"phase\":null,\"progress\":0,"
+         "\",\"operation\":\"replace_mesh\",\"state\":\"queued\",\"phase\":null,\"progress\":0,"
          "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
          "\"finished\":null,\"status\":null,\"location\":null,\"result_link\":null}],\"next\":"
          "null}"},
-    {.route = "job_get",
+    {.route = "get_job",
      .target = "/v1/jobs/" API_EXAMPLE_JOB,
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"id\":\"" API_EXAMPLE_JOB
-         "\",\"operation\":\"meshes_create\",\"state\":\"done\",\"phase\":\"measuring\","
+         "\",\"operation\":\"create_mesh\",\"state\":\"done\",\"phase\":\"measuring\","
          "\"progress\":1,\"mesh\":\"disk\",\"created\":\"2026-01-01T12:00:00.000Z\","
          "\"started\":\"2026-01-01T12:00:00.000Z\",\"finished\":\"2026-01-01T12:00:00.000Z\","
          "\"status\":201,\"location\":\"/v1/meshes/disk\",\"result_link\":\"/v1/"
@@ -493,7 +493,7 @@ static const api_example examples[] = {
          "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
          "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
          "\"warnings\":[]}}}"},
-    {.route = "job_result",
+    {.route = "get_job_result",
      .target = "/v1/jobs/" API_EXAMPLE_JOB "/result",
      .status = 200,
      .produces = "application/json",
@@ -507,18 +507,18 @@ static const api_example examples[] = {
          "\"created\":\"2026-01-01T12:00:00.000Z\",\"modified\":\"2026-01-01T12:00:00.000Z\","
          "\"import\":{\"format\":\"shape\",\"vertices\":4,\"faces\":3,\"repairs\":[],"
          "\"warnings\":[]}}"},
-    {.route = "job_delete",
+    {.route = "delete_job",
      .target = "/v1/jobs/" API_EXAMPLE_WAITING,
      .status = 202,
      .produces = "application/json",
      .response =
          "{\"id\":\"" API_EXAMPLE_WAITING
-         "\",\"operation\":\"mesh_put\",\"state\":\"cancelled\",\"phase\":null,\"progress\":0,"
+         "\",\"operation\":\"replace_mesh\",\"state\":\"cancelled\",\"phase\":null,\"progress\":0,"
          "\"mesh\":\"later\",\"created\":\"2026-01-01T12:00:00.000Z\",\"started\":null,"
          "\"finished\":\"2026-01-01T12:00:00.000Z\",\"status\":null,\"location\":null,\"result_"
          "link\":null,"
          "\"problem\":null}"},
-    {.route = "attribute_put",
+    {.route = "replace_attribute",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .consumes = "application/json",
      .request = "{\"type\":\"bool\"}",
@@ -529,7 +529,7 @@ static const api_example examples[] = {
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
                  "\"edges\":[],\"faces\":[]},\"parents\":{},\"merged\":{}}"},
-    {.route = "attribute_patch",
+    {.route = "update_attribute",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .consumes = "application/json",
      .request = "{\"ids\":[0,1],\"value\":true}",
@@ -540,12 +540,12 @@ static const api_example examples[] = {
                  "4},\"created\":{\"vertices\":[],\"edges\":[],\"faces\":[]},\"deleted\":{"
                  "\"vertices\":[],\"edges\":[],\"faces\":[]},\"modified\":{\"vertices\":[],"
                  "\"edges\":[],\"faces\":[0,1]},\"parents\":{},\"merged\":{}}"},
-    {.route = "token_get",
+    {.route = "get_token",
      .target = "/v1/token",
      .status = 200,
      .produces = "application/json",
      .response = "{\"name\":null,\"role\":\"admin\",\"prefixes\":[],\"expires\":null}"},
-    {.route = "tickets_post",
+    {.route = "create_ticket",
      .target = "/v1/tickets",
      .consumes = "application/json",
      .request = "{\"path\":\"/v1/meshes/kite/content?format=glb\"}",
@@ -554,31 +554,31 @@ static const api_example examples[] = {
      .response = "{\"path\":\"/v1/meshes/kite/content?format=glb&ticket="
                  "hedge_p6Dq0wYzR2mXk8VtB4nHs1LcJf7GaEu9TiKo3CvQy5W\",\"expires\":"
                  "\"2026-01-01T12:00:00.000Z\"}"},
-    {.route = "reload_post",
+    {.route = "reload_tokens",
      .target = "/v1/admin/reload",
      .status = 200,
      .produces = "application/json",
      .response = "{\"tokens\":null}"},
-    {.route = "materials_list",
+    {.route = "list_materials",
      .target = "/v1/meshes/kite/materials",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":7,\"materials\":[]}"},
-    {.route = "attributes_list",
+    {.route = "list_attributes",
      .target = "/v1/meshes/kite/attributes",
      .status = 200,
      .produces = "application/json",
      .response =
          "{\"revision\":7,\"attributes\":[{\"domain\":\"faces\",\"name\":\"selected\",\"type\":"
          "\"bool\",\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4}]}"},
-    {.route = "attribute_get",
+    {.route = "get_attribute",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .status = 200,
      .produces = "application/json",
      .response = "{\"revision\":7,\"domain\":\"faces\",\"name\":\"selected\",\"type\":\"bool\","
                  "\"components\":1,\"rule\":\"copy\",\"default\":false,\"bytes\":4,\"ids\":[0,1],"
                  "\"values\":[true,true],\"next\":null}"},
-    {.route = "attribute_delete",
+    {.route = "delete_attribute",
      .target = "/v1/meshes/kite/attributes/faces/selected",
      .status = 200,
      .produces = "application/json",

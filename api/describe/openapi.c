@@ -284,7 +284,7 @@ static void write_success(api_out *out, const api_route *route, int status)
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
     if (status == 202) {
-        write_content(out, job_media, "job", NULL, api_example_response, "job_delete");
+        write_content(out, job_media, "job", NULL, api_example_response, "delete_job");
     }
     if (status == 200 || status == 201) {
         write_content(out, route->produces, route->response, route->line, api_example_response,

@@ -161,14 +161,14 @@ static const char *body_of(const api_route *route)
 {
     static const struct {
         const char *name, *body;
-    } bodies[] = {{"query_post", "{\"queries\":[]}"},
-                  {"traverse_post", "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}"},
-                  {"edits_post", "{\"op\":\"face_poke\",\"face\":0}"},
-                  {"attribute_put", "{\"type\":\"bool\"}"},
-                  {"attribute_patch", "{\"ids\":\"all\",\"value\":true}"},
-                  {"mesh_patch", "{\"name\":\"new\"}"},
-                  {"mesh_put", "{\"shape\":\"cube\"}"},
-                  {"meshes_create", "{\"shape\":\"cube\"}"}};
+    } bodies[] = {{"query_mesh", "{\"queries\":[]}"},
+                  {"traverse_mesh", "{\"walk\":\"loop\",\"from\":{\"halfedge\":0}}"},
+                  {"apply_edits", "{\"op\":\"face_poke\",\"face\":0}"},
+                  {"replace_attribute", "{\"type\":\"bool\"}"},
+                  {"update_attribute", "{\"ids\":\"all\",\"value\":true}"},
+                  {"update_mesh", "{\"name\":\"new\"}"},
+                  {"replace_mesh", "{\"shape\":\"cube\"}"},
+                  {"create_mesh", "{\"shape\":\"cube\"}"}};
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
         if (strcmp(route->name, bodies[i].name) == 0) {
             return bodies[i].body;

@@ -96,7 +96,7 @@ static st_job accepted(const char *id, uint64_t number)
 {
     st_job job = {.number = number,
                   .state = ST_JOB_ACCEPTED,
-                  .operation = "edits_post",
+                  .operation = "apply_edits",
                   .phase = "",
                   .mesh = "m",
                   .location = "",
@@ -147,10 +147,10 @@ static void a_job_comes_back_as_it_was_noted_last(void **state)
         assert_string_equal(s.jobs[0].id, "b"); /* in the order of numbers */
         assert_int_equal(s.jobs[0].state, ST_JOB_ACCEPTED);
         assert_null(s.jobs[0].body);
-        assert_string_equal(s.texts[0], "edits_post||m||token||||");
+        assert_string_equal(s.texts[0], "apply_edits||m||token||||");
         const st_job *is = &s.jobs[1];
         assert_string_equal(s.texts[1],
-                            "edits_post|welding|m|/v1/meshes/n|token|text/plain||\"tag\"|");
+                            "apply_edits|welding|m|/v1/meshes/n|token|text/plain||\"tag\"|");
         assert_int_equal(is->state, ST_JOB_FAILED);
         assert_int_equal(is->status, 422);
         assert_true(is->shown && is->number == 2 && is->progress == 0.25);
@@ -188,7 +188,7 @@ static void a_job_is_done_with_its_record(void **state)
         assert_int_equal(s.jobs[i].state, ST_JOB_DONE);
         assert_true(s.jobs[i].progress == 1 && s.jobs[i].finished == 200);
         assert_int_equal(s.jobs[i].status, i == 0 ? 201 : 204);
-        assert_string_equal(s.texts[i], "edits_post||m||token||||");
+        assert_string_equal(s.texts[i], "apply_edits||m||token||||");
     }
 }
 
@@ -285,7 +285,7 @@ static void a_restore_takes_the_tags(void **state)
     open_store();
     const seen s = jobs_kept();
     assert_int_equal(s.count, 1);
-    assert_string_equal(s.texts[0], "edits_post||m||token||||");
+    assert_string_equal(s.texts[0], "apply_edits||m||token||||");
     assert_memory_equal(s.bodies[0], "{}", 2);
 }
 

@@ -33,7 +33,7 @@ test('shows every endpoint with its parameters, bodies and answers', async (t) =
     }
     const answer = description.paths['/v1/meshes/{mesh}/faces/{id}'].get.responses['200'];
     const { example } = answer.content['application/json'];
-    const shown = await page.locator('#face_get pre').innerText();
+    const shown = await page.locator('#get_face pre').innerText();
     assert.deepEqual(JSON.parse(shown), example);
     await checkAccessible(page, 'the manual');
 });

@@ -181,14 +181,14 @@ test('the manual is one click away, and the viewer one click back', async (t) =>
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     await page.getByRole('link', { name: 'Manual' }).click();
     await page.waitForURL(`${daemon.url}/docs`);
-    await page.locator('#meshes_create').waitFor();
+    await page.locator('#create_mesh').waitFor();
     await page.getByRole('link', { name: 'Viewer', exact: true }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await fetch(`${daemon.url}/v1/meshes/${mesh}`, { method: 'DELETE' });
     await page.goto(`${daemon.url}/`);
     await page.getByRole('link', { name: 'manual', exact: true }).click();
     await page.waitForFunction(() => {
-        const place = document.getElementById('meshes_create')?.getBoundingClientRect();
+        const place = document.getElementById('create_mesh')?.getBoundingClientRect();
         return place !== undefined && place.top >= 0 && place.top < innerHeight;
     });
 });
