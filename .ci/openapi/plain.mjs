@@ -6,6 +6,10 @@ import { readFileSync } from 'node:fs';
 const document = JSON.parse(readFileSync(process.argv[2], 'utf8'));
 const faults = [];
 const isSchema = (path) => /\/(schema|items|additionalProperties|x-item-schema)$|\/(schemas|properties)\/[^/]*$|\/(oneOf|anyOf|allOf)\/\d+$/.test(path);
+const VERBS = new Set(['apply', 'back', 'check', 'copy', 'create', 'delete', 'export', 'follow', 'get', 'list',
+    'query', 'redo', 'reload', 'replace', 'traverse', 'undo', 'update']);
+const resolve = ({ $ref: reference, ...schema }) =>
+    reference === undefined ? schema : reference.slice(2).split('/').reduce((at, name) => at[name], document);
 const only = (value, name) => Object.keys(value).every((key) => key === name);
 
 function checkSchema(schema, path) {
@@ -21,6 +25,12 @@ function checkSchema(schema, path) {
     }
     if ([...(schema.anyOf ?? []), ...(schema.oneOf ?? [])].some((part) => only(part, 'required'))) {
         say('a union of requirements');
+    }
+    const parts = (schema.oneOf ?? []).map(resolve);
+    const [first = []] = parts.map(({ properties = {} }) => Object.keys(properties));
+    const tells = first.find((name) => parts.every(({ properties = {} }) => 'const' in (properties[name] ?? {})));
+    if (parts.length > 1 && tells !== undefined && schema.discriminator?.propertyName !== tells) {
+        say(`a union whose parts differ in "${tells}", without a discriminator`);
     }
     if (schema.type === 'integer' && !('format' in schema) && !(schema.maximum < 2 ** 31)) {
         say('an integer that may pass 2^31 without a format');
@@ -45,6 +55,9 @@ for (const [path, item] of Object.entries(document.paths)) {
     for (const [method, operation] of Object.entries(item)) {
         if (method !== 'parameters' && !operation.tags?.every((tag) => tags.has(tag))) {
             faults.push(`/paths/${path}/${method}: no tag, or one that is not described`);
+        }
+        if (method !== 'parameters' && !(/^[a-z]+(_[a-z]+)+$/.test(operation.operationId) && VERBS.has(operation.operationId.split('_')[0]))) {
+            faults.push(`/paths/${path}/${method}: the operationId is no verb with what it is done to, such as get_mesh`);
         }
         for (const { content = {} } of Object.values(operation.responses ?? {})) {
             for (const [media, { schema, 'x-item-schema': line }] of Object.entries(content)) {

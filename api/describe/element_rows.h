@@ -17,7 +17,7 @@
         .cost = api_elements_cost, .flags = API_EXPENSIVE | API_LONG, .produces = lines_too,      \
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
         .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
-        .line = (one), .summary = "List the " words,                                              \
+        .item = (one), .summary = "List the " words,                                              \
         .doc = "A page in the order of ids, or all of them as lines of JSON that end in "         \
                "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while " \
                "the history holds it."                                                            \

@@ -4,12 +4,14 @@
 #include "api/describe/operations.h"
 #include "api/describe/routes.h"
 #include "api/describe/schemas.h"
+#include "api/describe/shape_schemas.h"
 #include "api/describe/tags.h"
-#include "api/document/shapes.h"
 #include "api/header/media.h"
 
 #include <stdio.h>
 #include <string.h>
+
+static const char EVENT_STREAM[] = "text/event-stream";
 
 /* --- paths --- */
 
@@ -119,9 +121,6 @@ static void write_line_schema(api_out *out, const char *line)
     api_out_object_end(out);
 }
 
-/* Writes the media types of a body. API JSON has a schema, mesh files have none. The schema of a
- * line is an extension, since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example`
- * returns an example body for `route`. */
 /* Writes the schema of a body of several files. The server accepts any field name; clients
  * generated from this document use this one. */
 static void write_files_schema(api_out *out)
@@ -148,8 +147,11 @@ static void write_bytes_schema(api_out *out, const char *type)
     api_out_object_end(out);
 }
 
+/* Writes the media types of a body. The schema of a line or of an event, `item`, is an extension,
+ * since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example` returns an example
+ * body for `route`. */
 static void write_content(api_out *out, const char *const *types, const char *schema,
-                          const char *line,
+                          const char *item,
                           const char *(*example)(const char *route, const char *media),
                           const char *route)
 {
@@ -163,8 +165,8 @@ static void write_content(api_out *out, const char *const *types, const char *sc
         bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 && !lines;
         if (json && schema != NULL && strncmp(*types, "application/", 12) == 0) {
             api_schema_ref_key(out, "schema", schema);
-        } else if (lines && line != NULL) {
-            write_line_schema(out, line);
+        } else if (lines && item != NULL) {
+            write_line_schema(out, item);
         } else if (strcmp(*types, API_MULTIPART) == 0) {
             write_files_schema(out);
         } else if (json) {
@@ -172,6 +174,9 @@ static void write_content(api_out *out, const char *const *types, const char *sc
             api_out_raw(out, "{}", 2);
         } else {
             write_bytes_schema(out, *types);
+            if (item != NULL && strcmp(*types, EVENT_STREAM) == 0) {
+                api_schema_ref_key(out, "x-item-schema", item);
+            }
         }
         const char *body = example(route, *types);
         if (body != NULL && json) {
@@ -202,7 +207,7 @@ static void write_header(api_out *out, const char *name, const char *doc, bool r
 
 static bool is_stream(const api_route *route)
 {
-    return route->produces[0] != NULL && strcmp(route->produces[0], "text/event-stream") == 0;
+    return route->produces[0] != NULL && strcmp(route->produces[0], EVENT_STREAM) == 0;
 }
 
 /* Headers that are described only once, in the components of the document. */
@@ -287,7 +292,7 @@ static void write_success(api_out *out, const api_route *route, int status)
         write_content(out, job_media, "job", NULL, api_example_response, "delete_job");
     }
     if (status == 200 || status == 201) {
-        write_content(out, route->produces, route->response, route->line, api_example_response,
+        write_content(out, route->produces, route->response, route->item, api_example_response,
                       route->name);
     }
     api_out_object_end(out);
@@ -595,7 +600,7 @@ static void write_components(api_out *out)
     api_out_object_begin(out);
     api_schemas_write(out);
     api_operation_schemas_write(out);
-    api_shape_schema_write(out);
+    api_shape_schemas_write(out);
     api_out_object_end(out);
     write_shared_headers(out);
     write_security_schemes(out);

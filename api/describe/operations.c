@@ -4,6 +4,7 @@
 #include "api/json/text.h"
 #include "op/op.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -170,17 +171,9 @@ void api_operations_write(api_out *out)
 
 /* --- schemas of operations --- */
 
-/* The room for "op_" and the name of an operation. */
-enum { OP_SCHEMA = 80 };
-
-static const char *name_op_schema(const he_op *op, char name[OP_SCHEMA])
-{
-    snprintf(name, OP_SCHEMA, "op_%s", op->name);
-    return name;
-}
-
 /* Members that an operation may have besides its parameters: "as" in a list of operations, the
- * others where it is alone. */
+ * others where it is
+ * alone. */
 static const struct {
     const char *name, *json;
 } beside[] = {
@@ -328,10 +321,13 @@ static void describe_groups(api_text *text, const he_op *op)
     }
 }
 
-/* Begins the schema of an object whose member "op" is the operation's name; leaves the object and
- * its properties open. */
-static void begin_named(api_out *out, const he_op *op, const char *description)
+/* Begins the schema PREFIX_NAME of an object whose member "op" is the operation's name; leaves the
+ * object and its properties open. */
+static void begin_named(api_out *out, const char *prefix, const he_op *op, const char *description)
 {
+    char name[80];
+    snprintf(name, sizeof name, "%s_%s", prefix, op->name);
+    api_out_key(out, name);
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
     if (description != NULL) {
@@ -348,13 +344,11 @@ static void begin_named(api_out *out, const he_op *op, const char *description)
 
 static void write_op_schema(api_out *out, const he_op *op)
 {
-    char name[OP_SCHEMA];
     api_text description = {0};
     api_text_add_string(&description, op->doc);
     describe_groups(&description, op);
     api_text_add(&description, "", 1); /* its end, for a string */
-    api_out_key(out, name_op_schema(op, name));
-    begin_named(out, op, description.failed ? op->doc : description.bytes);
+    begin_named(out, "op", op, description.failed ? op->doc : description.bytes);
     api_text_clear(&description);
     for (size_t i = 0; i < he_op_params(op); i++) {
         write_param_schema(out, &op->params[i]);
@@ -374,26 +368,6 @@ static void write_op_schema(api_out *out, const he_op *op)
         }
     }
     api_out_array_end(out);
-    api_out_object_end(out);
-}
-
-/* Writes the union of all operations, told apart by their member "op". */
-static void write_operation_schema(api_out *out)
-{
-    char name[OP_SCHEMA];
-    api_out_key(out, "operation");
-    api_out_object_begin(out);
-    api_out_key(out, "oneOf");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < he_op_count(); i++) {
-        api_schema_ref(out, "schemas", name_op_schema(he_op_at(i), name));
-    }
-    api_out_array_end(out);
-    api_schema_discriminator_begin(out, "op");
-    for (size_t i = 0; i < he_op_count(); i++) {
-        api_schema_discriminator_add(out, he_op_at(i)->name, name_op_schema(he_op_at(i), name));
-    }
-    api_schema_discriminator_end(out);
     api_out_object_end(out);
 }
 
@@ -446,7 +420,7 @@ static void write_result_schema(api_out *out, const he_result_row *result)
 /* Writes the schema of an operation's results: its name, and the results that a call may have. */
 static void write_done_schema(api_out *out, const he_op *op)
 {
-    begin_named(out, op, NULL);
+    begin_named(out, "done", op, NULL);
     for (size_t i = 0; i < he_op_results(op); i++) {
         write_result_schema(out, &op->results[i]);
     }
@@ -456,24 +430,16 @@ static void write_done_schema(api_out *out, const he_op *op)
     api_out_object_end(out);
 }
 
-static void write_any_done(api_out *out)
-{
-    api_out_key(out, "done");
-    api_out_object_begin(out);
-    api_out_key(out, "oneOf");
-    api_out_array_begin(out);
-    for (size_t i = 0; i < he_op_count(); i++) {
-        write_done_schema(out, he_op_at(i));
-    }
-    api_out_array_end(out);
-    api_out_object_end(out);
-}
-
 void api_operation_schemas_write(api_out *out)
 {
+    enum { MOST_OPERATIONS = 128 };
+    const char *names[MOST_OPERATIONS + 1] = {NULL};
+    assert(he_op_count() <= MOST_OPERATIONS);
     for (size_t i = 0; i < he_op_count(); i++) {
+        names[i] = he_op_at(i)->name;
         write_op_schema(out, he_op_at(i));
+        write_done_schema(out, he_op_at(i));
     }
-    write_any_done(out);
-    write_operation_schema(out);
+    api_schema_union(out, "operation", "op", "op", names);
+    api_schema_union(out, "done", "op", "done", names);
 }

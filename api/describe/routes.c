@@ -502,6 +502,7 @@ static const api_route routes[] = {
      .produces = event_stream,
      .parameters = {&api_parameter_last_seen},
      .statuses = {200},
+     .item = "mesh_event",
      .summary = "Every change as it happens",
      .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
             "link for link; `metadata` a new name; `job` that one of this mesh has begun or ended; "
@@ -558,6 +559,7 @@ static const api_route routes[] = {
      .role = API_ROLE_READ,
      .produces = event_stream,
      .statuses = {200},
+     .item = "job_event",
      .summary = "How a job goes on",
      .doc = "Server-Sent Events: `job` holds the job whenever it has come further, the last with "
             "its result or problem where that is small; `bye` says that the stream ends."},

@@ -9,7 +9,8 @@
  *
  * Types: id, count, number, flag, text, point, time, nothing (an empty array), #other for another
  * schema by name. A star before the type makes it an array (**id: an array of arrays of ids), a
- * plus an array that is not empty; a question mark after it allows null for the whole. */
+ * plus an array that is not empty; a question mark after it allows null for the whole. =text is a
+ * string that is always this text. */
 typedef struct api_member {
     const char *schema, *name, *type;
     bool required;

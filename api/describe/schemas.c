@@ -128,14 +128,14 @@ static const struct {
                "{\"$ref\":\"#/components/schemas/intersections\"},"
                "{\"$ref\":\"#/components/schemas/element\"},"
                "{\"$ref\":\"#/components/schemas/problem\"}]}"},
-    {"of", "{\"type\":\"object\",\"propertyNames\":"
-           "{\"type\":\"string\",\"enum\":[\"vertex\",\"halfedge\",\"edge\",\"face\"]},"
-           "\"additionalProperties\":{\"$ref\":\"#/components/schemas/id\"},"
-           "\"minProperties\":1,\"maxProperties\":1}"},
-    {"of_many", "{\"type\":\"object\",\"propertyNames\":"
-                "{\"type\":\"string\",\"enum\":[\"vertices\",\"halfedges\",\"edges\",\"faces\"]},"
-                "\"additionalProperties\":{\"$ref\":\"#/components/schemas/ids_or_all\"},"
-                "\"minProperties\":1,\"maxProperties\":1}"},
+    {"of", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of_vertex\"},"
+           "{\"$ref\":\"#/components/schemas/of_halfedge\"},"
+           "{\"$ref\":\"#/components/schemas/of_edge\"},"
+           "{\"$ref\":\"#/components/schemas/of_face\"}]}"},
+    {"of_many", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/of_vertices\"},"
+                "{\"$ref\":\"#/components/schemas/of_halfedges\"},"
+                "{\"$ref\":\"#/components/schemas/of_edges\"},"
+                "{\"$ref\":\"#/components/schemas/of_faces\"}]}"},
     {"ids_or_all",
      "{\"oneOf\":[{\"type\":\"array\",\"items\":"
      "{\"$ref\":\"#/components/schemas/id\"}},{\"type\":\"string\",\"const\":\"all\"}]}"},
@@ -162,9 +162,34 @@ static const struct {
      "{\"type\":\"null\"}]}"},
     {"weights", "{\"type\":\"string\",\"enum\":[\"area\",\"angle\",\"uniform\"]}"},
     {"find_name", "{\"type\":\"string\",\"enum\":[\"halfedge\",\"edge\",\"faces\"]}"},
-    {"walk_name", "{\"type\":\"string\",\"enum\":[\"path\",\"loop\",\"rings\",\"breadth_first\","
-                  "\"shortest_path\","
-                  "\"edge_loop\",\"edge_ring\"]}"},
+    {"until_name", "{\"type\":\"string\",\"enum\":[\"start\",\"boundary\"]}"},
+    {"path_measure", "{\"type\":\"string\",\"enum\":[\"length\",\"edges\"]}"},
+    {"resync_reason",
+     "{\"type\":\"string\",\"enum\":[\"replaced\",\"gap\",\"lost\",\"busy\",\"incarnation\","
+     "\"future\"]}"},
+    {"bye_reason", "{\"type\":\"string\",\"enum\":[\"deleted\",\"ended\",\"stopping\",\"token\"]}"},
+    {"vertex_row", "{\"type\":\"array\",\"prefixItems\":[{\"$ref\":\"#/components/schemas/id\"},"
+                   "{\"type\":\"number\"},{\"type\":\"number\"},{\"type\":\"number\"},"
+                   "{\"$ref\":\"#/components/schemas/id_or_null\"}],\"items\":false,\"minItems\":5,"
+                   "\"maxItems\":5,\"description\":\"Id, x, y, z, half-edge.\"}"},
+    {"halfedge_row",
+     "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id_or_null\"},"
+     "\"minItems\":5,\"maxItems\":5,\"description\":\"Id, next, prev, origin, face; the face is "
+     "null on the boundary.\"}"},
+    {"face_row", "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id\"},"
+                 "\"minItems\":2,\"maxItems\":2,\"description\":\"Id, half-edge.\"}"},
+    {"value_row",
+     "{\"type\":\"array\",\"items\":{\"anyOf\":[{\"$ref\":\"#/components/schemas/plain\"},"
+     "{\"type\":\"null\"}]},\"minItems\":2,\"maxItems\":17,\"description\":\"Id, then the numbers "
+     "of the value; null is a number that is not finite.\"}"},
+    {"values_of_domain",
+     "{\"type\":\"object\",\"additionalProperties\":{\"type\":\"array\",\"items\":"
+     "{\"$ref\":\"#/components/schemas/value_row\"}},\"description\":\"Rows by the attribute's "
+     "name.\"}"},
+    {"written_values",
+     "{\"type\":\"object\",\"additionalProperties\":"
+     "{\"$ref\":\"#/components/schemas/values_of_domain\"},\"description\":\"By domain: vertices, "
+     "halfedges, edges, faces, mesh.\"}"},
     {"step_name", "{\"type\":\"string\",\"enum\":[\"next\",\"prev\",\"twin\"]}"},
     {"edit", "{\"oneOf\":[{\"$ref\":\"#/components/schemas/operation\"},"
              "{\"$ref\":\"#/components/schemas/edit_list\"}]}"},
@@ -201,22 +226,29 @@ void api_schema_reference(api_out *out, const char *name)
     write_reference(out, "$ref", name, strlen(name));
 }
 
-void api_schema_discriminator_begin(api_out *out, const char *member)
+void api_schema_union(api_out *out, const char *name, const char *member, const char *prefix,
+                      const char *const *values)
 {
+    char schema[64];
+    api_out_key(out, name);
+    api_out_object_begin(out);
+    api_out_key(out, "oneOf");
+    api_out_array_begin(out);
+    for (size_t i = 0; values[i] != NULL; i++) {
+        snprintf(schema, sizeof schema, "%s_%s", prefix, values[i]);
+        api_schema_ref(out, "schemas", schema);
+    }
+    api_out_array_end(out);
     api_out_key(out, "discriminator");
     api_out_object_begin(out);
     api_out_key_string(out, "propertyName", member);
     api_out_key(out, "mapping");
     api_out_object_begin(out);
-}
-
-void api_schema_discriminator_add(api_out *out, const char *value, const char *name)
-{
-    write_reference(out, value, name, strlen(name));
-}
-
-void api_schema_discriminator_end(api_out *out)
-{
+    for (size_t i = 0; values[i] != NULL; i++) {
+        snprintf(schema, sizeof schema, "%s_%s", prefix, values[i]);
+        write_reference(out, values[i], schema, strlen(schema));
+    }
+    api_out_object_end(out);
     api_out_object_end(out);
     api_out_object_end(out);
 }
@@ -272,7 +304,12 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     if (doc != NULL) {
         api_out_key_string(out, "description", doc);
     }
-    if (type[length - 1] == '?') {
+    if (type[0] == '=') {
+        char value[32];
+        snprintf(value, sizeof value, "%.*s", (int)length - 1, type + 1);
+        api_out_key_string(out, "type", "string");
+        api_out_key_string(out, "const", value);
+    } else if (type[length - 1] == '?') {
         api_out_key(out, "anyOf");
         api_out_array_begin(out);
         write_type(out, type, length - 1, NULL);
@@ -325,19 +362,20 @@ static size_t write_schema(api_out *out, const api_member *rows, bool closed)
     return count;
 }
 
-/* Writes the schema of an object with the id of one element of this kind: of_vertex. */
-static void write_reference_schema(api_out *out, he_kind kind)
+/* Writes the schema of an object with one member: of_vertex or of_vertices. */
+static void write_reference_schema(api_out *out, const char *member, const char *schema)
 {
     char name[32];
-    snprintf(name, sizeof name, "of_%s", he_kind_name(kind));
+    snprintf(name, sizeof name, "of_%s", member);
     api_out_key(out, name);
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
     api_out_key(out, "properties");
     api_out_object_begin(out);
-    api_schema_ref_key(out, he_kind_name(kind), "id");
+    api_schema_ref_key(out, member, schema);
     api_out_object_end(out);
-    api_schema_choices(out, "required", (const char *const[]){he_kind_name(kind), NULL});
+    api_schema_choices(out, "required", (const char *const[]){member, NULL});
+    api_out_key_bool(out, "additionalProperties", false);
     api_out_object_end(out);
 }
 
@@ -369,6 +407,19 @@ static void write_adjacency_schema(api_out *out, const he_relation *relation)
     api_out_object_end(out);
 }
 
+/* Writes the unions whose parts are schemas of the tables. */
+static void write_unions(api_out *out)
+{
+    static const char *const walks[] = {"path",          "loop",      "rings",     "breadth_first",
+                                        "shortest_path", "edge_loop", "edge_ring", NULL};
+    static const char *const mesh_events[] = {"edit", "metadata", "job", "resync", "bye", NULL};
+    static const char *const job_events[] = {"job", "bye", NULL};
+    api_schema_union(out, "walk", "walk", "walk", walks);
+    api_schema_union(out, "walked", "walk", "walked", walks);
+    api_schema_union(out, "mesh_event", "event", "mesh_event", mesh_events);
+    api_schema_union(out, "job_event", "event", "job_event", job_events);
+}
+
 void api_schemas_write(api_out *out)
 {
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
@@ -382,9 +433,11 @@ void api_schemas_write(api_out *out)
         row += write_schema(out, row, true);
     }
     for (he_kind kind = HE_VERTEX; kind <= HE_FACE; kind++) {
-        write_reference_schema(out, kind);
+        write_reference_schema(out, he_kind_name(kind), "id");
+        write_reference_schema(out, he_kind_plural(kind), "ids_or_all");
     }
     for (size_t i = 0; i < he_relation_count(); i++) {
         write_adjacency_schema(out, he_relation_at(i));
     }
+    write_unions(out);
 }

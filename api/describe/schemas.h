@@ -14,11 +14,10 @@ void api_schema_ref_key(api_out *out, const char *key, const char *name);
 /* Writes only the member "$ref" of the group "schemas", into the object that is open. */
 void api_schema_reference(api_out *out, const char *name);
 
-/* These functions write the discriminator of a union: ..._add is called for each value of `member`,
- * with the name of the schema that the value stands for. */
-void api_schema_discriminator_begin(api_out *out, const char *member);
-void api_schema_discriminator_add(api_out *out, const char *value, const char *name);
-void api_schema_discriminator_end(api_out *out);
+/* Writes the schema `name`: the union of the schemas PREFIX_VALUE, one for each of the values,
+ * which end in NULL. The member `member` says which of them an object is. */
+void api_schema_union(api_out *out, const char *name, const char *member, const char *prefix,
+                      const char *const *values);
 /* Writes a list of strings, which ends in NULL, under a key such as "enum". */
 void api_schema_choices(api_out *out, const char *key, const char *const *choices);
 

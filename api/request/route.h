@@ -144,7 +144,7 @@ typedef struct api_route {
     /* The names of OpenAPI component schemas of the body and the answer; NULL if there is none or
      * it is not JSON. */
     const char *request, *response;
-    const char *line;    /* schema of one line, where application/x-ndjson is produced */
+    const char *item;    /* schema of a line of NDJSON, or of an event of a stream */
     const char *summary; /* a few words */
     const char *doc;     /* a sentence or two */
 } api_route;

@@ -84,7 +84,8 @@ static void shapes_are_those_of_the_table(void **state)
     assert_int_equal(cJSON_GetArraySize(shapes), he_shape_count());
     for (size_t i = 0; i < he_shape_count(); i++) {
         const he_shape *shape = he_shape_at(i);
-        const cJSON *properties = member(cJSON_GetArrayItem(shapes, (int)i), "properties");
+        const cJSON *part = member(cJSON_GetArrayItem(shapes, (int)i), "$ref");
+        const cJSON *properties = member(resolve(r.json, part->valuestring), "properties");
         assert_string_equal(member(member(properties, "shape"), "const")->valuestring, shape->name);
         for (size_t p = 0; p < he_shape_params(shape); p++) {
             member(member(properties, shape->params[p].name), "default");

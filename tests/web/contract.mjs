@@ -308,6 +308,8 @@ export class Contract {
             this.checkJson(schema, bytes, wrong, (value) => {
                 return besides(value, status, response, headers);
             });
+        } else if (media === 'text/event-stream' && plain) {
+            this.checkEvents(item, bytes, wrong);
         } else if (item !== undefined && plain) {
             this.checkLines(item, bytes, whole, wrong);
         }
@@ -339,6 +341,22 @@ export class Contract {
                     ? null
                     : `the end is not in line ${i + 1}`,
             );
+        }
+    }
+
+    // What is after the last empty line was cut. Without data there is no event, but a comment, or
+    // where to go on.
+    checkEvents(schema, bytes, wrong) {
+        for (const block of bytes.toString().split('\n\n').slice(0, -1)) {
+            const fields = Object.fromEntries(block.split('\n').map((line) => line.split(/: ?(.*)/s)));
+            if (fields.data !== undefined) {
+                const { event, id, data } = fields;
+                const parts = { event, ...(id === undefined ? {} : { id }), data: JSON.parse(data) };
+                const error = this.validate(schema, parts);
+                if (error !== null) {
+                    wrong.push(`event ${event}: ${error}`);
+                }
+            }
         }
     }
 

@@ -221,6 +221,19 @@ for (const [title, request, lie, expected] of lies) {
     });
 }
 
+test('found: an event that is not as it was described', async () => {
+    const job = await ask('POST', '/v1/meshes', '{"shape":"cube"}', { prefer: 'respond-async' });
+    const { id } = JSON.parse(Buffer.from(job.answer.body, 'base64'));
+    const stream = await ask('GET', `/v1/jobs/${id}/events`);
+    assert.deepEqual(contract.check(stream).wrong, []);
+    for (const lie of ['"states"', '"state":1,"was"']) {
+        const { wrong } = contract.check(answering((text) => text.replace('"state"', lie))(stream));
+        assert.match(wrong.join('; '), /^event job: /);
+    }
+    const renamed = answering((text) => text.replace('event: bye', 'event: end'))(stream);
+    assert.match(contract.check(renamed).wrong.join('; '), /^event end: /);
+});
+
 // Returns the output of the last step of `make test` for a folder.
 async function checkFolder(t, exchanges) {
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-traffic-'));

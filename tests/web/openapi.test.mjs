@@ -30,6 +30,7 @@ const planted = [
     ['an allOf of one', ({ schemas }) => (schemas.created.allOf.length = 1)],
     ['a union of requirements', ({ schemas }) => (schemas.counts.anyOf = [{ required: ['edges'] }])],
     ['without a format', ({ schemas }) => delete schemas.id.format],
+    ['without a discriminator', ({ schemas }) => delete schemas.walk.discriminator],
 ];
 
 test('the document has none of the faults that the lint finds, and the lint finds each', async (t) => {
@@ -42,6 +43,8 @@ test('the document has none of the faults that the lint finds, and the lint find
         const said = await faultsOf(folder, document, ({ components }) => plant(components));
         assert.match(said, new RegExp(fault), fault);
     }
+    const rename = (copy) => (copy.paths['/v1/meshes'].get.operationId = 'meshes_list');
+    assert.match(await faultsOf(folder, document, rename), /no verb/);
     const untag = (copy) => delete copy.paths['/v1/meshes'].get.tags;
     assert.match(await faultsOf(folder, document, untag), /no tag/);
     const strip = (copy) => {
@@ -50,18 +53,23 @@ test('the document has none of the faults that the lint finds, and the lint find
     assert.match(await faultsOf(folder, document, strip), /without a schema/);
 });
 
-test('each operation of a union is told apart by its discriminator', async (t) => {
+test('each part of a union is told apart by its discriminator', async (t) => {
     const { url } = await startDaemon(t);
     const { components } = await (await fetch(`${url}/v1/openapi.json`)).json();
-    const { oneOf, discriminator } = components.schemas.operation;
     const listed = await (await fetch(`${url}/v1/operations`)).json();
-    assert.equal(discriminator.propertyName, 'op');
-    assert.deepEqual(Object.keys(discriminator.mapping), listed.operations.map(({ name }) => name));
-    assert.deepEqual(Object.values(discriminator.mapping), oneOf.map(({ $ref }) => $ref));
-    for (const [name, reference] of Object.entries(discriminator.mapping)) {
-        const schema = components.schemas[reference.slice(reference.lastIndexOf('/') + 1)];
-        assert.equal(schema.properties.op.const, name);
+    const names = listed.operations.map(({ name }) => name);
+    const unions = { operation: 'op', done: 'op', shape: 'shape', walk: 'walk', walked: 'walk', mesh_event: 'event', job_event: 'event' };
+    for (const [union, member] of Object.entries(unions)) {
+        const { oneOf, discriminator } = components.schemas[union];
+        assert.equal(discriminator.propertyName, member);
+        assert.deepEqual(Object.values(discriminator.mapping), oneOf.map(({ $ref }) => $ref));
+        for (const [name, reference] of Object.entries(discriminator.mapping)) {
+            const schema = components.schemas[reference.slice(reference.lastIndexOf('/') + 1)];
+            assert.equal(schema.properties[member].const, name);
+            assert.ok(schema.required.includes(member));
+        }
     }
+    assert.deepEqual(Object.keys(components.schemas.operation.discriminator.mapping), names);
 });
 
 test('the first paths that one tries lead somewhere', async (t) => {

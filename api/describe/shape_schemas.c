@@ -1,6 +1,10 @@
-#include "api/document/shapes.h"
+#include "api/describe/shape_schemas.h"
 
 #include "algo/shape.h"
+#include "api/describe/schemas.h"
+
+#include <assert.h>
+#include <stdio.h>
 
 static void write_param(api_out *out, const he_shape_param *param)
 {
@@ -24,6 +28,9 @@ static void write_param(api_out *out, const he_shape_param *param)
 static void write_shape(api_out *out, const he_shape *shape)
 {
     static const char name[] = "{\"anyOf\":[{\"type\":\"string\"},{\"type\":\"null\"}]}";
+    char schema[64];
+    snprintf(schema, sizeof schema, "shape_%s", shape->name);
+    api_out_key(out, schema);
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
     api_out_key_string(out, "description", shape->doc);
@@ -48,15 +55,14 @@ static void write_shape(api_out *out, const he_shape *shape)
     api_out_object_end(out);
 }
 
-void api_shape_schema_write(api_out *out)
+void api_shape_schemas_write(api_out *out)
 {
-    api_out_key(out, "shape");
-    api_out_object_begin(out);
-    api_out_key(out, "oneOf");
-    api_out_array_begin(out);
+    enum { MOST_SHAPES = 64 };
+    const char *names[MOST_SHAPES + 1] = {NULL};
+    assert(he_shape_count() <= MOST_SHAPES);
     for (size_t i = 0; i < he_shape_count(); i++) {
+        names[i] = he_shape_at(i)->name;
         write_shape(out, he_shape_at(i));
     }
-    api_out_array_end(out);
-    api_out_object_end(out);
+    api_schema_union(out, "shape", "shape", "shape", names);
 }
