@@ -468,8 +468,9 @@ static he_status within(const he_shape *shape, uint64_t count, uint64_t limit, c
         limit = HE_MAX_ROWS;
     }
     if (count > limit) {
-        return he_fail_plain(err, HE_LIMIT, "this %s has %llu %s, more than %llu", shape->name,
-                             (unsigned long long)count, what, (unsigned long long)limit);
+        return he_fail_plain(err, HE_LIMIT, "this %s would have %llu %s; at most %llu are allowed",
+                             shape->name, (unsigned long long)count, what,
+                             (unsigned long long)limit);
     }
     return HE_OK;
 }
@@ -490,9 +491,9 @@ static he_status check_limits(const he_shape *shape, he_shape_size size, const h
         status = within(shape, size.corners, limits->corners, "corners", err);
     }
     if (status == HE_OK && limits->bytes != 0 && bytes_of(size) > limits->bytes) {
-        status =
-            he_fail_plain(err, HE_LIMIT, "this %s needs %llu bytes, more than %llu", shape->name,
-                          (unsigned long long)bytes_of(size), (unsigned long long)limits->bytes);
+        status = he_fail_plain(
+            err, HE_LIMIT, "this %s would need %llu bytes; at most %llu are allowed", shape->name,
+            (unsigned long long)bytes_of(size), (unsigned long long)limits->bytes);
     }
     return status;
 }

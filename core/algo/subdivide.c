@@ -189,9 +189,11 @@ static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned step
     for (unsigned i = 0; i < steps; i++) {
         s = after(s, scheme, cuts_in_three(scheme, i));
         if (rows_of(&s) > HE_SUBDIVIDE_ROWS) {
-            return he_fail_plain(
-                err, HE_LIMIT, "step %u would come to %llu vertices, edges and faces, over %llu",
-                i + 1, (unsigned long long)rows_of(&s), (unsigned long long)HE_SUBDIVIDE_ROWS);
+            return he_fail_plain(err, HE_LIMIT,
+                                 "after step %u the mesh would have %llu vertices, edges and "
+                                 "faces; at most %llu are allowed",
+                                 i + 1, (unsigned long long)rows_of(&s),
+                                 (unsigned long long)HE_SUBDIVIDE_ROWS);
         }
         out[i] = s;
     }

@@ -130,14 +130,14 @@ static he_status cut_face(const he_subdivide_step *s, uint32_t f, fresh *at, he_
     if (from->next[h[2]] != h[0]) {
         if (s->scheme == HE_LOOP) {
             return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
-                           "face %u is no triangle, and loop is for triangles", f);
+                           "face %u is not a triangle, and the scheme loop needs triangles", f);
         }
         cut_polygon(s, f, h[0], at);
         return HE_OK;
     }
     if (he_subdivide_is_doubled(from, h[0] ^ 1, h[1])) {
         return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h[0] >> 1,
-                       "the middles of edges %u and %u would be joined twice", h[0] >> 1,
+                       "the midpoints of edges %u and %u would be joined by two edges", h[0] >> 1,
                        h[1] >> 1);
     }
     cut_triangle(s, f, h, at);

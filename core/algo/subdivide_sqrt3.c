@@ -257,12 +257,13 @@ static he_status find_places(he_subdivide_step *s, he_error *err)
         last = from->next[n];
         if (from->next[last] != h) {
             return he_fail(err, HE_NOT_TRIANGLE, HE_FACE, f,
-                           "face %u is no triangle, and sqrt3 is for triangles", f);
+                           "face %u is not a triangle, and the scheme sqrt3 needs triangles", f);
         }
         if (he_subdivide_is_doubled(from, h ^ 1, n)) {
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, h >> 1,
-                           "faces %u and %u would be joined across edges %u and %u", f,
-                           from->face[h ^ 1], h >> 1, n >> 1);
+                           "the centres of faces %u and %u would be joined by two edges, across "
+                           "edges %u and %u",
+                           f, from->face[h ^ 1], h >> 1, n >> 1);
         }
         bool cut = s->third[h >> 1] != HE_NONE || s->third[n >> 1] != HE_NONE ||
                    s->third[last >> 1] != HE_NONE;

@@ -26,31 +26,31 @@
     X(SYNTAX, "syntax", "The input is not well formed")                                       \
     X(BAD_VALUE, "bad_value", "A value is outside its allowed range")                         \
     X(NOT_FINITE, "not_finite", "A number is not finite")                                     \
-    X(BAD_INDEX, "bad_index", "An index names nothing")                                       \
+    X(BAD_INDEX, "bad_index", "An index is out of range")                                     \
     X(UNSUPPORTED, "unsupported", "The input uses a feature that is not supported")           \
-    X(BEYOND_FLOAT, "beyond_float", "A coordinate is beyond the floats of the format")        \
+    X(BEYOND_FLOAT, "beyond_float", "A coordinate is too large for the floats of the format") \
     X(CORRUPT, "corrupt", "The mesh breaks one of its own invariants")                        \
     /* refusals because of the elements that the caller names */                              \
-    X(NO_SUCH_ELEMENT, "no_such_element", "No such element was ever issued")                  \
+    X(NO_SUCH_ELEMENT, "no_such_element", "There is no such element")                         \
     X(DELETED_ELEMENT, "deleted_element", "The element was deleted")                          \
     X(REPEATED_ELEMENT, "repeated_element", "An element is named twice")                      \
     /* refusals of shapes that a half-edge mesh cannot represent */                           \
     X(TOO_FEW_CORNERS, "too_few_corners", "A face needs at least three corners")              \
     X(NOT_TRIANGLE, "not_triangle", "The face is not a triangle")                             \
-    X(REPEATED_CORNER, "repeated_corner", "A face would visit a vertex twice")                \
+    X(REPEATED_CORNER, "repeated_corner", "A face would use a vertex twice")                  \
     X(NONMANIFOLD_EDGE, "nonmanifold_edge", "An edge would have more than two faces")         \
     X(ORIENTATION, "orientation", "Two faces would run along an edge in the same direction")  \
-    X(NOT_ORIENTABLE, "not_orientable", "Faces cannot be turned so that all agree")           \
+    X(NOT_ORIENTABLE, "not_orientable", "The faces cannot be oriented consistently")          \
     X(DOUBLED_EDGE, "doubled_edge", "Two edges would join the same two vertices")             \
     X(CLOSED_FAN, "closed_fan", "A closed fan would share its vertex with another fan")       \
     /* refusals because of the elements around an edit */                                     \
     X(BOUNDARY_EDGE, "boundary_edge", "The edge is on the boundary")                          \
     X(NOT_BOUNDARY, "not_boundary", "The element is not on the boundary")                     \
-    X(INTERIOR_VERTEX, "interior_vertex", "The vertex has no room for another face")          \
+    X(INTERIOR_VERTEX, "interior_vertex", "The vertex is surrounded by faces")                \
     X(BOUNDARY_VERTEX, "boundary_vertex", "The vertex is on the boundary")                    \
     X(BOWTIE, "bowtie", "The vertex has more than one fan")                                   \
     X(NOT_NEIGHBOUR, "not_neighbour", "The vertices are not joined by an edge")               \
-    X(NO_SECTOR, "no_sector", "No sector would move to the new vertex")                       \
+    X(NO_SECTOR, "no_sector", "No face would move to the new vertex")                         \
     X(NOT_A_CORNER, "not_a_corner", "The element is not a corner of the face")                \
     X(SAME_CORNER, "same_corner", "Both corners are the same")                                \
     X(DIFFERENT_ORIGINS, "different_origins", "The half-edges leave different vertices")      \
@@ -62,18 +62,18 @@
     X(LOW_DEGREE, "low_degree", "A vertex has too few edges")                                 \
     X(SAME_ENDS, "same_ends", "Both ends of the edge would be the same vertex")               \
     X(LINK_CONDITION, "link_condition", "The link condition does not hold")                   \
-    X(BRANCHING_CHAIN, "branching_chain", "A chain of edges branches at a vertex")            \
+    X(BRANCHING_CHAIN, "branching_chain", "The edges branch at a vertex")                     \
     X(SAME_LOOP, "same_loop", "Both half-edges lie on one loop")                              \
     X(SHARED_VERTEX, "shared_vertex", "The loops have a vertex in common")                    \
     X(LOOP_LENGTH, "loop_length", "The loops have different lengths")                         \
     X(OPEN_LOOP, "open_loop", "The cut does not close within the plane")                      \
-    X(NOT_A_CYCLE, "not_a_cycle", "The edges do not make up a cycle")                         \
-    X(SHARED_FACE, "shared_face", "A face lies at more than one of the edges")                \
+    X(NOT_A_CYCLE, "not_a_cycle", "The edges do not form a cycle")                            \
+    X(SHARED_FACE, "shared_face", "A face touches more than one of the edges")                \
     X(ISOLATED_VERTEX, "isolated_vertex", "The vertex has no face")                           \
     X(NO_RIM, "no_rim", "The faces are a whole closed component")                             \
-    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The rim of the faces passes a vertex twice")     \
-    X(NO_NORMAL, "no_normal", "The face has no area, so it faces nowhere")                    \
-    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of one name differ in type")            \
+    X(RIM_MEETS_ITSELF, "rim_meets_itself", "The outline of the faces passes a vertex twice") \
+    X(NO_NORMAL, "no_normal", "The face has no area and so no normal")                        \
+    X(ATTRIBUTE_CLASH, "attribute_clash", "Attributes of the same name have different types") \
     /* refusals because of marks (marks.h) */                                                 \
     X(FEATURE_EDGE, "feature_edge", "A feature line would lose its shape")                    \
     X(LOCKED_ELEMENT, "locked_element", "The element is locked")

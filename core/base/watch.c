@@ -22,7 +22,7 @@ static he_status tell(he_watch *watch, double done, he_error *err)
     if (!watch->cancelled && watch->tell != NULL) {
         watch->cancelled = !watch->tell(watch->context, watch->phase, watch->done);
     }
-    return watch->cancelled ? he_fail_plain(err, HE_CANCELLED, "given up while %s", watch->phase)
+    return watch->cancelled ? he_fail_plain(err, HE_CANCELLED, "cancelled while %s", watch->phase)
                             : HE_OK;
 }
 

@@ -38,7 +38,8 @@ static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity,
 {
     uint64_t allowed = limit != 0 && limit < most ? limit : most;
     if (count >= allowed) {
-        return he_fail_plain(err, HE_LIMIT, "more than %llu %s", (unsigned long long)allowed, what);
+        return he_fail_plain(err, HE_LIMIT, "there are more than %llu %s",
+                             (unsigned long long)allowed, what);
     }
     if (count < *capacity) {
         return HE_OK;
@@ -161,8 +162,9 @@ he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_typ
         he_column *column = soup->columns[i];
         if (column->domain == domain && strcmp(column->name, name) == 0) {
             if (column->type != type || column->components != components) {
-                return he_fail_plain(err, HE_BAD_VALUE, "attribute %s is given as %s and as %s",
-                                     name, he_type_name(column->type), he_type_name(type));
+                return he_fail_plain(err, HE_BAD_VALUE,
+                                     "attribute %s is given with two types: %s and %s", name,
+                                     he_type_name(column->type), he_type_name(type));
             }
             *out = column;
             return HE_OK;

@@ -229,7 +229,8 @@ static he_status prepare(he_drawing *d, uint32_t face, uint64_t *most, he_error 
     uint64_t most_of_each = degree < HE_EXACT_CORNERS ? degree : HE_EXACT_CORNERS;
     uint64_t cost = most_of_each * degree;
     if (cost > *most) {
-        return he_fail(err, HE_LIMIT, HE_FACE, face, "face %u has %u corners", face, degree);
+        return he_fail(err, HE_LIMIT, HE_FACE, face,
+                       "face %u has %u corners, too many to triangulate", face, degree);
     }
     *most -= cost;
     return cut(d, face, err);
@@ -239,8 +240,10 @@ static he_status check_ids(const he_mesh *m, he_error *err)
 {
     uint32_t faces = m->c.faces.issued;
     if (faces > (uint32_t)1 << HE_DRAWN_SIDES) {
-        return he_fail(err, HE_IDS_EXHAUSTED, HE_FACE, faces - 1,
-                       "face %u has an id of more than %d bits", faces - 1, HE_DRAWN_SIDES);
+        return he_fail(
+            err, HE_IDS_EXHAUSTED, HE_FACE, faces - 1,
+            "the id of face %u needs more than %d bits, so the mesh cannot be drawn: compact it",
+            faces - 1, HE_DRAWN_SIDES);
     }
     return HE_OK;
 }

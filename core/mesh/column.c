@@ -33,11 +33,12 @@ he_status he_column_new(const char *name, he_kind domain, he_type type, uint32_t
 {
     size_t length = strlen(name);
     if (length == 0 || length >= HE_COLUMN_NAME) {
-        return he_fail_plain(err, HE_BAD_VALUE, "an attribute's name has 1 to %d bytes, not %zu",
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "an attribute's name must have 1 to %d bytes, and this one has %zu",
                              HE_COLUMN_NAME - 1, length);
     }
     if (components == 0 || components > HE_COLUMN_COMPONENTS) {
-        return he_fail_plain(err, HE_BAD_VALUE, "an attribute has 1 to %d components, not %u",
+        return he_fail_plain(err, HE_BAD_VALUE, "an attribute must have 1 to %d components, not %u",
                              HE_COLUMN_COMPONENTS, components);
     }
     he_column *column = he_mem_zero(1, sizeof *column);

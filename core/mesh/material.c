@@ -56,13 +56,15 @@ bool he_look_clamp(he_look *look)
 static he_status check_name(const char *name, size_t length, he_error *err)
 {
     if (length == 0 || length > HE_MATERIAL_NAME) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a material's name has 1 to %d bytes, not %zu",
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "a material's name must have 1 to %d bytes, and this one has %zu",
                              HE_MATERIAL_NAME, length);
     }
     for (size_t i = 0; i < length; i++) {
         if ((unsigned char)name[i] < 0x20 && name[i] != '\t') {
             return he_fail_plain(err, HE_BAD_VALUE,
-                                 "a material's name holds the control character %d", name[i]);
+                                 "a material's name must not contain the control character %d",
+                                 name[i]);
         }
     }
     return he_is_utf8(name, length)

@@ -139,8 +139,9 @@ he_status he_mesh_require(const he_mesh *mesh, he_kind kind, uint32_t id, he_err
         return he_fail(err, HE_DELETED_ELEMENT, kind, id, "%s %u was deleted", he_kind_name(kind),
                        id);
     }
-    return he_fail(err, HE_NO_SUCH_ELEMENT, kind, id, "there is no %s %u: %u ids were issued",
-                   he_kind_name(kind), id, issued);
+    return he_fail(err, HE_NO_SUCH_ELEMENT, kind, id,
+                   "there is no %s %u: the mesh has given out %u ids so far", he_kind_name(kind),
+                   id, issued);
 }
 
 size_t he_mesh_columns(const he_mesh *mesh)

@@ -74,9 +74,10 @@ static he_status check_ids(he_kind kind, uint32_t issued, uint32_t extra, he_err
     if (extra <= HE_MAX_ROWS - issued) {
         return HE_OK;
     }
-    return he_fail_plain(err, HE_IDS_EXHAUSTED,
-                         "%u more %s do not fit: %u of %u ids are issued, compact the mesh", extra,
-                         he_kind_plural(kind), issued, HE_MAX_ROWS);
+    return he_fail_plain(
+        err, HE_IDS_EXHAUSTED,
+        "%u more %s do not fit: %u of %u ids are used; compact the mesh to free some", extra,
+        he_kind_plural(kind), issued, HE_MAX_ROWS);
 }
 
 he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err)

@@ -23,7 +23,7 @@ static he_status run_vertex_move(he_mesh *m, const he_arg *args, he_results *out
     he_move how = args[1].given ? HE_MOVE_TO : HE_MOVE_BY;
     const he_arg *points = args[1].given ? &args[1] : &args[2];
     if (points->list && points->count != args[0].count) {
-        return he_fail_plain(err, HE_BAD_VALUE, "%zu points do not match %zu vertices",
+        return he_fail_plain(err, HE_BAD_VALUE, "%zu points are given for %zu vertices",
                              points->count, args[0].count);
     }
     return he_vertex_move(m, args[0].ids, args[0].count, how, points->points, points->count, err);

@@ -28,7 +28,7 @@ static he_status exhausted(const he_gather *g, he_kind kind, uint32_t id, he_err
     if (g->capped) {
         return corrupt(kind, id, err);
     }
-    return he_fail(err, HE_LIMIT, kind, id, "the answer is over its limit at %s %u",
+    return he_fail(err, HE_LIMIT, kind, id, "the answer grows too long at %s %u",
                    he_kind_name(kind), id);
 }
 

@@ -16,7 +16,8 @@ static he_status count_triangles(const he_mesh *m, uint32_t *out, he_error *err)
     uint64_t corners = 2 * (uint64_t)m->c.edges.live - m->c.boundary_halfedges;
     uint64_t count = corners - 2 * (uint64_t)m->c.faces.live;
     if (count > (uint64_t)1 << 31) {
-        return he_fail_plain(err, HE_IDS_EXHAUSTED, "the mesh has %llu triangles",
+        return he_fail_plain(err, HE_IDS_EXHAUSTED,
+                             "the mesh has %llu triangles, too many to search",
                              (unsigned long long)count);
     }
     *out = (uint32_t)count;

@@ -61,7 +61,7 @@ he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a
         s->pairs->ids[s->pairs->count++] = f < g ? g : f;
     }
     return status == HE_OK && s->pairs->count >= s->most
-               ? he_fail_plain(err, HE_LIMIT, "more faces meet than can be listed")
+               ? he_fail_plain(err, HE_LIMIT, "more pairs of faces intersect than can be listed")
                : status;
 }
 

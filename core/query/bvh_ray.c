@@ -165,7 +165,7 @@ he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin, he_ve
 {
     he_vec3 unit;
     if (!he_vec3_normalise(direction, &unit)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a ray needs a direction that is not zero");
+        return he_fail_plain(err, HE_BAD_VALUE, "the ray's direction must not be zero");
     }
     he_hit none = {.face = HE_NONE};
     if (tree->count == 0) {

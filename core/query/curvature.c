@@ -155,7 +155,9 @@ static he_status visit_face(const he_mesh *m, uint32_t face, uint64_t *most, vis
         uint32_t degree = he_face_degree(m, (he_face){face});
         uint64_t cost = degree > 4 ? (uint64_t)degree * degree : 0;
         if (cost > *most) {
-            return he_fail(err, HE_LIMIT, HE_FACE, face, "face %u has %u corners", face, degree);
+            return he_fail(err, HE_LIMIT, HE_FACE, face,
+                           "face %u has %u corners, too many to triangulate for its curvature",
+                           face, degree);
         }
         *most -= cost;
         he_frame frame = frame_of(m, first);

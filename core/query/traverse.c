@@ -187,7 +187,8 @@ he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t fro
                                     size_t limit, he_ids *ids, he_ids *depths, he_error *err)
 {
     if (kind != HE_VERTEX && kind != HE_FACE) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a breadth-first walk is over vertices or faces");
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "a breadth-first walk begins at a vertex or a face");
     }
     he_status status = he_mesh_require(m, kind, from, err);
     if (status != HE_OK) {

@@ -109,7 +109,8 @@ static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he
     size_t cuts = ends[0].ring.count + ends[1].ring.count;
     he_need need = {.faces = 1, .deleted_edges = 1};
     if (cuts > HE_MAX_ROWS / 4) {
-        return he_fail_plain(err, HE_IDS_EXHAUSTED, "no ids are left for %zu vertices", cuts);
+        return he_fail_plain(err, HE_IDS_EXHAUSTED,
+                             "the mesh has no ids left for %zu more vertices", cuts);
     }
     need.vertices = need.edges = (uint32_t)cuts;
     for (unsigned i = 0; i < 2; i++) {

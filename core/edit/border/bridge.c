@@ -48,7 +48,8 @@ static he_status require_hole(const he_mesh *m, he_halfedge h, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_HALFEDGE, h.i, err);
     if (status == HE_OK && !he_is_boundary_halfedge(m, h)) {
-        return he_fail(err, HE_NOT_BOUNDARY, HE_HALFEDGE, h.i, "half-edge %u has face %u", h.i,
+        return he_fail(err, HE_NOT_BOUNDARY, HE_HALFEDGE, h.i,
+                       "half-edge %u belongs to face %u, so it is not on a boundary", h.i,
                        he_face_of(m, h).i);
     }
     return status;
@@ -63,7 +64,7 @@ static he_status find_first_loop(plan *p, he_halfedge a, he_halfedge b, he_error
         bool added = false;
         if (h.i == b.i) {
             return he_fail(err, HE_SAME_LOOP, HE_HALFEDGE, b.i,
-                           "half-edges %u and %u are of one loop", a.i, b.i);
+                           "half-edges %u and %u lie on the same boundary loop", a.i, b.i);
         }
         status = he_ids_add(&p->a, h.i, err);
         if (status == HE_OK) {
@@ -88,7 +89,8 @@ static he_status find_second_loop(plan *p, he_halfedge b, he_error *err)
             status = he_idmap_add(&p->corners, v, &index, &added, err);
         }
         if (status == HE_OK && index < first) {
-            return he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v, "both loops pass vertex %u", v);
+            return he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v,
+                           "vertex %u lies on both boundary loops", v);
         }
         p->repeats |= !added;
         h = he_prev(p->m, h);
@@ -205,8 +207,8 @@ static he_status compare_rungs(const plan *p, uint32_t *first, uint32_t *next, h
         if (status == HE_OK && ends.count < count) {
             uint32_t id = p->corners.ids.ids[v];
             status = he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, id,
-                             "the loops pass vertex %u so that two new edges would have both ends "
-                             "in common",
+                             "two new edges at vertex %u would join the same two vertices, because "
+                             "a boundary loop passes it twice",
                              id);
         }
     }

@@ -57,7 +57,8 @@ static he_status plan_chain(const he_mesh *m, const uint32_t *edges, plan *p, he
     for (size_t i = 0; i < p->count && status == HE_OK; i++) {
         he_edge e = {edges[i]};
         if (!he_is_boundary_edge(m, e)) {
-            return he_fail(err, HE_NOT_BOUNDARY, HE_EDGE, e.i, "edge %u has two faces", e.i);
+            return he_fail(err, HE_NOT_BOUNDARY, HE_EDGE, e.i,
+                           "edge %u is not on a boundary: it has two faces", e.i);
         }
         he_halfedge h = he_edge_halfedge(e, 0);
         h = he_is_boundary_halfedge(m, h) ? h : he_twin(h);
@@ -75,8 +76,9 @@ static he_status plan_chain(const he_mesh *m, const uint32_t *edges, plan *p, he
 static he_status refuse_branch(const plan *p, uint32_t v, uint32_t i, uint32_t k, he_error *err)
 {
     return he_fail(err, HE_BRANCHING_CHAIN, HE_VERTEX, v,
-                   "edges %u and %u both begin, or both end, at vertex %u", he_edge_of(at(p, i)).i,
-                   he_edge_of(at(p, k)).i, v);
+                   "edges %u and %u both leave or both reach vertex %u along the boundary: extrude "
+                   "them one after the other",
+                   he_edge_of(at(p, i)).i, he_edge_of(at(p, k)).i, v);
 }
 
 static he_status plan_joints(const he_mesh *m, plan *p, he_error *err)
@@ -107,9 +109,10 @@ static he_status plan_joints(const he_mesh *m, plan *p, he_error *err)
         he_halfedge in = at(p, p->joints[i].in), out = at(p, p->joints[i].out);
         if (he_next(m, in).i != out.i && he_ring_fan_end(m, in).i == out.i) {
             uint32_t v = p->ends.ids[i];
-            return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v,
-                           "a fan at vertex %u would close while %u others touch it", v,
-                           he_vertex_fans(m, (he_vertex){v}) - 1);
+            return he_fail(
+                err, HE_CLOSED_FAN, HE_VERTEX, v,
+                "the faces around vertex %u would close while %u other fans of faces touch it", v,
+                he_vertex_fans(m, (he_vertex){v}) - 1);
         }
     }
     return HE_OK;
@@ -144,7 +147,7 @@ static he_status make_plan(const he_mesh *m, const uint32_t *edges, he_vec3 by, 
 static he_status reserve(he_mesh *m, const plan *p, he_walls *made, he_error *err)
 {
     if (p->count > HE_MAX_ROWS / 4) {
-        return he_fail_plain(err, HE_IDS_EXHAUSTED, "no ids are left to extrude %zu edges",
+        return he_fail_plain(err, HE_IDS_EXHAUSTED, "the mesh has no ids left to extrude %zu edges",
                              p->count);
     }
     uint32_t count = (uint32_t)p->count, ends = (uint32_t)p->ends.count;

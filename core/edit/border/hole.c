@@ -20,7 +20,8 @@ static he_status check(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *
         return status;
     }
     if (!he_is_boundary_halfedge(m, h)) {
-        return he_fail(err, HE_NOT_BOUNDARY, HE_HALFEDGE, h.i, "half-edge %u has face %u", h.i,
+        return he_fail(err, HE_NOT_BOUNDARY, HE_HALFEDGE, h.i,
+                       "half-edge %u belongs to face %u, so it is not on a boundary", h.i,
                        he_face_of(m, h).i);
     }
     he_halfedge k = h;
@@ -36,8 +37,10 @@ static he_status check(const he_mesh *m, he_halfedge h, he_ids *loop, he_error *
         status = he_list_repeat(vertices.ids, vertices.count, &at, err);
     }
     if (status == HE_OK && at < vertices.count) {
-        status = he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, vertices.ids[at],
-                         "the hole passes vertex %u twice", vertices.ids[at]);
+        status =
+            he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, vertices.ids[at],
+                    "the boundary of the hole passes vertex %u twice, so one face cannot fill it",
+                    vertices.ids[at]);
     }
     he_ids_clear(&vertices);
     return status;

@@ -64,7 +64,7 @@ static he_status find_loops(plan *p, he_halfedge a, he_halfedge b, he_error *err
     do {
         if (h.i == b.i) {
             return he_fail(err, HE_SAME_LOOP, HE_HALFEDGE, b.i,
-                           "half-edges %u and %u are of one loop", a.i, b.i);
+                           "half-edges %u and %u lie on the same loop", a.i, b.i);
         }
         status = he_ids_add(&p->a, h.i, err);
         h = he_next(p->m, h);
@@ -93,11 +93,10 @@ static he_status find_vertices(plan *p, he_error *err)
             i < p->n ? he_target(p->m, side_of_b(p, i)) : he_origin(p->m, side_of_a(p, i - p->n));
         status = he_idmap_add(&p->vertices, v.i, &index, &added, err);
         if (status == HE_OK && !added) {
-            return i >= p->n && index < p->n
-                       ? he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v.i, "both loops pass vertex %u",
-                                 v.i)
-                       : he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, v.i,
-                                 "one of the loops passes vertex %u twice", v.i);
+            return i >= p->n && index < p->n ? he_fail(err, HE_SHARED_VERTEX, HE_VERTEX, v.i,
+                                                       "vertex %u lies on both loops", v.i)
+                                             : he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, v.i,
+                                                       "a loop passes vertex %u twice", v.i);
         }
     }
     return status;
@@ -110,7 +109,7 @@ static he_status check_sides(const plan *p, he_error *err)
         if (he_is_boundary_halfedge(p->m, he_twin(side_of_a(p, i))) &&
             he_is_boundary_halfedge(p->m, he_twin(side_of_b(p, i)))) {
             return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e,
-                           "edges %u and %u would be one without a face", e, f);
+                           "edges %u and %u would merge into an edge without a face", e, f);
         }
     }
     return HE_OK;
@@ -136,7 +135,7 @@ static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first,
         }
         if (again && !added) {
             return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f,
-                           "face %u has two of the vertices that would become one", f);
+                           "face %u has two corners that would become the same vertex", f);
         }
         h = he_turn_ccw(p->m, h);
     } while (h.i != first.i);
@@ -173,7 +172,7 @@ static he_status gather_neighbours(const plan *p, he_halfedge first, const he_ha
         if (!added) {
             uint32_t e = he_edge_of(h).i;
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, e,
-                           "edge %u and another would join the same two vertices", e);
+                           "edge %u and another edge would join the same two vertices", e);
         }
         h = he_turn_ccw(p->m, h);
     } while (h.i != first.i);

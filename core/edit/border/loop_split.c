@@ -29,8 +29,7 @@ static he_status find_cycle(const he_mesh *m, const he_edge edges[3], he_halfedg
         }
     }
     return he_fail(err, HE_NOT_A_CYCLE, HE_EDGE, edges[0].i,
-                   "edges %u, %u and %u do not make up a cycle", edges[0].i, edges[1].i,
-                   edges[2].i);
+                   "edges %u, %u and %u do not form a cycle", edges[0].i, edges[1].i, edges[2].i);
 }
 
 static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_error *err)
@@ -41,7 +40,7 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
         for (unsigned k = 0; k < i; k++) {
             if (faces[k] == faces[i]) {
                 return he_fail(err, HE_SHARED_FACE, HE_FACE, faces[i],
-                               "face %u lies at two of the edges", faces[i]);
+                               "face %u touches two of the edges", faces[i]);
             }
         }
     }

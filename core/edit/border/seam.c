@@ -118,8 +118,9 @@ static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error
         if (he_bits_get(p->once, i)) {
             uint32_t e = he_edge_of(first).i;
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, e,
-                           "both sides of edge %u would join vertices %u and %u", e,
-                           he_origin(m, first).i, he_target(m, first).i);
+                           "both copies of edge %u would still join vertices %u and %u: cut more "
+                           "edges with it",
+                           e, he_origin(m, first).i, he_target(m, first).i);
         }
         he_bits_set(p->once, i);
         return HE_OK;
@@ -166,7 +167,8 @@ static he_status plan_cut(const he_mesh *m, const uint32_t *edges, size_t count,
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         he_edge e = {edges[i]};
         if (he_is_boundary_edge(m, e)) {
-            return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i, "edge %u has only one face", e.i);
+            return he_fail(err, HE_BOUNDARY_EDGE, HE_EDGE, e.i,
+                           "edge %u is already on a boundary: it has only one face", e.i);
         }
         status = he_ids_add(&p->cuts, e.i, err);
         for (unsigned side = 0; side < 2 && status == HE_OK; side++) {
@@ -257,7 +259,8 @@ he_status he_edge_cut(he_mesh *m, const uint32_t *edges, size_t count, he_seam *
         status = he_ids_reserve(&made.edges, count, err);
     }
     if (status == HE_OK && (p.parts.count > HE_MAX_ROWS || count > HE_MAX_ROWS)) {
-        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "no ids are left for %zu edges", count);
+        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "the mesh has no ids left for %zu more edges",
+                               count);
     }
     if (status == HE_OK) {
         need.vertices = (uint32_t)p.parts.count;

@@ -25,7 +25,8 @@ static he_status require_boundary(const he_mesh *m, he_edge e, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_EDGE, e.i, err);
     if (status == HE_OK && !he_is_boundary_edge(m, e)) {
-        return he_fail(err, HE_NOT_BOUNDARY, HE_EDGE, e.i, "edge %u has two faces", e.i);
+        return he_fail(err, HE_NOT_BOUNDARY, HE_EDGE, e.i,
+                       "edge %u is not on a boundary: it has two faces", e.i);
     }
     return status;
 }
@@ -39,8 +40,10 @@ static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_ed
     do {
         he_face f = he_face_of(m, h);
         if (f.i != HE_NONE && he_face_corner(m, f, v).i != HE_NONE) {
-            return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                           "face %u has both vertex %u and %u as corners", f.i, v.i, w.i);
+            return he_fail(
+                err, HE_REPEATED_CORNER, HE_FACE, f.i,
+                "face %u has both vertex %u and vertex %u as corners, and they would become one",
+                f.i, v.i, w.i);
         }
         he_halfedge other = he_find_halfedge(m, v, he_target(m, h));
         if (other.i != HE_NONE && !(he_edge_of(other).i == a.i && he_edge_of(h).i == b.i)) {
@@ -59,9 +62,10 @@ static he_status check_end(const he_mesh *m, const pair *end, he_edge a, he_edge
         return check_merge(m, end, a, b, err);
     }
     if (he_next(m, end->in).i != end->out.i && he_ring_fan_end(m, end->in).i == end->out.i) {
-        return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, end->stays.i,
-                       "a fan at vertex %u would close while %u others touch it", end->stays.i,
-                       he_vertex_fans(m, end->stays) - 1);
+        return he_fail(
+            err, HE_CLOSED_FAN, HE_VERTEX, end->stays.i,
+            "the faces around vertex %u would close while %u other fans of faces touch it",
+            end->stays.i, he_vertex_fans(m, end->stays) - 1);
     }
     return HE_OK;
 }
@@ -99,7 +103,8 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
         return status;
     }
     if (a.i == b.i) {
-        return he_fail(err, HE_REPEATED_ELEMENT, HE_EDGE, a.i, "a and b are both edge %u", a.i);
+        return he_fail(err, HE_REPEATED_ELEMENT, HE_EDGE, a.i, "a and b are the same edge, %u",
+                       a.i);
     }
     he_halfedge h = outer(m, a), k = outer(m, b);
     ends[0] = (pair){he_target(m, h), he_origin(m, k), h, k};
@@ -107,8 +112,8 @@ static he_status check(const he_mesh *m, he_edge a, he_edge b, he_keep keep, pai
     if (ends[0].stays.i == ends[1].goes.i || ends[1].stays.i == ends[0].goes.i) {
         he_face f = he_face_of(m, he_twin(h));
         return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                       "edges %u and %u run the same way along vertex %u: both ends would become "
-                       "one corner of face %u",
+                       "edges %u and %u run in the same direction at vertex %u: both ends would "
+                       "become one corner of face %u",
                        a.i, b.i, he_origin(m, h).i, f.i);
     }
     for (unsigned i = 0; i < 2 && status == HE_OK; i++) {

@@ -99,7 +99,8 @@ static he_status check_join(const he_mesh *m, he_vertex v, he_error *err)
         he_face f = he_face_of(m, sides[i]);
         if (f.i != HE_NONE && he_loop_length(m, sides[i]) == 3) {
             return he_fail(err, HE_TRIANGLE_SIDE, HE_FACE, f.i,
-                           "face %u at vertex %u is a triangle", f.i, v.i);
+                           "face %u is a triangle, and would lose its corner at vertex %u", f.i,
+                           v.i);
         }
     }
     he_halfedge joined = he_find_halfedge(m, he_target(m, one), he_target(m, other));

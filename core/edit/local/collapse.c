@@ -113,7 +113,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
     he_vertex v = he_target(m, h), w = he_target(m, k);
     if (w.i != c.i && w.i != d.i &&
         (of_v != NULL ? is_in(of_v, w.i) : he_find_halfedge(m, w, v).i != HE_NONE)) {
-        return refuse(err, h, "its ends have another neighbour in common", "vertex", w.i);
+        return refuse(err, h, "its ends share a neighbour that is not a corner of its faces",
+                      "vertex", w.i);
     }
     /* All corners of a triangle at u are neighbours of u, so L1 already covers this face for L4. */
     if (he_prev(m, he_prev(m, k)).i == he_next(m, k).i) {
@@ -121,7 +122,8 @@ static he_status check_neighbour(const he_mesh *m, he_halfedge h, he_halfedge k,
     }
     he_face f = he_face_of(m, h), g = he_face_of(m, he_twin(h)), x = he_face_of(m, k);
     if (x.i != HE_NONE && x.i != f.i && x.i != g.i && he_face_corner(m, x, v).i != HE_NONE) {
-        return refuse(err, h, "another face has both ends as corners", "face", x.i);
+        return refuse(err, h, "both its ends are corners of a face that is not beside it", "face",
+                      x.i);
     }
     return HE_OK;
 }
@@ -151,7 +153,7 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 {
     if (he_is_triangle(m, h) && he_is_boundary_halfedge(m, he_twin(he_next(m, h))) &&
         he_is_boundary_halfedge(m, he_twin(he_prev(m, h)))) {
-        return refuse(err, h, "both other sides of a triangle are on the boundary", "face",
+        return refuse(err, h, "a triangle beside it has both other sides on the boundary", "face",
                       he_face_of(m, h).i);
     }
     return HE_OK;
@@ -177,7 +179,8 @@ static he_status check(const he_mesh *m, he_halfedge h, he_error *err)
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     if (he_is_boundary_vertex(m, u) && he_is_boundary_vertex(m, v) &&
         !he_is_boundary_edge(m, he_edge_of(h))) {
-        return refuse(err, h, "it is interior but both ends are on the boundary", "vertex", u.i);
+        return refuse(err, h, "it is inside the mesh but both its ends are on the boundary",
+                      "vertex", u.i);
     }
     he_status status = check_sides(m, h, err);
     if (status == HE_OK) {
@@ -235,11 +238,11 @@ static he_status check_features(const he_mesh *m, const he_marks *marks, he_half
     uint32_t count = count_features(m, marks, h, &other);
     if (!along && count > 0) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
-                       "vertex %u would go, but is on feature edge %u", u.i, other.i);
+                       "vertex %u would be removed, but lies on feature edge %u", u.i, other.i);
     }
     if (along && count != 2) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i,
-                       "vertex %u would go, but %u feature edges meet there", u.i, count);
+                       "vertex %u would be removed, but %u feature edges meet there", u.i, count);
     }
     he_edge left = he_edge_of(he_prev(m, h)), right = he_edge_of(he_next(m, back));
     if ((he_is_triangle(m, h) && he_is_feature(marks, left)) ||
@@ -250,7 +253,7 @@ static he_status check_features(const he_mesh *m, const he_marks *marks, he_half
     count = moves ? count_features(m, marks, back, &other) : 0;
     if (count > 0 && !(along && count == 2)) {
         return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, other.i,
-                       "vertex %u would move, but is on feature edge %u", v.i, other.i);
+                       "vertex %u would move, but lies on feature edge %u", v.i, other.i);
     }
     return HE_OK;
 }
@@ -347,7 +350,7 @@ static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to
         return status;
     }
     if (!(t >= 0 && t <= 1)) {
-        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "t must be 0 to 1, not %g", t);
+        return he_fail(err, HE_BAD_VALUE, HE_HALFEDGE, h.i, "t must be from 0 to 1, not %g", t);
     }
     if (to != NULL && !he_point_is_finite(*to)) {
         return he_fail(err, HE_NOT_FINITE, HE_HALFEDGE, h.i, "the position must be finite");

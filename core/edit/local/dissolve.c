@@ -45,14 +45,16 @@ static he_status check(const he_mesh *m, he_vertex v, size_t *corners, he_error 
     status = find_ring(m, v, &ring, err);
     if (status == HE_OK && ring.count < 3) {
         status = he_fail(err, HE_TOO_FEW_CORNERS, HE_VERTEX, v.i,
-                         "the faces about vertex %u have only %zu other corners", v.i, ring.count);
+                         "the faces around vertex %u have only %zu other corners; a face needs 3",
+                         v.i, ring.count);
     }
     if (status == HE_OK) {
         status = he_list_repeat(ring.ids, ring.count, &at, err);
     }
     if (status == HE_OK && at < ring.count) {
         status = he_fail(err, HE_REPEATED_CORNER, HE_VERTEX, ring.ids[at],
-                         "the ring about vertex %u passes vertex %u twice", v.i, ring.ids[at]);
+                         "the outline of the faces around vertex %u passes vertex %u twice", v.i,
+                         ring.ids[at]);
     }
     *corners = ring.count;
     he_ids_clear(&ring);

@@ -10,9 +10,10 @@ static he_status find_side(const he_mesh *m, he_vertex a, he_vertex b, uint32_t 
     if (h.i != HE_NONE && !he_is_boundary_halfedge(m, h)) {
         uint32_t e = he_edge_of(h).i;
         if (he_is_boundary_halfedge(m, he_twin(h))) {
-            return he_fail(err, HE_ORIENTATION, HE_EDGE, e,
-                           "face %u already runs from vertex %u to %u", he_face_of(m, h).i, a.i,
-                           b.i);
+            return he_fail(
+                err, HE_ORIENTATION, HE_EDGE, e,
+                "face %u already has the side from vertex %u to %u: reverse the new face",
+                he_face_of(m, h).i, a.i, b.i);
         }
         return he_fail(err, HE_NONMANIFOLD_EDGE, HE_EDGE, e,
                        "edge %u from vertex %u to %u already has two faces", e, a.i, b.i);
@@ -29,8 +30,8 @@ static he_status check_corner(const he_mesh *m, uint32_t in, uint32_t out, he_er
     }
     uint32_t v = m->c.origin[out];
     return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v,
-                   "a fan at vertex %u would close while %u others touch it", v,
-                   he_vertex_fans(m, (he_vertex){v}) - 1);
+                   "the faces around vertex %u would close while %u other fans of faces touch it",
+                   v, he_vertex_fans(m, (he_vertex){v}) - 1);
 }
 
 /* Checks the vertices of the new face and fills sides[i] with the existing half-edge from

@@ -25,7 +25,7 @@ static he_status check_marks(const he_mesh *m, he_edge e, he_error *err)
         return HE_OK;
     }
     if (he_is_feature(&marks, e)) {
-        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i, "edge %u is a feature", e.i);
+        return he_fail(err, HE_FEATURE_EDGE, HE_EDGE, e.i, "edge %u is a feature edge", e.i);
     }
     he_halfedge h = he_edge_halfedge(e, 0);
     he_status status = he_require_unlocked(&marks, HE_EDGE, e.i, err);
@@ -52,7 +52,7 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     he_vertex c = he_target(m, he_next(m, h)), d = he_target(m, he_next(m, t));
     if (c.i == d.i) {
         return he_fail(err, HE_SAME_ENDS, HE_EDGE, e.i,
-                       "both ends of edge %u would come to vertex %u", e.i, c.i);
+                       "both ends of edge %u would become vertex %u", e.i, c.i);
     }
     he_status status = check_end(m, h, err);
     if (status == HE_OK) {
@@ -71,11 +71,11 @@ static he_status check(const he_mesh *m, he_edge e, he_error *err)
     he_face f = he_face_of(m, h), g = he_face_of(m, t);
     /* A triangle has only the corners a, b and c, so d is none of them. */
     if (!he_is_triangle(m, h) && he_face_corner(m, f, d).i != HE_NONE) {
-        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would pass vertex %u twice",
+        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would use vertex %u twice",
                        f.i, d.i);
     }
     if (!he_is_triangle(m, t) && he_face_corner(m, g, c).i != HE_NONE) {
-        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, g.i, "face %u would pass vertex %u twice",
+        return he_fail(err, HE_REPEATED_CORNER, HE_FACE, g.i, "face %u would use vertex %u twice",
                        g.i, c.i);
     }
     return check_marks(m, e, err);

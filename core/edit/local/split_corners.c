@@ -12,7 +12,8 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
         return status;
     }
     if (a.i == b.i) {
-        return he_fail(err, HE_SAME_CORNER, HE_HALFEDGE, a.i, "a and b are both half-edge %u", a.i);
+        return he_fail(err, HE_SAME_CORNER, HE_HALFEDGE, a.i, "a and b are the same half-edge, %u",
+                       a.i);
     }
     if (he_origin(m, a).i != he_origin(m, b).i) {
         return he_fail(err, HE_DIFFERENT_ORIGINS, HE_HALFEDGE, b.i,
@@ -20,8 +21,10 @@ static he_status check(const he_mesh *m, he_halfedge a, he_halfedge b, he_error 
                        he_origin(m, a).i);
     }
     if (he_is_boundary_halfedge(m, he_twin(a)) && he_is_boundary_halfedge(m, he_twin(b))) {
-        return he_fail(err, HE_NO_FACE, HE_VERTEX, he_origin(m, a).i,
-                       "both corners at vertex %u are a hole's", he_origin(m, a).i);
+        return he_fail(
+            err, HE_NO_FACE, HE_VERTEX, he_origin(m, a).i,
+            "both corners at vertex %u lie on the boundary, so the new edge would have no face",
+            he_origin(m, a).i);
     }
     return HE_OK;
 }

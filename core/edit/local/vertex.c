@@ -37,8 +37,8 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
                          const he_vec3 *points, size_t point_count, he_error *err)
 {
     if (point_count != 1 && point_count != count) {
-        return he_fail_plain(err, HE_BAD_VALUE, "%zu points do not match %zu vertices", point_count,
-                             count);
+        return he_fail_plain(err, HE_BAD_VALUE, "%zu points are given for %zu vertices",
+                             point_count, count);
     }
     he_status status = he_list_require(m, HE_VERTEX, vertices, count, HE_REPEATED_ELEMENT, err);
     if (status != HE_OK) {

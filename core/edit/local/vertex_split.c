@@ -18,7 +18,9 @@ static he_status find_side(const he_mesh *m, he_vertex v, he_vertex to, he_halfe
     if (to.i == HE_NONE) {
         if (!he_is_boundary_vertex(m, v)) {
             return he_fail(err, HE_NOT_BOUNDARY, HE_VERTEX, v.i,
-                           "vertex %u has no hole for a null to stand for", v.i);
+                           "left or right is null, which means the boundary, but vertex %u is not "
+                           "on the boundary",
+                           v.i);
         }
         *out = (he_halfedge){HE_NONE};
         return HE_OK;
@@ -54,7 +56,8 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
                        "left and right are both vertex %u", left.i);
     }
     if (he_vertex_fans(m, v) > 1) {
-        return he_fail(err, HE_BOWTIE, HE_VERTEX, v.i, "vertex %u has %u fans", v.i,
+        return he_fail(err, HE_BOWTIE, HE_VERTEX, v.i,
+                       "vertex %u is a bow-tie: it has %u fans of faces", v.i,
                        he_vertex_fans(m, v));
     }
     status = find_side(m, v, left, &c.left, err);
@@ -79,7 +82,8 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
     }
     if (!sector) {
         return he_fail(err, HE_NO_SECTOR, HE_VERTEX, v.i,
-                       "no face at vertex %u lies from left to right", v.i);
+                       "no face around vertex %u lies between left and right, counter-clockwise",
+                       v.i);
     }
     *out = c;
     return HE_OK;

@@ -138,8 +138,8 @@ static he_status check_corners(const he_merge_plan *p, size_t i, he_ids *corners
     size_t at = 0;
     he_status status = he_list_repeat(corners->ids, corners->count, &at, err);
     if (status == HE_OK && at < corners->count) {
-        status = he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i,
-                         "face %u would pass vertex %u twice", f.i, corners->ids[at]);
+        status = he_fail(err, HE_REPEATED_CORNER, HE_FACE, f.i, "face %u would use vertex %u twice",
+                         f.i, corners->ids[at]);
     }
     return status;
 }
@@ -305,7 +305,7 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
         if (p->fates[i].uses[0] > 1 || p->fates[i].uses[1] > 1) {
             uint32_t e = p->edges.ids[i];
             return he_fail(err, HE_ORIENTATION, HE_EDGE, e,
-                           "two faces would run along edge %u in one direction", e);
+                           "two faces would run along edge %u in the same direction", e);
         }
     }
     return HE_OK;
@@ -407,8 +407,9 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
         p->stored[i] = old.i < HE_DEAD && he_merge_stays(p, old) ? old.i : first.i;
     }
     if (status == HE_OK && seen != ring->count) {
-        return he_fail(err, HE_CLOSED_FAN, HE_VERTEX, v.i,
-                       "vertex %u would have a closed fan and another", v.i);
+        return he_fail(
+            err, HE_CLOSED_FAN, HE_VERTEX, v.i,
+            "the faces around vertex %u would close while another fan of faces touches it", v.i);
     }
     return status;
 }

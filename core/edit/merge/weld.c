@@ -69,7 +69,8 @@ he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_id
 {
     he_ids gone = {0}, to = {0}, stay = {0};
     if (!(tolerance >= 0)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a tolerance cannot be %g", tolerance);
+        return he_fail_plain(err, HE_BAD_VALUE,
+                             "the tolerance must be finite and not negative, not %g", tolerance);
     }
     he_status status = he_watch_phase(m->watch, "comparing", 0.4, err);
     if (status == HE_OK) {

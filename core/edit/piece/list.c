@@ -80,7 +80,7 @@ he_status he_list_require(const he_mesh *m, he_kind kind, const uint32_t *ids, s
     size_t at = count;
     he_status status = he_list_repeat(ids, count, &at, err);
     if (status == HE_OK && at < count) {
-        return he_fail(err, repeated, kind, ids[at], "%s %u is named twice", he_kind_name(kind),
+        return he_fail(err, repeated, kind, ids[at], "%s %u is listed twice", he_kind_name(kind),
                        ids[at]);
     }
     return status;

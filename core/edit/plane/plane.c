@@ -18,13 +18,13 @@ static he_status check(he_vec3 point, he_vec3 normal, const double *tolerance, h
         return he_fail_plain(err, HE_NOT_FINITE, "the plane's point and normal must be finite");
     }
     if (he_vec3_extent(normal) == 0) {
-        return he_fail_plain(err, HE_BAD_VALUE, "a normal of zero has no direction");
+        return he_fail_plain(err, HE_BAD_VALUE, "the plane's normal must not be zero");
     }
     if (tolerance != NULL && !isfinite(*tolerance)) {
         return he_fail_plain(err, HE_NOT_FINITE, "the tolerance must be finite");
     }
     if (tolerance != NULL && *tolerance < 0) {
-        return he_fail_plain(err, HE_BAD_VALUE, "the tolerance must not be negative, as %g is",
+        return he_fail_plain(err, HE_BAD_VALUE, "the tolerance must not be negative, and is %g",
                              *tolerance);
     }
     return HE_OK;

@@ -117,9 +117,10 @@ static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
     he_vertex v = he_origin(m, from), w = he_origin(m, to);
     he_halfedge joined = he_find_halfedge(m, v, w);
     if (joined.i != HE_NONE) {
-        return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
-                       "the plane cuts face %u from vertex %u to %u, which edge %u joins already",
-                       he_face_of(m, from).i, v.i, w.i, he_edge_of(joined).i);
+        return he_fail(
+            err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(joined).i,
+            "the plane would cut face %u from vertex %u to %u, but edge %u already joins them",
+            he_face_of(m, from).i, v.i, w.i, he_edge_of(joined).i);
     }
     he_need need = {0};
     he_cut_need(steps_between(m, from, to), &need);

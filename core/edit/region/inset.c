@@ -101,7 +101,8 @@ static he_status aim_at_parallels(const he_mesh *m, const he_region *r, motion *
         uint32_t index = index_of(m, r, r->rim.ids[i]);
         if (he_vec3_extent(p->of[index]) <= 0) {
             return he_fail(err, HE_NO_NORMAL, HE_FACE, r->faces.ids.ids[index],
-                           "face %u has no area: give a factor", r->faces.ids.ids[index]);
+                           "face %u has no area, so a distance means nothing: give a factor",
+                           r->faces.ids.ids[index]);
         }
     }
     /* The half-edge that arrives at a corner of the rim is the one that leaves the corner before
@@ -213,8 +214,9 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
         /* The face has a reflex corner at b, which is tested against every side of which it is not
          * an end. */
         if (p->budget < n) {
-            return he_fail(err, HE_LIMIT, HE_FACE, f.i,
-                           "face %u has too many reflex corners and sides to be inset", f.i);
+            return he_fail(
+                err, HE_LIMIT, HE_FACE, f.i,
+                "face %u has too many reflex corners and sides for an inset to be checked", f.i);
         }
         p->budget -= n;
         for (size_t k = i + 2; k < i + n; k++) {

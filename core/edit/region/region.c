@@ -61,7 +61,7 @@ static he_status add_rim(const he_mesh *m, he_region *r, he_halfedge h, he_error
     }
     if (!added) {
         return he_fail(err, HE_RIM_MEETS_ITSELF, HE_VERTEX, v,
-                       "the rim of the faces passes vertex %u twice", v);
+                       "the outline of the faces passes vertex %u twice", v);
     }
     return he_ids_add(&r->rim, h.i, err);
 }
@@ -81,8 +81,10 @@ static he_status find_rim(const he_mesh *m, he_region *r, he_error *err)
     }
     if (r->rim.count == 0) {
         uint32_t f = r->faces.ids.ids[0];
-        return he_fail(err, HE_NO_RIM, HE_FACE, f,
-                       "face %u and those with it are a whole closed component without a rim", f);
+        return he_fail(
+            err, HE_NO_RIM, HE_FACE, f,
+            "face %u and the others listed are a whole closed component, so they have no outline",
+            f);
     }
     return HE_OK;
 }

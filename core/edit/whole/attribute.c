@@ -67,7 +67,7 @@ he_status he_attribute_fill(const he_mesh *m, he_column *column, const void *val
 {
     uint32_t issued = he_mesh_issued(m, column->domain), live = he_mesh_count(m, column->domain);
     if (count != live) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there are %zu values for %u live %s", count, live,
+        return he_fail_plain(err, HE_BAD_VALUE, "%zu values are given for %u %s", count, live,
                              he_kind_plural(column->domain));
     }
     he_status status = he_column_extend(column, issued - column->rows, err);
@@ -104,20 +104,20 @@ static he_status check_number(const he_column *column, const unsigned char *at, 
     case HE_UINT32:
         memcpy(&whole, at, sizeof whole);
         if (column->labels != NULL && whole >= he_labels_count(column->labels)) {
-            return he_fail_plain(err, HE_BAD_VALUE, "%u is beyond the %zu labels", whole,
-                                 he_labels_count(column->labels));
+            return he_fail_plain(err, HE_BAD_VALUE, "%u is not the index of one of the %zu labels",
+                                 whole, he_labels_count(column->labels));
         }
         break;
     case HE_FLOAT:
         memcpy(&single, at, sizeof single);
         if (!isfinite(single)) {
-            return he_fail_plain(err, HE_NOT_FINITE, "a float is not finite");
+            return he_fail_plain(err, HE_NOT_FINITE, "a value is not finite");
         }
         break;
     case HE_DOUBLE:
         memcpy(&number, at, sizeof number);
         if (!isfinite(number)) {
-            return he_fail_plain(err, HE_NOT_FINITE, "a double is not finite");
+            return he_fail_plain(err, HE_NOT_FINITE, "a value is not finite");
         }
         break;
     case HE_INT32:

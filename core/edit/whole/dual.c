@@ -62,7 +62,9 @@ static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error 
             he_face g = he_face_of(m, he_twin(h));
             if (seen_by[g.i] == i) {
                 return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, he_edge_of(h).i,
-                               "faces %u and %u share more than edge %u", i, g.i, he_edge_of(h).i);
+                               "faces %u and %u share more than edge %u, so the dual would have "
+                               "two edges between the same vertices",
+                               i, g.i, he_edge_of(h).i);
             }
             seen_by[g.i] = i;
             h = he_next(m, h);

@@ -137,11 +137,11 @@ static he_status rename_label(he_mesh *m, const char *name, bool has_row, const 
     }
     if (he_materials_find(&m->c.materials, to, strlen(to)) != SIZE_MAX ||
         has_label(column, to, &index)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is already a material %.80s", to);
+        return he_fail_plain(err, HE_BAD_VALUE, "there is already a material \"%.80s\"", to);
     }
     bool named = has_label(column, name, &index);
     if (!named && !has_row) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material %.80s to be renamed", name);
+        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to rename", name);
     }
     return named ? put_labels(m, column, name, to, NULL, err) : HE_OK;
 }
@@ -258,12 +258,10 @@ static he_status delete_in_bracket(he_mesh *m, const char *name, const char *to,
         return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\"", name);
     }
     if (to != NULL && !has_material(m, column, to)) {
-        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to take its place",
-                             to);
+        return he_fail_plain(err, HE_BAD_VALUE, "there is no material \"%.80s\" to replace it", to);
     }
     if (to != NULL && strcmp(name, to) == 0) {
-        return he_fail_plain(err, HE_BAD_VALUE, "the material \"%.80s\" cannot take its own place",
-                             to);
+        return he_fail_plain(err, HE_BAD_VALUE, "the material \"%.80s\" cannot replace itself", to);
     }
     if (has_label(column, name, &index)) {
         status = merge_labels(m, column, name, to != NULL ? to : "", err);

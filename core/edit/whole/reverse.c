@@ -67,9 +67,8 @@ static he_status check_edges(const he_mesh *m, const part *p, const uint64_t *ch
             he_face f = he_face_of(m, he_edge_halfedge((he_edge){p->edges.ids[i]}, side));
             if (f.i != HE_NONE && !he_bits_get(chosen, f.i)) {
                 return he_fail(err, HE_ORIENTATION, HE_EDGE, p->edges.ids[i],
-                               "face %u shares edge %u with a face to be reversed, and is not to "
-                               "be",
-                               f.i, p->edges.ids[i]);
+                               "face %u shares edge %u with a face to reverse: list it too", f.i,
+                               p->edges.ids[i]);
             }
         }
     }
@@ -85,9 +84,8 @@ static he_status check_vertices(const he_mesh *m, const part *p, const uint64_t 
             he_face f = he_face_of(m, h);
             if (f.i != HE_NONE && !he_bits_get(chosen, f.i)) {
                 return he_fail(err, HE_BOWTIE, HE_VERTEX, p->vertices.ids[i],
-                               "face %u shares vertex %u with a face to be reversed, and is not to "
-                               "be",
-                               f.i, p->vertices.ids[i]);
+                               "face %u shares vertex %u with a face to reverse: list it too", f.i,
+                               p->vertices.ids[i]);
             }
             h = he_turn_ccw(m, h);
         } while (h.i != first.i);
