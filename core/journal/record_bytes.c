@@ -153,7 +153,7 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
     st_record *r = &out->record;
     unsigned char bytes[4];
     if (!he_take_bytes(c, sizeof bytes, bytes)) {
-        return he_refuse_at(c, err, "the record ends within its head");
+        return he_refuse_at(c, err, "the record is cut short in its header");
     }
     *flags = bytes[2];
     if (!take_kind(bytes[1], &r->kind) || (*flags & ~(unsigned)ALL_FLAGS) != 0 || bytes[3] != 0) {
@@ -167,10 +167,10 @@ static he_status read_head(he_cursor *c, st_frame *out, unsigned *flags, he_erro
     if (!he_take_u64(c, &r->number) || !he_take_u64(c, &r->revision) ||
         !he_take_u64(c, &out->chain) || !he_take_bytes(c, sizeof r->time, &r->time) ||
         !take_numbers(c, r)) {
-        return he_refuse_at(c, err, "the head of the record is not whole");
+        return he_refuse_at(c, err, "the header of the record is cut short");
     }
     if (r->number == 0 || r->revision == 0 || !isfinite(r->time)) {
-        return he_refuse_at(c, err, "a number in the head of the record is out of range");
+        return he_refuse_at(c, err, "a number in the header of the record is out of range");
     }
     return HE_OK;
 }
@@ -180,20 +180,21 @@ static he_status read_rest(he_cursor *c, st_frame *out, he_error *err)
     st_record *r = &out->record;
     if (!take_text(c, out->ops, ST_FRAME_OPS) ||
         (is_named(r->kind) && !take_text(c, out->name, ST_MESH_NAME))) {
-        return he_refuse_at(c, err, "a text of the record is cut, too long or no UTF-8");
+        return he_refuse_at(c, err, "a text in the record is cut short, too long or not UTF-8");
     }
     if (r->tally.known && (!take_counts(c, r->tally.created) || !take_counts(c, r->tally.deleted) ||
                            !take_counts(c, r->tally.modified))) {
-        return he_refuse_at(c, err, "the tally of the record is not whole");
+        return he_refuse_at(c, err, "the totals in the record are cut short");
     }
     if (he_left(c) > 0 && (out->in_parts || !has_body(r->kind))) {
-        return he_refuse_at(c, err, "a body follows where there is none");
+        return he_refuse_at(c, err, "the record has a body, and its kind has none");
     }
     if (out->in_parts && !has_body(r->kind)) {
-        return he_refuse_at(c, err, "only a record with a content can have it in parts");
+        return he_refuse_at(c, err,
+                            "the record has its content in parts, and its kind has no content");
     }
     if (r->staged_edit && (!out->in_parts || r->kind != ST_RECORD_EDIT)) {
-        return he_refuse_at(c, err, "only an edit can have its body in parts");
+        return he_refuse_at(c, err, "the record has its body in parts, and is not an edit");
     }
     r->body = c->at;
     r->body_size = he_left(c);
@@ -205,17 +206,17 @@ he_status st_frame_read(const unsigned char *bytes, size_t size, st_frame *out, 
     he_cursor c = he_cursor_over(bytes, size);
     uint32_t sum;
     if (!he_take_u32(&c, &sum) || he_left(&c) == 0) {
-        return he_refuse_at(&c, err, "the record ends within its head");
+        return he_refuse_at(&c, err, "the record is cut short in its header");
     }
     if (st_crc32c(0, c.at, he_left(&c)) != sum) {
         return he_refuse_at(&c, err, "the checksum of the record is wrong");
     }
     if (*c.at != ST_FRAME_VERSION) {
         return *c.at < ST_FRAME_VERSION
-                   ? he_refuse_at(&c, err, "the record is of a version that never was")
+                   ? he_refuse_at(&c, err, "the record declares a version that no release wrote")
                    : he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, AT_VERSION,
-                                "the record is of version %u, this release reads version %d", *c.at,
-                                ST_FRAME_VERSION);
+                                "the record has version %u, and this release reads version %d",
+                                *c.at, ST_FRAME_VERSION);
     }
     /* The frame is decoded into a local variable first, so that a failure leaves *out as it was. */
     st_frame frame = {.record = {.ops = ""}};

@@ -161,7 +161,8 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
     }
     other_side *side = find_side(replay, crossing->key);
     if (side == NULL && !crossing->held) {
-        return he_fail_plain(err, HE_UNSUPPORTED, "the delta does not hold the side it leads to");
+        return he_fail_plain(err, HE_UNSUPPORTED,
+                             "the stored edit does not hold the state that it leads to");
     }
     if (side == NULL) {
         he_status status = side_of(crossing->delta, crossing->key, &side, err);

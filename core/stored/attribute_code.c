@@ -112,16 +112,18 @@ he_status he_head_take(he_cursor *c, he_column **out, he_error *err)
     char name[HE_COLUMN_NAME];
     he_column *column;
     if (!he_take_bytes(c, sizeof fixed, fixed)) {
-        return he_refuse_at(c, err, "the bytes end in the head of an attribute");
+        return he_refuse_at(c, err, "the stored bytes end inside the description of an attribute");
     }
     size_t length = fixed[4];
     if (fixed[0] >= DOMAINS || fixed[1] >= TYPES || fixed[2] >= RULES || fixed[3] == 0 ||
         fixed[3] > HE_COLUMN_COMPONENTS || length == 0 || length >= HE_COLUMN_NAME) {
         c->at -= sizeof fixed;
-        return he_refuse_at(c, err, "an attribute has no such domain, type, rule or size");
+        return he_refuse_at(
+            c, err,
+            "a stored attribute has an unknown domain, type or rule, or an impossible size");
     }
     if (length > he_left(c) || !is_text(c->at, length)) {
-        return he_refuse_at(c, err, "the name of an attribute is no text");
+        return he_refuse_at(c, err, "the name of a stored attribute is not UTF-8 text");
     }
     (void)he_take_bytes(c, length, name);
     name[length] = '\0';
@@ -132,7 +134,8 @@ he_status he_head_take(he_cursor *c, he_column **out, he_error *err)
     }
     if (!he_take_bytes(c, column->row_bytes, column->fallback)) {
         he_column_free(column);
-        return he_refuse_at(c, err, "the bytes end in the default of an attribute");
+        return he_refuse_at(c, err,
+                            "the stored bytes end inside the default value of an attribute");
     }
     *out = column;
     return HE_OK;
@@ -145,11 +148,11 @@ static he_status take_label(he_cursor *c, he_labels *labels, he_error *err)
     size_t count = he_labels_count(labels);
     if (!he_take_varint(c, SIZE_MAX, &length) || length > he_left(c) ||
         !is_text(c->at, (size_t)length)) {
-        return he_refuse_at(c, err, "a label is no text");
+        return he_refuse_at(c, err, "a stored label is not UTF-8 text");
     }
     he_status status = he_labels_add(labels, (const char *)c->at, (size_t)length, &index, err);
     if (status == HE_OK && index != count) {
-        return he_refuse_at(c, err, "a label is there twice");
+        return he_refuse_at(c, err, "a stored label appears twice");
     }
     c->at += length;
     return status;
@@ -159,7 +162,8 @@ he_status he_labels_take(he_cursor *c, he_labels **out, he_error *err)
 {
     uint64_t count;
     if (!he_take_varint(c, (uint64_t)he_left(c), &count)) {
-        return he_refuse_at(c, err, "there are more labels than bytes");
+        return he_refuse_at(c, err,
+                            "a stored attribute declares more labels than its bytes can hold");
     }
     if (count == 0) {
         *out = NULL;
@@ -210,12 +214,13 @@ he_status he_material_take(he_cursor *c, he_material **out, he_error *err)
                 he_take_bytes(c, 1, &sides) && sides <= 1 &&
                 he_take_varint(c, HE_MATERIAL_NAME, &length) && length <= he_left(c);
     if (!good) {
-        return he_refuse_at(c, err, "the bytes end in a material, or are none");
+        return he_refuse_at(c, err, "a stored material is cut short or malformed");
     }
     look.two_sided = sides == 1;
     he_status status = he_material_new((const char *)c->at, (size_t)length, &look, out, err);
     if (status != HE_OK && status != HE_NO_MEMORY) {
-        return he_refuse_at(&from, err, "a material has a name or numbers that none has");
+        return he_refuse_at(&from, err,
+                            "a stored material has an invalid name or an invalid number");
     }
     c->at += length;
     return status;

@@ -57,7 +57,7 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     uint64_t bytes = 0;
     bool taken = he_take_u32(&c, &magic) && he_take_u32(&c, &version) && he_take_u64(&c, &bytes);
     if (!taken || magic != HE_CONTENT_MAGIC) {
-        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0, "this is no stored mesh");
+        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0, "the bytes are not a stored mesh");
     }
     if (version != HE_STORED_VERSION) {
         return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
@@ -65,7 +65,8 @@ static he_status read_start(he_stored_reader *r, he_error *err)
                           version, (unsigned)HE_STORED_VERSION);
     }
     if (bytes < HE_CONTENT_HEADER || bytes % 8 != 0 || bytes > r->most) {
-        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 8, "the header cannot have %llu bytes",
+        return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 8,
+                          "the header of the stored mesh declares an impossible length: %llu bytes",
                           (unsigned long long)bytes);
     }
     r->header_wanted = bytes;
@@ -80,10 +81,10 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     uint64_t length, count = 0;
     uint32_t name;
     if (!he_take_bytes(c, 1, &kind) || !he_take_u64(c, &length) || length > he_left(c)) {
-        return he_refuse_at(c, err, "the header ends in an attribute");
+        return he_refuse_at(c, err, "the header of the stored mesh ends inside an attribute");
     }
     if (kind > HE_SLOT_ATTRIBUTE || (kind == HE_SLOT_EMPTY && length > 0)) {
-        return he_refuse_at(c, err, "there is no such kind of attribute");
+        return he_refuse_at(c, err, "the stored mesh holds an attribute of an unknown kind");
     }
     if (kind == HE_SLOT_EMPTY) {
         *out = NULL;
@@ -99,7 +100,8 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     }
     if (status == HE_OK &&
         (!he_take_varint(&slot, 2 * (uint64_t)HE_MAX_ROWS, &count) || he_left(&slot) > 0)) {
-        status = he_refuse_at(&slot, err, "the rows of an attribute are not told");
+        status = he_refuse_at(
+            &slot, err, "the number of values of a stored attribute is missing or out of range");
     }
     if (status == HE_OK) {
         char text[1 + HE_COLUMN_NAME];
@@ -108,7 +110,7 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
         memcpy(text + 1, column->name, size);
         status = he_labels_add(names, text, 1 + size, &name, err);
         if (status == HE_OK && name != known) {
-            status = he_refuse_at(&slot, err, "two attributes have one name");
+            status = he_refuse_at(&slot, err, "two stored attributes have the same name");
         }
     }
     if (status != HE_OK) {
@@ -145,7 +147,8 @@ static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, u
             column->rows = rows;
             *bytes += (uint64_t)rows * column->row_bytes;
             if (rows > he_content_issued(&r->c, column->domain)) {
-                status = he_refuse_at(c, err, "an attribute has rows without elements");
+                status = he_refuse_at(
+                    c, err, "a stored attribute has more values than the mesh has elements");
             }
         }
     }
@@ -156,19 +159,20 @@ static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, u
 /* Reads the table of materials. */
 static he_status read_materials(he_cursor *c, uint32_t slots, he_materials *out, he_error *err)
 {
-    he_status status = slots > HE_MATERIALS
-                           ? he_refuse_at(c, err, "there are more materials than a mesh has")
-                           : he_materials_reserve(out, slots, err);
+    he_status status =
+        slots > HE_MATERIALS
+            ? he_refuse_at(c, err, "the stored mesh has more materials than a mesh may have")
+            : he_materials_reserve(out, slots, err);
     for (uint32_t i = 0; i < slots && status == HE_OK; i++) {
         unsigned char kind;
         uint64_t length;
         he_material *row = NULL;
         if (!he_take_bytes(c, 1, &kind) || !he_take_u64(c, &length) || length > he_left(c)) {
-            return he_refuse_at(c, err, "the header ends in a material");
+            return he_refuse_at(c, err, "the header of the stored mesh ends inside a material");
         }
         if ((kind != HE_SLOT_EMPTY && kind != HE_SLOT_MATERIAL) ||
             (kind == HE_SLOT_EMPTY && length > 0)) {
-            return he_refuse_at(c, err, "there is no such kind of material");
+            return he_refuse_at(c, err, "the stored mesh holds a material of an unknown kind");
         }
         he_cursor slot = *c;
         c->at += length;
@@ -179,7 +183,8 @@ static he_status read_materials(he_cursor *c, uint32_t slots, he_materials *out,
         if (status == HE_OK &&
             (he_left(&slot) > 0 ||
              (row != NULL && he_materials_find(out, row->name, row->length) != SIZE_MAX))) {
-            status = he_refuse_at(&slot, err, "a material is longer than it says, or there twice");
+            status = he_refuse_at(&slot, err,
+                                  "a stored material has extra bytes, or its name appears twice");
         }
         if (status != HE_OK) {
             he_material_release(row);
@@ -261,7 +266,7 @@ static he_status read_header(he_stored_reader *r, he_error *err)
     c.at += HE_CONTENT_START;
     if (!read_rows(&c, &r->c, &slots, &materials) ||
         (uint64_t)slots + materials > he_left(&c) / HE_CONTENT_SLOT) {
-        return he_refuse_at(&c, err, "the counts of the mesh cannot be");
+        return he_refuse_at(&c, err, "the counts of elements in the stored mesh are impossible");
     }
     he_status status = read_slots(r, &c, slots, &bytes, err);
     if (status == HE_OK) {
@@ -275,11 +280,12 @@ static he_status read_header(he_stored_reader *r, he_error *err)
         zeros = *c.at == 0;
     }
     if (!zeros) {
-        return he_refuse_at(&c, err, "zeros end the header, as many as are needed");
+        return he_refuse_at(
+            &c, err, "the header of the stored mesh must end in fewer than 8 bytes of zeros");
     }
     r->total = r->header_size + he_content_array_bytes(&r->c) + bytes;
     if (r->total > r->most) {
-        return he_refuse_at(&c, err, "the mesh is longer than its parts");
+        return he_refuse_at(&c, err, "the stored mesh declares more bytes than its parts hold");
     }
     status = make_room(&r->c, err);
     if (status == HE_OK) {
@@ -322,7 +328,7 @@ static he_status take_array(he_stored_reader *r, bool as_links, size_t room, he_
         for (uint32_t link; done < most && he_left(c) > 0; done += sizeof link) {
             bool by_last = r->has_last && r->links == HE_LINKS_BY_LAST;
             if (!he_take_link(c, by_last ? r->last : r->row, &link)) {
-                return refuse(r, err, "a link is none");
+                return refuse(r, err, "the stored mesh holds an impossible link");
             }
             memcpy(r->to + done, &link, sizeof link);
             if (link < HE_DEAD) {
@@ -360,7 +366,7 @@ he_status he_stored_reader_part(he_stored_reader *r, unsigned coding, const unsi
     while (he_left(&c) > 0) {
         size_t room = HE_STORED_PART - (size_t)(r->at - from), taken = 0;
         if (room == 0 || r->at == r->total) {
-            return refuse(r, err, "a part is longer than it can be");
+            return refuse(r, err, "a part of the stored mesh is longer than expected");
         }
         he_status status;
         if (r->header_size < r->header_wanted) {
@@ -375,7 +381,7 @@ he_status he_stored_reader_part(he_stored_reader *r, unsigned coding, const unsi
         }
     }
     if (size == 0 || (r->at - from != HE_STORED_PART && r->at != r->total)) {
-        return refuse(r, err, "a part is shorter than it must be");
+        return refuse(r, err, "a part of the stored mesh is shorter than expected");
     }
     return HE_OK;
 }
@@ -383,7 +389,7 @@ he_status he_stored_reader_part(he_stored_reader *r, unsigned coding, const unsi
 he_status he_stored_reader_end(he_stored_reader *r, he_mesh **out, he_error *err)
 {
     if (r->at != r->total) {
-        return refuse(r, err, "parts of the mesh are missing");
+        return refuse(r, err, "parts of the stored mesh are missing");
     }
     he_mesh *mesh = he_mesh_new();
     if (mesh == NULL) {
@@ -409,7 +415,7 @@ he_status he_stored_content_read(const unsigned char *bytes, size_t size, he_mes
         unsigned char coding;
         uint32_t length;
         if (!he_take_bytes(&c, 1, &coding) || !he_take_u32(&c, &length) || length > he_left(&c)) {
-            status = he_refuse_at(&c, err, "a part is longer than the block");
+            status = he_refuse_at(&c, err, "a part of the stored mesh runs past the end");
         } else {
             status = he_stored_reader_part(r, coding, c.at, length, err);
             c.at += length;

@@ -36,7 +36,7 @@ static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, 
     *r = (edit_reader){.c = he_cursor_over(bytes, size)};
     unsigned char version;
     if (!he_take_bytes(&r->c, 1, &version)) {
-        return he_refuse_at(&r->c, err, "an edit of no bytes");
+        return he_refuse_at(&r->c, err, "the stored edit is empty");
     }
     if (version != HE_STORED_VERSION) {
         return he_fail_at(err, version > HE_STORED_VERSION ? HE_UNSUPPORTED : HE_CORRUPT,
@@ -44,7 +44,8 @@ static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, 
                           version, (unsigned)HE_STORED_VERSION);
     }
     if (!he_take_varint(&r->c, he_left(&r->c) / HE_CHANGE_LEAST, &r->changes)) {
-        return he_refuse_at(&r->c, err, "there are more changes than bytes");
+        return he_refuse_at(&r->c, err,
+                            "the stored edit declares more changes than its bytes can hold");
     }
     return HE_OK;
 }
@@ -55,10 +56,11 @@ static he_status begin_object(edit_reader *r, he_error *err)
     uint64_t length;
     if (!he_take_bytes(&r->c, 1, &kind) || !he_take_u64(&r->c, &length) ||
         length > he_left(&r->c)) {
-        return he_refuse_at(&r->c, err, "an object is longer than the edit");
+        return he_refuse_at(
+            &r->c, err, "a stored attribute, content or material runs past the end of the edit");
     }
     if (kind < HE_OBJECT_ADDED || kind > HE_OBJECT_MATERIAL) {
-        return he_refuse_at(&r->c, err, "there is no such kind of object");
+        return he_refuse_at(&r->c, err, "the stored edit holds an object of an unknown kind");
     }
     r->kind = (he_object)kind;
     r->object = r->c;
@@ -71,21 +73,25 @@ static he_status begin_run(edit_reader *r, he_error *err)
 {
     uint64_t tag, slot;
     if (!he_take_varint(&r->c, UINT64_MAX, &tag)) {
-        return he_refuse_at(&r->c, err, "the bytes end between changes");
+        return he_refuse_at(&r->c, err, "the stored edit ends before its last change");
     }
     if (tag % 16 >= HE_CODE_COUNT || tag / 16 >= r->changes) {
-        return he_refuse_at(&r->c, err, "there is no such kind of change, or not so many");
+        return he_refuse_at(
+            &r->c, err,
+            "the stored edit holds a change of an unknown kind, or more changes than it declares");
     }
     r->code = (he_code)(tag % 16);
     r->run = tag / 16 + 1;
     if (r->code == HE_CODE_ATTRIBUTE) {
         if (!he_take_varint(&r->c, MOST_SLOTS - 1, &slot)) {
-            return he_refuse_at(&r->c, err, "there is no such slot of attributes");
+            return he_refuse_at(&r->c, err, "the slot number of an attribute is out of range");
         }
         r->slot = (uint32_t)slot;
     }
     if (r->code == HE_CODE_OBJECT && r->run > 1) {
-        return he_refuse_at(&r->c, err, "objects come one by one");
+        return he_refuse_at(
+            &r->c, err,
+            "attributes, contents and materials must each be stored as a change of their own");
     }
     return r->code == HE_CODE_OBJECT ? begin_object(r, err) : HE_OK;
 }
@@ -153,14 +159,16 @@ static he_status next(edit_reader *r, he_record *out, he_error *err)
         out->column = column & 0xFFFFFFu;
         taken = lineage ? take_lineage(r, out) : values ? take_values(r, out) : take_links(r, out);
     }
-    return taken ? HE_OK : he_refuse_at(&r->c, err, "a change ends too soon, or its link is none");
+    return taken ? HE_OK
+                 : he_refuse_at(&r->c, err,
+                                "a stored change is cut short, or holds an impossible link");
 }
 
 static he_status take_slot(he_cursor *c, uint32_t *slot, he_error *err)
 {
     uint64_t value;
     if (!he_take_varint(c, MOST_SLOTS - 1, &value)) {
-        return he_refuse_at(c, err, "there is no such slot of attributes");
+        return he_refuse_at(c, err, "the slot number of an attribute is out of range");
     }
     *slot = (uint32_t)value;
     return HE_OK;
@@ -172,7 +180,8 @@ static he_status take_rows(he_cursor *c, he_column *column, he_error *err)
     uint64_t rows;
     if (!he_take_varint(c, 2 * (uint64_t)HE_MAX_ROWS, &rows) ||
         rows * column->row_bytes != he_left(c)) {
-        return he_refuse_at(c, err, "the values of an attribute are not as many as it says");
+        return he_refuse_at(c, err,
+                            "a stored attribute does not have as many values as it declares");
     }
     he_status status = he_column_reserve(column, (size_t)rows, err);
     if (status == HE_OK) {
@@ -221,12 +230,13 @@ static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t 
         status = he_head_take(c, &column, err);
     }
     if (status == HE_OK && he_left(c) > 0) {
-        status = he_refuse_at(c, err, "an object is longer than what it holds");
+        status = he_refuse_at(c, err, "extra bytes follow a stored attribute or material");
     }
     if (status == HE_OK && *slot < he_mesh_columns(mesh) && !he_bits_get(named, *slot)) {
         const he_column *there = he_mesh_column(mesh, *slot);
         if (there == NULL || !same_head(there, column)) {
-            status = he_refuse_at(c, err, "the mesh has another attribute than was dropped");
+            status = he_refuse_at(
+                c, err, "the mesh does not have the attribute that the stored edit removes");
         }
     }
     he_column_free(column);
@@ -238,7 +248,8 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     unsigned char renumbers;
     he_mesh *mesh;
     if (!he_take_bytes(c, 1, &renumbers) || renumbers > 1) {
-        return he_refuse_at(c, err, "a replace keeps ids (0) or renumbers (1)");
+        return he_refuse_at(c, err,
+                            "a stored replacement must say 0 (ids stay) or 1 (ids are new)");
     }
     he_content *taken = he_mem_alloc(sizeof *taken);
     he_status status = taken == NULL
@@ -264,13 +275,13 @@ static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot,
     uint64_t value;
     uint32_t mark;
     if (!he_take_varint(c, HE_MATERIALS - 1, &value) || !he_take_u32(c, &mark)) {
-        return he_refuse_at(c, err, "there is no such slot of materials");
+        return he_refuse_at(c, err, "the slot number of a material is out of range");
     }
     he_status status = he_left(c) > 0 ? he_material_take(c, row, err) : HE_OK;
     if (status == HE_OK && he_left(c) > 0) {
         he_material_release(*row);
         *row = NULL;
-        return he_refuse_at(c, err, "an object is longer than what it holds");
+        return he_refuse_at(c, err, "extra bytes follow a stored attribute or material");
     }
     *slot = (uint32_t)value;
     out->after = mark;
@@ -300,9 +311,11 @@ static he_status take_object(edit_reader *r, const he_mesh *mesh, uint64_t *name
         break;
     case HE_OBJECT_REPLACED:
         out->column = HE_COL_REPLACED;
-        status = delta->count > 0 || r->changes > 0
-                     ? he_refuse_at(&r->object, err, "a replace is the only change of its edit")
-                     : take_replaced(&r->object, out, &content, err);
+        status =
+            delta->count > 0 || r->changes > 0
+                ? he_refuse_at(&r->object, err,
+                               "a stored edit that replaces the content must hold no other change")
+                : take_replaced(&r->object, out, &content, err);
         break;
     case HE_OBJECT_MATERIAL:
         out->column = HE_COL_MATERIAL;
@@ -342,7 +355,7 @@ static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *del
         }
     }
     if (status == HE_OK && he_left(&r->c) > 0) {
-        status = he_refuse_at(&r->c, err, "bytes follow the last change");
+        status = he_refuse_at(&r->c, err, "extra bytes follow the last change of the stored edit");
     }
     he_mem_free(named);
     return status;
@@ -378,15 +391,16 @@ static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                           : mark >= now && mark - now <= delta->count && mark <= HE_MAX_ROWS;
         if (!good) {
             return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0,
-                              "an edit of %zu changes issues no %s up to %u", delta->count,
-                              he_kind_plural(tables[i]), mark);
+                              "a stored edit of %zu changes cannot give out ids of %s up to %u",
+                              delta->count, he_kind_plural(tables[i]), mark);
         }
     }
     for (size_t i = 0; i < delta->count && delta->object_count > 0; i++) {
         const he_record *r = &delta->records[i];
         if (r->column == HE_COL_COLUMN_ADDED && !fits(delta->objects[r->before], issued)) {
-            return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, 0,
-                              "the attribute that change %zu adds has rows without elements", i);
+            return he_fail_at(
+                err, HE_CORRUPT, HE_PLACE_BYTE, 0,
+                "the attribute that change %zu adds has more values than the mesh has elements", i);
         }
     }
     return HE_OK;

@@ -601,7 +601,7 @@ static void other_files_are_refused_by_name(void **state)
     expect_refused(folder,
                    "has version 7 of the tables, and this hedged 1.2.3 knows them up to version 3");
     run_sql("PRAGMA user_version = 3; PRAGMA application_id = 5");
-    expect_refused(folder, "is no store of hedged");
+    expect_refused(folder, "is not a store of hedged");
     run_sql("PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");
     expect_refused(folder, "is damaged");
     folder_write(folder, "hedge.db", (const unsigned char *)"no database at all", 18);

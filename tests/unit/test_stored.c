@@ -503,12 +503,13 @@ static void test_an_edit_names_the_change_that_does_not_fit(void **state)
         HE_CORRUPT);
     /* The change is refused at offset 2, where its run of changes begins: the version and the
      * number of runs come before. */
-    expect_text(&err, HE_CORRUPT, 2, "change 0 was made on another value than the mesh holds");
+    expect_text(&err, HE_CORRUPT, 2, "change 0 was made from another value than the mesh holds");
     run.issued[HE_EDGE] += 1000;
     assert_int_equal(
         he_stored_edit_forward(run.edit.bytes, run.edit.size, run.issued, run.before, &delta, &err),
         HE_CORRUPT);
-    expect_text(&err, HE_CORRUPT, 0, "an edit of 2 changes issues no edges up to 1009");
+    expect_text(&err, HE_CORRUPT, 0,
+                "a stored edit of 2 changes cannot give out ids of edges up to 1009");
     run_clear(&run);
 }
 
@@ -523,7 +524,7 @@ static void test_a_small_content_gets_no_large_memory(void **state)
     fixture_fail_at(0);
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_CORRUPT);
-    assert_string_equal(err.text, "the mesh is longer than its parts");
+    assert_string_equal(err.text, "the stored mesh declares more bytes than its parts hold");
     assert_true(fixture_memory.calls <= 4);
     fixture_memory_back();
     run_clear(&run);
@@ -590,7 +591,7 @@ static void test_a_large_mesh_is_read_part_by_part(void **state)
     for (uint64_t less = 1; less <= he_stored_parts(m); less++) {
         assert_int_equal(read_parts(m, less, &read, &err), HE_CORRUPT);
         assert_int_equal(err.at, (he_stored_parts(m) - less) * HE_STORED_PART);
-        assert_string_equal(err.text, "parts of the mesh are missing");
+        assert_string_equal(err.text, "parts of the stored mesh are missing");
         assert_null(read);
     }
     stored_bytes block = stored_content(m);

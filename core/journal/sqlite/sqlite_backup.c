@@ -85,7 +85,7 @@ static bool check_store(st_db *db, const char *file, char message[ST_SQLITE_MESS
         return false;
     }
     if (empty) {
-        return st_refuse(message, "%.300s is no store of hedged", file);
+        return st_refuse(message, "%.300s is not a store of hedged", file);
     }
     if (!check_structure(db, file, message)) {
         return false;
@@ -158,8 +158,8 @@ static bool may_be_backup(const char *store, const char *file, char message[ST_S
     for (size_t i = 0; i < OWN_NAMES; i++) {
         if ((in_store && strcmp(name, own_names[i]) == 0) ||
             (there && names_file_of(store, own_names[i], &status))) {
-            return st_refuse(message, "%.300s is %s of a store: give the backup a name of its own",
-                             file, own_names[i]);
+            return st_refuse(message, "%.300s is %s of a store: give the backup another name", file,
+                             own_names[i]);
         }
     }
     return st_sqlite_has_no_log(
@@ -182,7 +182,7 @@ static bool has_space(st_db *from, const char *file, char message[ST_SQLITE_MESS
     const uint64_t need = (uint64_t)pages * 4096 + SPARE_BYTES;
     const uint64_t there = (uint64_t)system.f_bavail * system.f_frsize;
     return there >= need ||
-           st_refuse(message, "%.300s: a backup takes %llu MiB, and %llu MiB are free", file,
+           st_refuse(message, "%.300s: a backup needs %llu MiB, and %llu MiB are free", file,
                      (unsigned long long)(need >> 20), (unsigned long long)(there >> 20));
 }
 
@@ -297,7 +297,7 @@ static bool open_readers(st_sqlite *self, const char *path, st_sqlite_opened *ou
         return false;
     }
     if (empty) {
-        return st_refuse(out->message, "%.300s is no store of hedged", file);
+        return st_refuse(out->message, "%.300s is not a store of hedged", file);
     }
     if (st_progress_read(&self->cards, &self->progress) == ST_SQL_DONE) {
         self->meshes = self->progress.meshes;

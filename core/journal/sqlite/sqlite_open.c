@@ -28,7 +28,7 @@ bool st_sqlite_explain(const st_db *db, const char *path, st_sql outcome,
             "`hedged --dump` saves them; `hedged --restore` puts a backup in its place",
             path, damage_of(db));
     case ST_SQL_FULL:
-        return st_refuse(message, "%.300s: the disk is full; a store needs some MiB to start",
+        return st_refuse(message, "%.300s: the disk is full, and a store needs a few MiB to start",
                          path);
     case ST_SQL_BUSY:
         return st_refuse(message, "%.300s is locked by another program", path);
@@ -82,7 +82,7 @@ bool st_sqlite_check_version(st_db *db, const char *path, const char *release, b
     }
     *empty = tables == 0 && application == 0 && version == 0;
     if (!*empty && application != ST_SCHEMA_APPLICATION) {
-        return st_refuse(message, "%.300s is no store of hedged", path);
+        return st_refuse(message, "%.300s is not a store of hedged", path);
     }
     return version <= ST_SCHEMA_VERSION ||
            st_refuse(message,
@@ -117,11 +117,10 @@ static bool compare_mark(st_sqlite *self, st_sqlite_opened *out)
         return true;
     }
     if (mark.store != self->identity.store) {
-        return st_refuse(
-            out->message,
-            "%.300s/hedge.mark is of another store than hedge.db: put back the two that "
-            "belong together, or use `hedged --restore`",
-            self->folder.path);
+        return st_refuse(out->message,
+                         "%.300s/hedge.mark belongs to another store than hedge.db: put back the "
+                         "two files that belong together, or use `hedged --restore`",
+                         self->folder.path);
     }
     return mark.commits <= self->progress.commits ||
            st_refuse(
@@ -306,7 +305,7 @@ static bool start_thread(st_sqlite *self, st_sqlite_opened *out)
     sqlite3_wal_hook(self->db.handle, st_commit_log_grew, self);
     self->has_thread = pthread_create(&self->thread, NULL, st_commit_thread, self) == 0;
     if (!self->has_thread) {
-        return st_refuse(out->message, "no threads to start");
+        return st_refuse(out->message, "the threads of the store cannot be started");
     }
     return true;
 }

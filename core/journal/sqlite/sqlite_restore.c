@@ -261,11 +261,10 @@ bool st_sqlite_finish_restore(st_folder *folder)
     /* If the copy is gone, it was renamed before the restore was interrupted. */
     if (st_folder_finds(folder, "restored.db")) {
         if (!read_note(folder, before)) {
-            return st_refuse(
-                folder->message,
-                "%.300s has a file `restoring` that does not say where its store goes: a "
-                "restore was interrupted; begin it again",
-                folder->path);
+            return st_refuse(folder->message,
+                             "%.300s has a file `restoring` that does not name its store: a "
+                             "restore was interrupted; run it again",
+                             folder->path);
         }
         if (!move_old(folder, before)) {
             return false;

@@ -64,11 +64,11 @@ unsigned st_sqlite_faults(const st_journal *journal, st_say *say, void *context)
         told++;
     }
     if (st_identity_read(&self->cards, &identity) != ST_SQL_DONE) {
-        say(context, "what the store says of itself (table meta) cannot be read");
+        say(context, "its version and settings (table meta) cannot be read");
         told++;
     }
     if (st_progress_read(&self->cards, &progress) != ST_SQL_DONE) {
-        say(context, "how far the store is (table state) cannot be read");
+        say(context, "the number of its last commit (table state) cannot be read");
         told++;
     }
     self->salvage.on = told > 0;
