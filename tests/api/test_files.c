@@ -133,7 +133,7 @@ static void warnings_that_find_no_room_are_counted(void **state)
     }
     assert_int_equal(said + more, ATTRIBUTES);
     assert_true(said > 20 && strlen(text) <= 1000);
-    assert_memory_equal(text, "not carried: attribute 'face attribute_00'; ", 44);
+    assert_memory_equal(text, "not written: attribute 'face attribute_00'; ", 44);
     bench_reply_free(&r);
     bench_free(b);
 }

@@ -161,7 +161,7 @@ static void a_buffer_that_did_not_come_is_named(void **state)
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("x/a.bin"), 0},
                                                  {"y/a.bin", NULL, BIN},
                                                  {"z/a.bin", NULL, BIN}}));
-    expect_refused(400, "bad_value", "a buffer of 36 bytes of which 2 are there",
+    expect_refused(400, "bad_value", "the buffer should have 36 bytes, and only 2 were sent",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0},
                                                  {"a.bin", NULL, "12", 0}}));

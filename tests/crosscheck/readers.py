@@ -472,7 +472,7 @@ def facts_differ(kind, facts, answer):
 # Differences between the two readers that are intended: the format, which one refuses, with which
 # words, and why.
 KNOWN = [
-    ('stl', 'daemon', 'facets that are announced', 'a count that lies may hide facets'),
+    ('stl', 'daemon', 'facets that it declares', 'a count that lies may hide facets'),
     ('stl', 'daemon', 'in(side)? a facet|the fourth of a facet|ends with', 'the reference drops it'),
     ('stl', 'daemon', 'control character', 'a name that nothing could show'),
     ('stl', 'daemon', 'it has no facets', 'unknown words and nothing else'),

@@ -36,7 +36,7 @@ static void containers(void **state)
         {12, 0xFFFFFFF0, HE_SYNTAX, 12, "a chunk of 4294967280 bytes"},
         {12, (uint32_t)json + 2, HE_SYNTAX, at + 4, "a chunk of 5130562 bytes"},
         {16, 0x004E4942, HE_SYNTAX, 16, "the first chunk is not \"JSON\""},
-        {at + 4, 0x4E4F534A, HE_SYNTAX, at + 4, "a second JSON chunk"},
+        {at + 4, 0x4E4F534A, HE_SYNTAX, at + 4, "there is a second JSON chunk"},
         {at, 0xFFFFFFF0, HE_SYNTAX, at, "a chunk of 4294967280 bytes"},
         {at, 97, HE_SYNTAX, at, "a chunk of 97 bytes"},
         {at, 94, HE_BAD_VALUE, 58, "of which 94 are there"},
@@ -69,10 +69,12 @@ static void containers(void **state)
     he_import import = {0};
     he_error err = {0};
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
-    assert_non_null(strstr(err.text, "buffers/0: the buffer has no bytes in the file"));
+    assert_non_null(strstr(
+        err.text, "buffers/0: the buffer has no URI, and the file has no binary chunk for it"));
     glb_make(&f, "{" DATA "," MESHES "}", bin, 0);
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_BAD_VALUE);
-    assert_non_null(strstr(err.text, "buffers/0: a buffer of 96 bytes of which 0 are there"));
+    assert_non_null(
+        strstr(err.text, "buffers/0: the buffer should have 96 bytes, and only 0 were sent"));
     glb_make(&f, "", NULL, 0);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, 20, "the text ends");
     expect_refused_at_byte("gltf", "", 0, HE_SYNTAX, 0, "the text ends");
@@ -197,7 +199,8 @@ static void references_and_numbers(void **state)
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'type':'VEC3'}"), HE_BAD_VALUE,
          "accessors/0: 'count' is missing"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':5,'type':'VEC3'}"),
-         HE_BAD_VALUE, "accessors/0: 5 elements of 12 bytes from byte 0 of a view of 48"},
+         HE_BAD_VALUE,
+         "accessors/0: 5 elements of 12 bytes from byte 0 do not fit in a buffer view of 48"},
         {WITH_ACCESSOR("{'componentType':5126,'count':4000000000,'type':'VEC3'}"), HE_LIMIT,
          "accessors/0: 4000000000 elements are more than a mesh can have"},
         {WITH_ACCESSOR("{'componentType':5126,'count':9007199254740992,'type':'VEC3'}"), HE_LIMIT,
@@ -219,7 +222,7 @@ static void references_and_numbers(void **state)
                        "'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0/byteOffset: -12 is not"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5124,'count':4,'type':'VEC3'}"),
-         HE_BAD_VALUE, "there is no componentType 5124"},
+         HE_BAD_VALUE, "componentType 5124 does not exist"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5130,'count':4,'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0/componentType: 5130"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC5'}"),
@@ -229,15 +232,16 @@ static void references_and_numbers(void **state)
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5125,'count':4,'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0: positions are VEC3"},
         {WITH_ACCESSOR("{'bufferView':7,'componentType':5126,'count':4,'type':'VEC3'}"),
-         HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7 of 5"},
+         HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7; the file has 5"},
         {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: this is not an object"},
         /* mistakes in buffer views and buffers */
         {WITH_VIEW("{'byteLength':48}"), HE_BAD_VALUE, "bufferViews/0: 'buffer' is missing"},
-        {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX, "there is no buffer 1 of 1"},
+        {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX,
+         "there is no buffer 1; the file has 1"},
         {WITH_VIEW("{'buffer':0}"), HE_BAD_VALUE, "'byteLength' is missing"},
         {WITH_VIEW("{'buffer':0,'byteLength':97}"), HE_BAD_VALUE, "bytes 0 to 97 of a buffer"},
         {WITH_VIEW("{'buffer':0,'byteOffset':49,'byteLength':48}"), HE_BAD_VALUE,
-         "bufferViews/0: bytes 49 to 97 of a buffer of 96"},
+         "bufferViews/0: bytes 49 to 97 are outside a buffer of 96"},
         {WITH_VIEW("{'buffer':0,'byteOffset':9007199254740991,'byteLength':9007199254740991}"),
          HE_BAD_VALUE, "bufferViews/0: bytes"},
         {WITH_VIEW("{'buffer':0,'byteOffset':-4,'byteLength':48}"), HE_BAD_VALUE,
@@ -245,10 +249,11 @@ static void references_and_numbers(void **state)
         {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':2147483647}"), HE_BAD_VALUE,
          "bufferViews/0/byteStride: 2147483647 is not a whole number from 0 to 252"},
         {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':4}"), HE_BAD_VALUE,
-         "elements of 12 bytes at a stride of 4"},
+         "elements of 12 bytes overlap, because the stride is only 4"},
         {WITH_VIEW("{'buffer':0,'byteLength':48,'byteStride':16}"), HE_BAD_VALUE,
          "accessors/0: 4 elements"},
-        {"{" ASSET ",'buffers':[{'byteLength':97}]}", HE_BAD_VALUE, "of 97 bytes of which 96"},
+        {"{" ASSET ",'buffers':[{'byteLength':97}]}", HE_BAD_VALUE,
+         "should have 97 bytes, and only 96"},
         {"{" ASSET ",'buffers':[{}]}", HE_BAD_VALUE, "buffers/0: 'byteLength' is missing"},
         {"{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':4}]}", HE_BAD_VALUE,
          "buffers/1: the buffer has no bytes"},
@@ -257,28 +262,29 @@ static void references_and_numbers(void **state)
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'http://169.254.169.254/'}]}",
          HE_UNSUPPORTED, "buffers/0/uri: the buffer is in another file, 'http://169.254.169.254/'"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:,abc'}]}", HE_UNSUPPORTED,
-         "buffers/0/uri: a data: URI that is not in base64"},
+         "buffers/0/uri: the data: URI is not base64"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,A-=='}]}", HE_SYNTAX,
          "buffers/0/uri: the data: URI is not base64"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data:;base64,AAAA'}]}", HE_BAD_VALUE,
-         "buffers/0: a buffer of 96 bytes of which 3"},
+         "buffers/0: the buffer should have 96 bytes, and only 3"},
         {"{" ASSET ",'buffers':3}", HE_BAD_VALUE, "buffers: this is not an array"},
         {"{" ASSET ",'buffers':[{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}},"
          "{'byteLength':9,'extensions':{'EXT_meshopt_compression':{}}}]}",
-         HE_BAD_VALUE, "buffers/1: the buffer has no bytes in the file"},
+         HE_BAD_VALUE, "buffers/1: the buffer has no URI, and the file has no binary chunk for it"},
         /* mistakes in normals and other directions */
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'NORMAL':4},'indices':1}"), HE_BAD_VALUE,
-         "accessors/4: NORMAL has componentType 5126, not 5121"},
+         "accessors/4: NORMAL must have componentType 5126, not 5121"},
         {"{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
          ",{'bufferView':4,'componentType':5120,'count':4,'type':'VEC3','normalized':true}],"
          "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':5},'indices':1}]}]}",
-         HE_BAD_VALUE, "accessors/5: NORMAL has componentType 5126, not 5120"},
+         HE_BAD_VALUE, "accessors/5: NORMAL must have componentType 5126, not 5120"},
         {"{" ASSET "," BUFFERS "," VIEWS ",'extensionsUsed':['KHR_mesh_quantization'],"
          "'accessors':[" ACCESSOR_LIST
          ",{'bufferView':4,'componentType':5121,'count':4,'type':'VEC4','normalized':true}],"
          "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'TANGENT':5},'indices':1}]}]}",
          HE_BAD_VALUE,
-         "accessors/5: TANGENT has componentType 5126, or 5120 or 5122 and is normalized, not "
+         "accessors/5: TANGENT must have componentType 5126, or 5120 or 5122 with `normalized`, "
+         "not "
          "5121"},
         /* mistakes in primitives */
         {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
@@ -291,11 +297,11 @@ static void references_and_numbers(void **state)
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'mode':7}"), HE_BAD_VALUE,
          "meshes/0/primitives/0/mode: 7 is not a whole number from 0 to 6"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':2}"), HE_BAD_VALUE,
-         "meshes/0/primitives/0: 4 corners are no whole number of triangles"},
+         "meshes/0/primitives/0: 4 corners do not make a whole number of triangles"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0,'_A':1},'indices':1}"), HE_BAD_VALUE,
-         "attributes/_A: 6 values for 4 vertices"},
+         "attributes/_A: 6 values are given for 4 vertices"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'material':0}"), HE_BAD_INDEX,
-         "there is no material 0 of 0"},
+         "there is no material 0; the file has 0"},
         {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "this is not an object"},
         {"{" DATA ",'meshes':[{}]}", HE_BAD_VALUE, "meshes/0: 'primitives' is missing"},
         /* mistakes in nodes */
@@ -353,7 +359,7 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "sparse/values: 'bufferView' is missing"},
         /* extensions that the reader does not know */
         {"{" ASSET ",'extensionsRequired':['KHR_draco_mesh_compression']}", HE_UNSUPPORTED,
-         "extensionsRequired/0: Draco compression is not read: unpack it first, as "
+         "extensionsRequired/0: Draco compression is not supported: unpack it first, as "
          "\"gltf-transform copy"},
         {"{" ASSET ",'extensionsRequired':['EXT_meshopt_compression','KHR_meshopt_compression']}",
          HE_UNSUPPORTED, "extensionsRequired/1: the file needs the extension KHR_meshopt"},
@@ -362,7 +368,8 @@ static void references_and_numbers(void **state)
          "'primitives':[{'attributes':{'POSITION':0},'extensions':{'KHR_draco_mesh_compression':"
          "{}}}]}]}",
          HE_UNSUPPORTED,
-         "the primitive is there in Draco compression only: unpack it first, as \"gltf-transform"},
+         "the primitive is stored only with Draco compression, which is not supported: unpack it "
+         "first, as \"gltf-transform"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].status == HE_OK) {
@@ -537,7 +544,7 @@ static void bombs(void **state)
         put(&w, ",0");
     }
     put(&w, "]}");
-    expect_bomb(&w, HE_LIMIT, "JSON of more than 8388608 values");
+    expect_bomb(&w, HE_LIMIT, "JSON: there are more than 8388608 values");
     put(&w, "{'asset':{'version':'2.0'},'extras':{'x':0");
     for (int i = 0; i < 500000; i++) {
         snprintf(part, sizeof part, ",'%d':0", i);

@@ -131,9 +131,9 @@ static void positions_beyond_floats_are_counted_and_refused(void **state)
         const char *format, *encoding, *text;
     } rows[] = {
         {"stl", "binary",
-         "vertex 1 has a coordinate beyond the floats of this format (and 1 more)"},
+         "vertex 1 has a coordinate too large for the floats of this format (and 1 more)"},
         {"glb", "binary",
-         "vertex 0 has a coordinate beyond the floats of this format (and 2 more)"},
+         "vertex 0 has a coordinate too large for the floats of this format (and 2 more)"},
         {"stl", "ascii", NULL},
         {"ply", "binary", NULL},
         {"obj", "ascii", NULL},

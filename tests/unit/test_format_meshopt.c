@@ -223,7 +223,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {CORNERS("'mode':'ATTRIBUTES','count':4294967296,'byteStride':16"), NULL, HE_BAD_VALUE,
          "/count: 4294967296"},
         {CORNERS("'mode':'ATTRIBUTES','count':2000000000,'byteStride':256"), NULL, HE_BAD_VALUE,
-         "2000000000 elements of 256 bytes do not fit in"},
+         "2000000000 elements of 256 bytes cannot be compressed to"},
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':0"), NULL, HE_BAD_VALUE,
          "/byteStride: 0"},
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':14"), NULL, HE_BAD_VALUE,
@@ -237,18 +237,18 @@ static void what_the_extension_forbids_is_refused(void **state)
         {CORNERS("'mode':'ATTRIBUTES','filter':'QUATERNION','count':4,'byteStride':16"), NULL,
          HE_BAD_VALUE, "the filter is of another byteStride"},
         {CORNERS("'mode':'ATTRIBUTES','count':3,'byteStride':16"), NULL, HE_BAD_VALUE,
-         "a view of 64 bytes that unpacks to 48"},
+         "the buffer view declares 64 bytes, but decompresses to 48"},
         {CORNERS("'mode':'ATTRIBUTES','count':200,'byteStride':16"), NULL, HE_SYNTAX,
-         "the bytes are no packed ATTRIBUTES of 200"},
+         "the bytes are not compressed ATTRIBUTES of 200"},
         {CORNERS("'mode':'TRIANGLES','count':6,'byteStride':4"), NULL, HE_SYNTAX,
-         "the bytes are no packed TRIANGLES"},
+         "the bytes are not compressed TRIANGLES"},
         {"{'buffer':2,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
-         HE_BAD_INDEX, "there is no buffer 2 of 2"},
+         HE_BAD_INDEX, "there is no buffer 2; the file has 2"},
         {"{'buffer':1,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
-         HE_BAD_VALUE, "buffer 1 is a fallback that has no bytes"},
+         HE_BAD_VALUE, "buffer 1 is a fallback without bytes"},
         {"{'buffer':0,'byteOffset':1024,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,"
          "'byteStride':16}",
-         NULL, HE_BAD_VALUE, "of a buffer of 1024"},
+         NULL, HE_BAD_VALUE, "are outside a buffer of 1024"},
         {"{'buffer':0,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL, HE_BAD_VALUE,
          "'byteLength' is missing"},
         {NULL, INDICES("'mode':'TRIANGLES','count':7,'byteStride':2"), HE_BAD_VALUE,
@@ -260,13 +260,13 @@ static void what_the_extension_forbids_is_refused(void **state)
         {NULL, INDICES("'mode':'TRIANGLES','filter':'EXPONENTIAL','count':6,'byteStride':2"),
          HE_BAD_VALUE, "only ATTRIBUTES have a filter"},
         {NULL, INDICES("'mode':'TRIANGLES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
-         "2000000001 elements of 2 bytes do not fit in"},
+         "2000000001 elements of 2 bytes cannot be compressed to"},
         {NULL, INDICES("'mode':'INDICES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
-         "2000000001 elements of 2 bytes do not fit in"},
+         "2000000001 elements of 2 bytes cannot be compressed to"},
         {NULL, INDICES("'mode':'TRIANGLES','count':3,'byteStride':2"), HE_BAD_VALUE,
-         "a view of 12 bytes that unpacks to 6"},
+         "the buffer view declares 12 bytes, but decompresses to 6"},
         {NULL, INDICES("'mode':'INDICES','count':6,'byteStride':2"), HE_SYNTAX,
-         "the bytes are no packed INDICES"},
+         "the bytes are not compressed INDICES"},
     };
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -320,7 +320,7 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED,
                           "ATTRIBUTES packed by version 1, where EXT_meshopt_compression has 0");
     b.bytes[0] = 0xB0;
-    expect_packed_refused(&b, first, second, HE_SYNTAX, "the bytes are no packed ATTRIBUTES");
+    expect_packed_refused(&b, first, second, HE_SYNTAX, "the bytes are not compressed ATTRIBUTES");
     b.bytes[0] = 0xA0;
     b.bytes[b.at] = 0xE2;
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED, "TRIANGLES packed by version 2");
@@ -429,7 +429,7 @@ static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
     expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
                         "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
                         "," MESHES "}",
-                        HE_BAD_VALUE, "buffer 0 is a fallback that has no bytes");
+                        HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
     expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
                         "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
                         "," ACCESSORS "," MESHES "}",

@@ -35,9 +35,9 @@ static void wrong_text_names_its_line(void **state)
         {ASCII "element vertex -1\n", HE_SYNTAX, 3, "'-1' is not a count"},
         {ASCII "element vertex 1.5\n", HE_SYNTAX, 3, "'1.5' is not a count"},
         {ASCII "element vertex 4294967295\n", HE_BAD_VALUE, 3, "'4294967295' rows"},
-        {ASCII "element vertex 2147483647\n", HE_BAD_VALUE, 3, "more than there can be"},
-        {ASCII "element face 18446744073709551616\n", HE_BAD_VALUE, 3, "more than there can be"},
-        {ASCII "element x 281474976710657\n", HE_BAD_VALUE, 3, "more than there can be"},
+        {ASCII "element vertex 2147483647\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
+        {ASCII "element face 18446744073709551616\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
+        {ASCII "element x 281474976710657\n", HE_BAD_VALUE, 3, "more than a mesh can have"},
         {ASCII "element vertex 1 2\n", HE_SYNTAX, 3, "one word too many"},
         {ASCII "element vertex 1\nelement vertex 1\n", HE_SYNTAX, 4, "the name of two elements"},
         {ASCII "property float x\n", HE_SYNTAX, 3, "before any element"},
@@ -110,21 +110,22 @@ static void wrong_rows_name_their_line(void **state)
         {ROWS POINTS "x 0 1 2\n", HE_SYNTAX, 14, "'x' is not the count of a list"},
         {ROWS POINTS "4 0 1 2\n", HE_SYNTAX, 14, "'face' ends before its last value"},
         {ROWS "0 0 0 1\n# the end", HE_SYNTAX, 12, "after 1 of the 3 rows of element 'vertex'"},
-        {ROWS POINTS "3 0 1 -1\n", HE_BAD_INDEX, 14, "no vertex -1, only 0 to 2"},
+        {ROWS POINTS "3 0 1 -1\n", HE_BAD_INDEX, 14, "no vertex -1; the vertices are 0 to 2"},
         {ROWS POINTS "3 0 1 3\n", HE_BAD_INDEX, 14, "no vertex 3"},
         {ROWS POINTS "3 0 1 4294967297\n", HE_BAD_INDEX, 14, "no vertex 4294967297"},
         {ROWS POINTS "3 0 1 18446744073709551617\n", HE_BAD_INDEX, 14, "no vertex"},
         {ROWS POINTS "3 0 1 1.0\n", HE_SYNTAX, 14, "'1.0' is not a corner"},
         {ROWS POINTS "3 0 1 2\n3 0 1\n", HE_SYNTAX, 15, "ends before its last value"},
         {FRACTIONS "3 0 0 0.5\n", HE_BAD_INDEX, 11, "the float 0.5 does not name a vertex"},
-        {FRACTIONS "3 0 0 1.0\n", HE_BAD_INDEX, 11, "there is no vertex 1, only 0 to 0"},
+        {FRACTIONS "3 0 0 1.0\n", HE_BAD_INDEX, 11,
+         "there is no vertex 1; the vertices are 0 to 0"},
         {FRACTIONS "3 0 0 -1e0\n", HE_BAD_INDEX, 11, "there is no vertex -1"},
         {FRACTIONS "3 0 0 nan\n", HE_BAD_INDEX, 11, "does not name a vertex"},
         {FRACTIONS "3 0 0 1e999\n", HE_BAD_INDEX, 11, "does not name a vertex"},
         {FRACTIONS "3 0 0 16777218\n", HE_BAD_INDEX, 11, "the float 16777218 does not name"},
         {FRACTIONS "3 0 0 x\n", HE_SYNTAX, 11, "'x' is not a number"},
         {ASCII "element face 1\n" CORNER "end_header\n3 0 1 2\n", HE_BAD_INDEX, 6,
-         "no vertex 0, nor any other"},
+         "no vertex 0: the file has none"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         expect_refused("ply", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
@@ -143,7 +144,7 @@ static void wrong_bytes_name_their_place(void **state)
         {{3, 0, 1, 2, -9}, HE_SYNTAX, 13, "after 1 of the 2 rows of element 'face'"},
         {{3, 0, 1, 2, 3, 0, 1, -9}, HE_SYNTAX, 22, "after 1 of the 2 rows"},
         {{-1, -9}, HE_BAD_VALUE, 0, "a list cannot have -1 values"},
-        {{3, 0, 1, 3, -9}, HE_BAD_INDEX, 9, "no vertex 3, only 0 to 2"},
+        {{3, 0, 1, 3, -9}, HE_BAD_INDEX, 9, "no vertex 3; the vertices are 0 to 2"},
         {{3, 0, -1, 2, -9}, HE_BAD_INDEX, 5, "no vertex -1"},
         {{3, 0, 1, 2, 127, 0, -9}, HE_SYNTAX, 18, "after 1 of the 2 rows"},
     };
@@ -187,7 +188,7 @@ static void fractions_of_bytes_name_their_place(void **state)
                 {DOUBLE, 1e300, "does not name a vertex"},
                 {FLOAT, INFINITY, "does not name a vertex"},
                 {DOUBLE, NAN, "does not name a vertex"},
-                {DOUBLE, 3, "there is no vertex 3, only 0 to 2"}};
+                {DOUBLE, 3, "there is no vertex 3; the vertices are 0 to 2"}};
     for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             file f;
@@ -236,8 +237,8 @@ static void counts_are_not_believed(void **state)
         he_status status;
         const char *words;
     } rows[] = {
-        {"element vertex 4294967295\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than there can be"},
-        {"element vertex 18446744073709551616\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than there can"},
+        {"element vertex 4294967295\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than a mesh can have"},
+        {"element vertex 18446744073709551616\n" XYZ, {0, 0}, HE_BAD_VALUE, "more than a mesh can"},
         {"element vertex 357913942\n" XYZ, {0, 0}, HE_SYNTAX, "after 0 of the 357913942 rows"},
         {"element vertex 2147483646\n" XYZ, {0, 0}, HE_SYNTAX, "after 0 of the 2147483646 rows"},
         {"element x 4000000000\nelement vertex 0\n" XYZ, {0, 0}, HE_SYNTAX, "no properties"},
@@ -248,7 +249,7 @@ static void counts_are_not_believed(void **state)
         {"element face 1\nproperty list uint int vertex_indices\n",
          {4294967295, 0},
          HE_BAD_VALUE,
-         "4294967295 corners are more than a mesh can have"},
+         "the file has 4294967295 corners, more than a mesh can have"},
         {"element face 1\nproperty list uint int vertex_indices\n",
          {2147483646, 0},
          HE_BAD_INDEX,
@@ -301,7 +302,7 @@ static void limits_are_kept(void **state)
         {{.vertices = 2}, "more than 2 vertices"},
         {{.faces = 1}, "more than 1 faces"},
         {{.corners = 5}, "more than 5 corners"},
-        {{.corners = 2}, "3 corners are more than the limit of 2"},
+        {{.corners = 2}, "the file has 3 corners, more than the limit of 2"},
         {{.bytes = 190}, "more than 190 bytes"},
     };
     static const char text[] = ROWS POINTS "3 0 1 2\n3 0 2 1\n";

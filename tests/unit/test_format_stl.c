@@ -255,11 +255,11 @@ static void wrong_text_names_its_line(void **state)
         const char *words;
     } rows[] = {
         {"solid state physics\nis fun\n", HE_SYNTAX, 2, "not an STL file"},
-        {"solid\nvertex 0 0 0\n", HE_SYNTAX, 2, "'vertex' is not in a facet"},
-        {"solid\n" ONE "endfacet\n", HE_SYNTAX, 9, "'endfacet' is not in a facet"},
+        {"solid\nvertex 0 0 0\n", HE_SYNTAX, 2, "'vertex' is outside a facet"},
+        {"solid\n" ONE "endfacet\n", HE_SYNTAX, 9, "'endfacet' is outside a facet"},
         {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", HE_SYNTAX, 5, "with 2 corners"},
         {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nvertex 3 0 0\n", HE_SYNTAX, 6,
-         "is the fourth of a facet"},
+         "is a fourth vertex in one facet"},
         {"solid\nfacet\nvertex 0 0 a\n", HE_SYNTAX, 3, "'a' is not a number"},
         {"solid\nfacet\nvertex 0 0\nendfacet\n", HE_SYNTAX, 4, "'endfacet' is not a number"},
         {"solid\nfacet\nvertex 0 nan 0\n", HE_NOT_FINITE, 3, "'nan' is not finite"},

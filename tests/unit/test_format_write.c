@@ -252,7 +252,7 @@ static void what_is_lost_is_named(void **state)
     assert_non_null(find_note(&notes, "attribute_lost", "edge weight"));
     char sentence[100];
     he_note_text(find_note(&notes, "attribute_lost", "edge weight"), sentence, sizeof sentence);
-    assert_string_equal(sentence, "not carried: attribute 'edge weight'");
+    assert_string_equal(sentence, "not written: attribute 'edge weight'");
     free(text);
     he_mesh_free(mesh);
 }

@@ -75,7 +75,7 @@ test('an OBJ is dropped with its library, and a buffer that is missing is named'
     await drop([['a.mtl', 'newmtl red\nKd 1 0 0\n'], ['tile.obj', OBJ]]);
     await page.locator('#mesh-title').filter({ hasText: /^tile$/ }).waitFor();
     await drop([['part.gltf', gltf('part.bin')], ['other.bin', '1']]);
-    await expectToast(page, /no file 'part.bin' came for the buffer; what came is other.bin/);
+    await expectToast(page, /the file 'part.bin' of a buffer was not sent; the files sent are other.bin/);
     const { items } = await get(daemon, '');
     assert.deepEqual(items.map(({ name }) => name), ['tile']);
 });

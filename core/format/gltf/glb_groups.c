@@ -243,7 +243,7 @@ static he_status make(finding *f, he_notes *notes, he_error *err)
     bool found = find_groups(f);
     for (size_t tries = 0; !found && tries < 2; tries++) {
         he_notes_add(notes, "not_apart",
-                     "not told apart, being too many for other programs:", told[tries],
+                     "too many to be separate parts for other programs, so merged:", told[tries],
                      strlen(told[tries]), HE_PLACE_NONE, 0);
         g->names[HE_GLB_OBJECT] = g->names[HE_GLB_GROUP] = NULL;
         g->names[HE_GLB_MATERIAL] = tries > 0 ? NULL : g->names[HE_GLB_MATERIAL];

@@ -251,7 +251,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
         return; /* other programs see it too */
     }
-    he_notes_add(notes, "in_extras", "kept where only hedge looks: attribute", subject,
+    he_notes_add(notes, "in_extras", "stored so that only hedge reads it back: attribute", subject,
                  (size_t)length, HE_PLACE_NONE, 0);
 }
 

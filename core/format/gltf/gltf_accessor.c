@@ -27,8 +27,8 @@ static he_status get_type(const he_gltf *asset, uint32_t object, he_gltf_type *t
     he_status status =
         he_gltf_need(asset, object, "componentType", HE_GLTF_INT8, HE_GLTF_FLOAT, &code, err);
     if (status == HE_OK && code == HE_GLTF_UINT32 - 1) {
-        status =
-            he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "there is no componentType 5124");
+        status = he_json_fail(&asset->json, object, err, HE_BAD_VALUE,
+                              "componentType 5124 does not exist in glTF");
     }
     if (status == HE_OK) {
         *type = (he_gltf_type)code;
@@ -118,19 +118,21 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
     stride = stride == 0 ? size : stride;
     if (stride < size) {
         return he_json_fail(json, view, err, HE_BAD_VALUE,
-                            "elements of %zu bytes at a stride of %llu", size,
+                            "elements of %zu bytes overlap, because the stride is only %llu", size,
                             (unsigned long long)stride);
     }
     if (offset > length || size > length - offset ||
         count - 1 > (length - offset - size) / stride) {
-        return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "%llu elements of %zu bytes from byte %llu of a view of %llu",
-                            (unsigned long long)count, size, (unsigned long long)offset,
-                            (unsigned long long)length);
+        return he_json_fail(
+            json, object, err, HE_BAD_VALUE,
+            "%llu elements of %zu bytes from byte %llu do not fit in a buffer view of %llu bytes",
+            (unsigned long long)count, size, (unsigned long long)offset,
+            (unsigned long long)length);
     }
     if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
-        he_notes_add(&asset->into->notes, "misaligned", "read all the same: misaligned numbers",
-                     NULL, 0, HE_PLACE_BYTE, he_json_place(json, object));
+        he_notes_add(&asset->into->notes, "misaligned",
+                     "read although they are misaligned: numbers", NULL, 0, HE_PLACE_BYTE,
+                     he_json_place(json, object));
     }
     *out = (span){part.bytes + offset, (size_t)stride,
                   part.place == HE_GLTF_NOWHERE ? part.place : part.place + offset};
@@ -149,8 +151,8 @@ static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32
         uint32_t index = he_gltf_whole(a->changed_type, a->changed_index + i * bytes);
         if (index < least || index >= a->count) {
             return he_json_fail(&asset->json, sparse, err, HE_BAD_INDEX,
-                                "index %u, number %llu of the sparse ones, does not rise or is not "
-                                "below %llu",
+                                "sparse index %u (number %llu) is not greater than the one before, "
+                                "or not less than %llu",
                                 index, (unsigned long long)i, (unsigned long long)a->count);
         }
         least = (uint64_t)index + 1;
@@ -175,14 +177,14 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     if (status == HE_OK && a->changed_type != HE_GLTF_UINT8 && a->changed_type != HE_GLTF_UINT16 &&
         a->changed_type != HE_GLTF_UINT32) {
         status = he_json_fail(json, indices, err, HE_BAD_VALUE,
-                              "indices are of componentType 5121, 5123 or 5125");
+                              "sparse indices must have componentType 5121, 5123 or 5125");
     }
     if (status == HE_OK) {
         size_t bytes = he_gltf_type_bytes(a->changed_type);
         status = get_span(asset, indices, a->changed, bytes, bytes, &found, err);
         if (status == HE_OK && found.stride != bytes) {
-            status =
-                he_json_fail(json, indices, err, HE_BAD_VALUE, "sparse indices have no stride");
+            status = he_json_fail(json, indices, err, HE_BAD_VALUE,
+                                  "the buffer view of sparse indices must not have a byteStride");
         }
     }
     if (status != HE_OK) {
@@ -193,7 +195,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     size_t bytes = element_bytes(a);
     status = get_span(asset, values, a->changed, bytes, he_gltf_type_bytes(a->type), &found, err);
     if (status == HE_OK && found.stride != bytes) {
-        status = he_json_fail(json, values, err, HE_BAD_VALUE, "sparse values have no stride");
+        status = he_json_fail(json, values, err, HE_BAD_VALUE,
+                              "the buffer view of sparse values must not have a byteStride");
     }
     if (status != HE_OK) {
         return status;

@@ -24,10 +24,11 @@ he_status he_gltf_tell(he_gltf *asset, he_error *err)
 he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err)
 {
     if (bytes > asset->room) {
-        return he_json_fail(
-            &asset->json, value, err, HE_LIMIT,
-            "the scene makes more than %llu MiB and %llu times the file of geometry",
-            (unsigned long long)(HE_GLTF_ROOM >> 20), (unsigned long long)HE_GLTF_FACTOR);
+        return he_json_fail(&asset->json, value, err, HE_LIMIT,
+                            "the scene unfolds to more than %llu MiB of geometry, and more than "
+                            "%llu times the file",
+                            (unsigned long long)(HE_GLTF_ROOM >> 20),
+                            (unsigned long long)HE_GLTF_FACTOR);
     }
     asset->room -= bytes;
     return HE_OK;
@@ -42,8 +43,9 @@ he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const
         return status;
     }
     if (index >= list->count) {
-        return he_json_fail(&asset->json, value, err, HE_BAD_INDEX, "there is no %s %llu of %zu",
-                            what, (unsigned long long)index, list->count);
+        return he_json_fail(&asset->json, value, err, HE_BAD_INDEX,
+                            "there is no %s %llu; the file has %zu", what,
+                            (unsigned long long)index, list->count);
     }
     *item = list->ids[index];
     /* The caller visits all members of the item, so their number is charged to the asset's
@@ -112,11 +114,11 @@ static he_status check_version(const he_gltf *asset, he_error *err)
     }
     he_json_string(json, version, text, sizeof text);
     if (text[0] != '2' || (text[1] != '.' && text[1] != '\0')) {
-        return he_json_fail(json, version, err, HE_UNSUPPORTED, "glTF of a version other than 2");
+        return he_json_fail(json, version, err, HE_UNSUPPORTED, "the version of glTF is not 2");
     }
     if (least != HE_NONE && !he_json_is(json, least, "2.0")) {
         return he_json_fail(json, least, err, HE_UNSUPPORTED,
-                            "a reader of more than 2.0 is needed");
+                            "the file needs a reader of a later version than glTF 2.0");
     }
     return HE_OK;
 }
@@ -156,12 +158,12 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
         asset->quantized |= quantized;
         if (he_json_is(json, i, "KHR_draco_mesh_compression")) {
             return he_json_fail(json, i, err, HE_UNSUPPORTED,
-                                "Draco compression is not read: " HE_GLTF_UNDRACO);
+                                "Draco compression is not supported: " HE_GLTF_UNDRACO);
         }
         if (!quantized && !packed && !begins_with_any(json, i, looks)) {
             he_quote(name, name + length, quoted, sizeof quoted);
             return he_json_fail(json, i, err, HE_UNSUPPORTED,
-                                "the file needs the extension %s, which is not read", quoted);
+                                "the file needs the extension %s, which is not supported", quoted);
         }
     }
     list = he_json_find(json, 0, "extensionsUsed");

@@ -199,8 +199,8 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
         return HE_OK;
     }
     return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
-                        "%s has componentType 5126%s, not %d", known->semantic,
-                        asset->quantized ? ", or 5120 or 5122 and is normalized" : "",
+                        "%s must have componentType 5126%s, not %d", known->semantic,
+                        asset->quantized ? ", or 5120 or 5122 with `normalized`" : "",
                         (int)a->type);
 }
 
@@ -236,13 +236,15 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
         return HE_OK;
     }
     if (column != NULL && (column->type != type || column->components != a->components)) {
-        note_ignored(s, "attribute_types", "ignored, being of another type than before: attribute",
-                     semantic, value);
+        note_ignored(
+            s, "attribute_types",
+            "ignored, because an earlier part of the file has it with another type: attribute",
+            semantic, value);
         return HE_OK;
     }
     if (column == NULL && soup->column_count == HE_GLTF_ATTRIBUTES) {
-        return he_json_fail(&s->asset->json, value, err, HE_LIMIT, "more than %d attributes",
-                            (int)HE_GLTF_ATTRIBUTES);
+        return he_json_fail(&s->asset->json, value, err, HE_LIMIT,
+                            "the mesh would have more than %d attributes", (int)HE_GLTF_ATTRIBUTES);
     }
     he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
     return he_soup_column(soup, name, HE_VERTEX, type, a->components, rule, out, err);
@@ -269,8 +271,9 @@ static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, u
     he_json_string(json, name, semantic, sizeof semantic);
     he_status status = he_gltf_accessor_get(s->asset, value, &a, err);
     if (status == HE_OK && a.count != p->positions.count) {
-        return he_json_fail(json, value, err, HE_BAD_VALUE, "%llu values for %llu vertices",
-                            (unsigned long long)a.count, (unsigned long long)p->positions.count);
+        return he_json_fail(json, value, err, HE_BAD_VALUE,
+                            "%llu values are given for %llu vertices", (unsigned long long)a.count,
+                            (unsigned long long)p->positions.count);
     }
     if (status == HE_OK) {
         status = open_column(s, p, semantic, &a, &known, &column, err);
@@ -311,8 +314,9 @@ void he_gltf_note_attributes(he_gltf_surface *surface)
             continue;
         }
         size_t before = into->notes.count;
-        he_notes_add(&into->notes, "vertices_without", "set to 0 where it was not given: attribute",
-                     column->name, strlen(column->name), HE_PLACE_NONE, 0);
+        he_notes_add(&into->notes, "vertices_without",
+                     "set to 0 at vertices without a value: attribute", column->name,
+                     strlen(column->name), HE_PLACE_NONE, 0);
         if (into->notes.count > before) {
             into->notes.items[before].count = all - given;
         }

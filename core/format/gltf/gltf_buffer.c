@@ -62,7 +62,8 @@ static he_status find_beside(he_gltf *asset, he_gltf_buffer *buffer, uint32_t ur
         }
         he_beside_list(beside, came, sizeof came);
         return he_json_fail(&asset->json, uri, err, HE_UNSUPPORTED,
-                            "no file '%s' came for the buffer; what came is %s", quoted, came);
+                            "the file '%s' of a buffer was not sent; the files sent are %s", quoted,
+                            came);
     }
     *buffer = (he_gltf_buffer){.bytes = (const unsigned char *)file->bytes,
                                .length = file->length,
@@ -78,7 +79,7 @@ static he_status decode_data(he_gltf *asset, he_gltf_buffer *buffer, uint32_t ur
     static const char coding[] = ";base64";
     size_t head = comma == NULL ? 0 : (size_t)(comma - text), size = sizeof coding - 1;
     if (head < size || memcmp(comma - size, coding, size) != 0) {
-        return he_json_fail(json, uri, err, HE_UNSUPPORTED, "a data: URI that is not in base64");
+        return he_json_fail(json, uri, err, HE_UNSUPPORTED, "the data: URI is not base64");
     }
     length -= head + 1;
     *buffer =
@@ -140,7 +141,7 @@ static he_status find_bytes(he_gltf *asset, size_t i, uint32_t value, const he_g
     }
     if (i > 0 || bin->bytes == NULL) {
         return he_json_fail(&asset->json, value, err, HE_BAD_VALUE,
-                            "the buffer has no bytes in the file");
+                            "the buffer has no URI, and the file has no binary chunk for it");
     }
     *buffer = (he_gltf_buffer){.bytes = bin->bytes, .length = bin->length, .place = bin->place};
     if (bin->length > length && bin->length - length > 3) {
@@ -162,7 +163,7 @@ static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_
     }
     if (status == HE_OK && buffer->bytes != NULL && buffer->length < length) {
         return he_json_fail(&asset->json, value, err, HE_BAD_VALUE,
-                            "a buffer of %llu bytes of which %llu are there",
+                            "the buffer should have %llu bytes, and only %llu were sent",
                             (unsigned long long)length, (unsigned long long)buffer->length);
     }
     buffer->length = length;

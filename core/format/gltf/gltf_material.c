@@ -28,7 +28,7 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
     for (unsigned number = 2; he_labels_find(names, name, strlen(name), &index); number++) {
         if (number == 2) {
             note(asset, value, "material_renamed",
-                 "numbered, since another has its name: a material", own);
+                 "renamed with a number, because another has the same name: material", own);
         }
         number = number > FEW && number <= i ? (unsigned)i + 1
                                              : number; /* so the next one is mostly free */
@@ -88,12 +88,12 @@ static void read_opacity(reading *r, uint32_t value, he_look *look)
     he_json_string(json, he_json_find(json, value, "name"), name, sizeof name);
     if (mode == HE_NONE || he_json_is(json, mode, "OPAQUE")) {
         if (look->base_color[3] < 1) {
-            note(r->asset, value, "opaque", "set to 1, being OPAQUE: the opacity of the material",
-                 name);
+            note(r->asset, value, "opaque",
+                 "set to 1, because alphaMode is OPAQUE: the opacity of material", name);
         }
         look->base_color[3] = 1;
     } else if (he_json_is(json, mode, "MASK")) {
-        note(r->asset, value, "ignored_mask", "ignored: the alphaCutoff of the material", name);
+        note(r->asset, value, "ignored_mask", "ignored: the alphaCutoff of material", name);
     }
 }
 
@@ -146,11 +146,12 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     r.odd |= he_look_clamp(&look);
     if (r.odd) {
         note(asset, value, "material_range",
-             "set to its default or the end of its range: a number of the material", name);
+             "replaced by the default or the nearest allowed value: a number of material", name);
     }
     he_status status = he_material_new(name, strlen(name), &look, &row, err);
     if (status == HE_BAD_VALUE) { /* the name has a control character */
-        note(asset, value, "material_name", "left out, for its name: a material", name);
+        note(asset, value, "material_name",
+             "left out, because its name has a control character: material", name);
         return HE_OK;
     }
     if (status == HE_OK) {

@@ -17,8 +17,8 @@ bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive)
 static void note_stale(he_gltf_surface *s, uint32_t value)
 {
     he_notes_add(&s->asset->into->notes, "stale_extras",
-                 "ignored: what the extras say, since it does not fit the geometry", NULL, 0,
-                 HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
+                 "ignored, because they do not fit the geometry: hedge's own data in extras", NULL,
+                 0, HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
 }
 
 /* Returns true if a failure is about memory, limits or cancellation and must be reported. Any other

@@ -97,11 +97,12 @@ static he_status take_header(glb *g, he_error *err)
                           "not a GLB file: it does not begin with \"glTF\"");
     }
     if (version != 2) {
-        return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, 4, "GLB of version %u, not 2",
-                          version);
+        return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_BYTE, 4,
+                          "the version of the GLB file is %u, not 2", version);
     }
     if (g->length < HEADER + CHUNK) {
-        return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, 8, "a file of %llu bytes holds no chunk",
+        return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, 8,
+                          "a GLB file of %llu bytes cannot hold a chunk",
                           (unsigned long long)g->length);
     }
     return HE_OK;
@@ -132,21 +133,23 @@ static he_status take_chunk(glb *g, he_error *err)
     size_t number = g->chunks++;
     if (g->left > g->length - g->offset) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at,
-                          "a chunk of %llu bytes where the file says that it has %llu more",
+                          "a chunk declares %llu bytes, but the file has only %llu more",
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
-        he_notes_add(&g->into->notes, "unaligned_chunk", "a chunk whose length is no multiple of 4",
-                     NULL, 0, HE_PLACE_BYTE, at);
+        he_notes_add(&g->into->notes, "unaligned_chunk",
+                     "read although its length is not a multiple of 4: a chunk", NULL, 0,
+                     HE_PLACE_BYTE, at);
         g->padding = 4 - g->left % 4;
     }
     if ((type == JSON_CHUNK) != (number == 0)) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at + 4,
-                          number == 0 ? "the first chunk is not \"JSON\"" : "a second JSON chunk");
+                          number == 0 ? "the first chunk is not \"JSON\""
+                                      : "there is a second JSON chunk");
     }
     if (type == BIN_CHUNK && number != 1) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at + 4,
-                          "a BIN chunk that is not the second one");
+                          "a BIN chunk must be the second chunk");
     }
     g->chunk = type == JSON_CHUNK ? &g->json : type == BIN_CHUNK ? &g->bin : NULL;
     g->has_bin |= type == BIN_CHUNK;
@@ -189,7 +192,7 @@ static he_status glb_feed(void *state, const void *bytes, size_t n, he_error *er
         }
         if (g->begun && g->offset + g->head_length == g->length) {
             return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, g->length,
-                              "the file goes on after the %llu bytes it says it has",
+                              "the file is longer than the %llu bytes that its header declares",
                               (unsigned long long)g->length);
         }
         size_t size = g->begun ? CHUNK : HEADER, part = size - g->head_length;
@@ -214,16 +217,17 @@ static he_status glb_finish(void *state, he_error *err)
     uint64_t at = g->offset + g->head_length;
     if (!g->begun) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at,
-                          "not a GLB file: its header has twelve bytes");
+                          "not a GLB file: it ends inside its header of 12 bytes");
     }
     if (at < g->length) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, at,
-                          "the file ends before the %llu bytes it says it has",
+                          "the file is shorter than the %llu bytes that its header declares",
                           (unsigned long long)g->length);
     }
     if (g->head_length > 0 && g->head_length != g->padding) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, g->offset,
-                          "%zu bytes behind the last chunk, which are no chunk", g->head_length);
+                          "%zu bytes follow the last chunk and are too few for another",
+                          g->head_length);
     }
     he_status status = read_asset(g->into, &g->json, &g->bin, g->has_bin, err);
     forget(&g->json);

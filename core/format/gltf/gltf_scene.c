@@ -68,7 +68,7 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     double largest = fmax(fmax(fabs(q[0]), fabs(q[1])), fmax(fabs(q[2]), fabs(q[3])));
     if (largest == 0) {
         return he_json_fail(json, he_json_find(json, node, "rotation"), err, HE_BAD_VALUE,
-                            "a quaternion of length 0 is no rotation");
+                            "a rotation cannot be a quaternion of length 0");
     }
     double sum = 0;
     for (int i = 0; i < 4; i++) {
@@ -77,7 +77,7 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
         he_notes_add(&asset->into->notes, "rotation_made_unit",
-                     "made a quaternion of length 1: a rotation", NULL, 0, HE_PLACE_BYTE,
+                     "normalized to length 1: the quaternion of a rotation", NULL, 0, HE_PLACE_BYTE,
                      he_json_place(json, node));
     }
     for (int i = 0; i < 4; i++) {

@@ -43,7 +43,8 @@ static he_status get_whole(he_gltf *asset, uint32_t primitive, uint32_t value,
     he_status status = he_gltf_accessor_get(asset, value, out, err);
     if (status == HE_OK && packed != HE_NONE && out->bytes == NULL) {
         return he_json_fail(json, packed, err, HE_UNSUPPORTED,
-                            "the primitive is there in Draco compression only: " HE_GLTF_UNDRACO);
+                            "the primitive is stored only with Draco compression, which is not "
+                            "supported: " HE_GLTF_UNDRACO);
     }
     return status;
 }
@@ -54,7 +55,7 @@ static he_status get_positions(he_gltf *asset, he_gltf_primitive *p, uint32_t va
     he_status status = get_whole(asset, p->value, value, a, err);
     if (status == HE_OK && (a->components != 3 || a->matrix || a->type == HE_GLTF_UINT32)) {
         return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
-                            "positions are VEC3 of floats, or of bytes and shorts");
+                            "positions must be VEC3 of floats, or of bytes or shorts");
     }
     return status;
 }
@@ -66,7 +67,7 @@ static he_status get_indices(he_gltf *asset, he_gltf_primitive *p, uint32_t valu
     bool whole = a->type == HE_GLTF_UINT8 || a->type == HE_GLTF_UINT16 || a->type == HE_GLTF_UINT32;
     if (status == HE_OK && (a->components != 1 || !whole)) {
         return he_json_fail(&asset->json, a->value, err, HE_BAD_VALUE,
-                            "indices are SCALAR of componentType 5121, 5123 or 5125");
+                            "indices must be SCALAR with componentType 5121, 5123 or 5125");
     }
     p->indexed = true;
     return status;
@@ -77,7 +78,7 @@ static he_status count_faces(const he_gltf *asset, he_gltf_primitive *p, he_erro
     uint64_t corners = p->indexed ? p->indices.count : p->positions.count;
     if (p->mode == TRIANGLES && corners % 3 != 0) {
         return he_json_fail(&asset->json, p->value, err, HE_BAD_VALUE,
-                            "%llu corners are no whole number of triangles",
+                            "%llu corners do not make a whole number of triangles",
                             (unsigned long long)corners);
     }
     p->faces = p->mode < TRIANGLES    ? 0
@@ -183,9 +184,10 @@ static he_status add_face(he_gltf_surface *s, const he_gltf_primitive *p, const 
 static he_status bad_index(const he_gltf_surface *s, const he_gltf_primitive *p, uint64_t i,
                            uint32_t index, he_error *err)
 {
-    he_status status = he_json_fail(&s->asset->json, p->value, err, HE_BAD_INDEX,
-                                    "index %u, number %llu, names none of the %llu vertices", index,
-                                    (unsigned long long)i, (unsigned long long)p->positions.count);
+    he_status status =
+        he_json_fail(&s->asset->json, p->value, err, HE_BAD_INDEX,
+                     "index %u (number %llu) is out of range: there are %llu vertices", index,
+                     (unsigned long long)i, (unsigned long long)p->positions.count);
     if (err != NULL) {
         err->at = he_gltf_element_place(s->asset, &p->indices, p->value, i);
     }
@@ -398,9 +400,10 @@ static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const h
         return he_spans_merge(spans, soup->face_count, column, own, err);
     }
     if (spans->changes.count > 0) {
-        he_notes_add(&into->notes, "attribute_types",
-                     "ignored, being of another type than before: attribute", name, strlen(name),
-                     HE_PLACE_NONE, 0);
+        he_notes_add(
+            &into->notes, "attribute_types",
+            "ignored, because an earlier part of the file has it with another type: attribute",
+            name, strlen(name), HE_PLACE_NONE, 0);
     }
     return HE_OK;
 }

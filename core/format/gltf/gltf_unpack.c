@@ -18,7 +18,8 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
     uint64_t buffer = 0, start = 0, length = 0;
     he_status status = he_gltf_need(asset, object, "buffer", 0, HE_JSON_WHOLE, &buffer, err);
     if (status == HE_OK && buffer >= asset->buffer_count) {
-        status = he_json_fail(json, object, err, HE_BAD_INDEX, "there is no buffer %llu of %zu",
+        status = he_json_fail(json, object, err, HE_BAD_INDEX,
+                              "there is no buffer %llu; the file has %zu",
                               (unsigned long long)buffer, asset->buffer_count);
     }
     if (status == HE_OK) {
@@ -33,12 +34,13 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
     const he_gltf_buffer *b = &asset->buffers[buffer];
     if (start + length > b->length) {
         return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "bytes %llu to %llu of a buffer of %llu", (unsigned long long)start,
-                            (unsigned long long)(start + length), (unsigned long long)b->length);
+                            "bytes %llu to %llu are outside a buffer of %llu bytes",
+                            (unsigned long long)start, (unsigned long long)(start + length),
+                            (unsigned long long)b->length);
     }
     if (b->bytes == NULL) {
         return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "buffer %llu is a fallback that has no bytes",
+                            "buffer %llu is a fallback without bytes, and cannot be read",
                             (unsigned long long)buffer);
     }
     *out = (he_gltf_buffer){.bytes = b->bytes + start,
@@ -68,7 +70,7 @@ static he_status find_word(const he_gltf *asset, uint32_t object, const char *na
     }
     return value == HE_NONE
                ? he_json_fail(json, object, err, HE_BAD_VALUE, "'%s' is missing", name)
-               : he_json_fail(json, value, err, HE_UNSUPPORTED, "this is no %s that is read", name);
+               : he_json_fail(json, value, err, HE_UNSUPPORTED, "this %s is not supported", name);
 }
 
 static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_stream *out,
@@ -112,12 +114,12 @@ static he_status check_stream(const he_gltf *asset, uint32_t object,
                                                        : (int)HE_MESHOPT_INDEX_VERSION;
     if (packed->length < least) {
         return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "%llu elements of %zu bytes do not fit in %llu packed ones",
+                            "%llu elements of %zu bytes cannot be compressed to only %llu bytes",
                             (unsigned long long)stream->count, stream->stride,
                             (unsigned long long)packed->length);
     }
     if (version < 0) {
-        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are no packed %s",
+        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are not compressed %s",
                             he_meshopt_modes[stream->mode]);
     }
     if (version > latest) {
@@ -152,14 +154,14 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     uint64_t bytes = stream.count * stream.stride;
     if (length > bytes) {
         return he_json_fail(json, view, err, HE_BAD_VALUE,
-                            "a view of %llu bytes that unpacks to %llu", (unsigned long long)length,
-                            (unsigned long long)bytes);
+                            "the buffer view declares %llu bytes, but decompresses to %llu",
+                            (unsigned long long)length, (unsigned long long)bytes);
     }
     if (bytes > asset->unpack_room) {
-        return he_json_fail(json, object, err, HE_LIMIT,
-                            "the file unpacks to more than %llu MiB and %llu times its own bytes",
-                            (unsigned long long)(HE_GLTF_ROOM >> 20),
-                            (unsigned long long)HE_GLTF_UNPACKED);
+        return he_json_fail(
+            json, object, err, HE_LIMIT,
+            "the file decompresses to more than %llu MiB, and more than %llu times its size",
+            (unsigned long long)(HE_GLTF_ROOM >> 20), (unsigned long long)HE_GLTF_UNPACKED);
     }
     asset->unpack_room -= bytes;
     asset->room += 2 * bytes;
@@ -170,7 +172,8 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     }
     if (!he_meshopt_decode(&stream, packed.bytes, (size_t)packed.length, own)) {
         he_mem_free(own);
-        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are no packed %s of %llu",
+        return he_json_fail(json, object, err, HE_SYNTAX,
+                            "the bytes are not compressed %s of %llu elements",
                             he_meshopt_modes[stream.mode], (unsigned long long)stream.count);
     }
     *out = (he_gltf_buffer){.bytes = own, .own = own, .length = length, .place = HE_GLTF_NOWHERE};

@@ -14,8 +14,8 @@ static uint32_t find_private(const he_gltf *asset)
 static void note_stale(he_gltf *asset, uint32_t value)
 {
     he_notes_add(&asset->into->notes, "stale_extras",
-                 "ignored: what the extras say, since it does not fit the geometry", NULL, 0,
-                 HE_PLACE_BYTE, he_json_place(&asset->json, value));
+                 "ignored, because they do not fit the geometry: hedge's own data in extras", NULL,
+                 0, HE_PLACE_BYTE, he_json_place(&asset->json, value));
 }
 
 /* --- checking whether the scene is as hedge wrote it --- */

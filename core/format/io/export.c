@@ -47,7 +47,7 @@ he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes, he_er
                      (unsigned long long)narrowed->beyond - 1);
         }
         return he_fail(err, HE_BEYOND_FLOAT, HE_VERTEX, narrowed->first,
-                       "vertex %u has a coordinate beyond the floats of this format%s",
+                       "vertex %u has a coordinate too large for the floats of this format%s",
                        narrowed->first, more);
     }
     he_notes_add_count(notes, "rounded", "rounded to floats: a position", narrowed->rounded);
@@ -122,7 +122,7 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
             char subject[HE_COLUMN_NAME + 16];
             int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
                                   column->name);
-            he_notes_add(notes, "attribute_lost", "not carried: attribute", subject, (size_t)length,
+            he_notes_add(notes, "attribute_lost", "not written: attribute", subject, (size_t)length,
                          HE_PLACE_NONE, 0);
         }
     }

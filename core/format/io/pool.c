@@ -14,7 +14,8 @@ he_status he_pool_add(he_pool *pool, const double value[3], uint64_t limit, he_e
     if (pool->count == pool->capacity) {
         size_t capacity = he_mem_grown(pool->capacity, pool->count + 1);
         if (pool->count >= HE_MAX_ROWS || (limit != 0 && capacity * sizeof *pool->values > limit)) {
-            return he_fail_plain(err, HE_LIMIT, "more than %zu texture coordinates or normals",
+            return he_fail_plain(err, HE_LIMIT,
+                                 "the file has more than %zu texture coordinates or normals",
                                  pool->count);
         }
         double(*values)[3] = he_mem_array(pool->values, capacity, sizeof *values);

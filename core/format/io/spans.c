@@ -100,7 +100,7 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char
             unsigned control = (unsigned char)name[i];
             he_mem_free(name);
             return he_line_fail(err, HE_SYNTAX, line, begin,
-                                "a name holds the control character %u", control);
+                                "a name contains the control character %u", control);
         }
     }
     *own = name;

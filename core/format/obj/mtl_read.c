@@ -79,13 +79,13 @@ static he_status end_material(library *l, he_error *err)
         return HE_OK;
     }
     if (l->length > HE_MATERIAL_NAME) {
-        note(l, "material_name", "left out, for the length of its name: a material", l->name,
+        note(l, "material_name", "left out, because its name is too long: material", l->name,
              l->length);
         return HE_OK;
     }
     if (he_look_clamp(&l->look)) {
-        note(l, "material_range", "set to the end of its range: a number of the material", l->name,
-             l->length);
+        note(l, "material_range", "replaced by the nearest allowed value: a number of material",
+             l->name, l->length);
     }
     he_status status = number_name(l, l->name, l->length, &number, &fresh, err);
     return status == HE_OK ? add_row(l, number, fresh, err) : status;
@@ -120,7 +120,7 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
         l->look = he_plain_look;
         l->has_opacity = false;
         if (length == 0) {
-            note(l, "material_name", "left out, having no name: a material", NULL, 0);
+            note(l, "material_name", "left out, because it has no name: a material", NULL, 0);
         }
     }
     he_mem_free(own);
@@ -219,7 +219,7 @@ static void note_texture(library *l, const he_line *line, const char *keyword)
         last--;
     }
     (void)he_beside_find(l->into->beside, last, (size_t)(end - last));
-    note(l, "ignored_texture", "not held: the texture", keyword, (size_t)(end - keyword));
+    note(l, "ignored_texture", "ignored: the texture", keyword, (size_t)(end - keyword));
 }
 
 /* Keywords of the format whose values a material of a mesh cannot store. */
@@ -306,7 +306,7 @@ he_status he_mtl_read(const char *bytes, size_t n, he_import *into, he_error *er
     }
     if (status == HE_OK && l.understood == 0 && l.first != 0) {
         status = he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, l.first,
-                            "this is no line of a material library");
+                            "this is not a line of a material library");
     }
     if (status == HE_OK) {
         status = end_material(&l, err);

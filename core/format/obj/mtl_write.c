@@ -63,8 +63,8 @@ static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         }
         he_obj_note_name(row->name, notes);
         if (row->look.two_sided) {
-            he_notes_add(notes, "two_sided_lost", "not carried: that both sides show, of material",
-                         row->name, row->length, HE_PLACE_NONE, 0);
+            he_notes_add(notes, "two_sided_lost", "not written: two_sided of material", row->name,
+                         row->length, HE_PLACE_NONE, 0);
         }
     }
     *state = w;

@@ -59,7 +59,7 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, double
 
 static void note_extra(obj *o, const he_line *line)
 {
-    note(o, "extra_numbers", "ignored: more numbers than a line of its kind has", NULL, 0, line);
+    note(o, "extra_numbers", "ignored: extra numbers on a line", NULL, 0, line);
 }
 
 static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
@@ -104,8 +104,8 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
         return status;
     }
     if (count < least) {
-        return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers, and %zu are needed",
-                            count, least);
+        return he_line_fail(err, HE_SYNTAX, line, line->begin,
+                            "the line has %zu numbers and needs %zu", count, least);
     }
     if (count > 3) {
         note_extra(o, line);
@@ -141,8 +141,8 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
     }
     char text[40];
     he_quote(begin, *p, text, sizeof text);
-    return he_line_fail(err, HE_BAD_INDEX, line, begin, "there is no %s %s; %zu came so far", what,
-                        text, count);
+    return he_line_fail(err, HE_BAD_INDEX, line, begin,
+                        "there is no %s %s: there were %zu before this line", what, text, count);
 }
 
 /* Warns about a wrong index of a texture coordinate or normal: the corner then has no such value,
@@ -150,8 +150,9 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
 static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
     he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
-                 pool == &o->uv ? "set to 0: a corner names a texture coordinate there is not"
-                                : "set to 0: a corner names a normal there is not",
+                 pool == &o->uv
+                     ? "set to 0, because it does not exist: a corner's texture coordinate"
+                     : "set to 0, because it does not exist: a corner's normal",
                  NULL, 0, HE_PLACE_LINE, at);
 }
 
@@ -209,7 +210,7 @@ static he_status read_face(obj *o, const he_line *line, const char *p, he_error 
     he_soup *soup = &o->into->soup;
     p = he_skip_blanks(p, line->end);
     if (he_at_end(p, line->end)) {
-        return he_line_fail(err, HE_TOO_FEW_CORNERS, line, p, "a face without corners");
+        return he_line_fail(err, HE_TOO_FEW_CORNERS, line, p, "the face has no corners");
     }
     he_status status = he_soup_begin_face(soup, err);
     if (status == HE_OK) {
@@ -427,7 +428,7 @@ static he_status check_indices(obj *o, he_error *err)
             c++;
         }
         return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_LINE, line_of(o, c),
-                          "there is no vertex %u, only %zu", soup->corners[c] + 1,
+                          "there is no vertex %u: the file has %zu", soup->corners[c] + 1,
                           soup->vertex_count);
     }
     check_values(o, &o->uv);

@@ -97,7 +97,7 @@ static const he_column *find_libraries(obj_writer *w, he_notes *notes)
     }
     if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
         he_notes_add(notes, "in_library",
-                     "carried by the library, which format=mtl gives: materials", NULL, 0,
+                     "written to the material library (format=mtl) only: materials", NULL, 0,
                      HE_PLACE_NONE, 0);
     }
     return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
@@ -136,7 +136,7 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->color = he_colors_find(mesh, HE_VERTEX, notes);
     if (w->color != NULL && w->color->components == 4) {
-        he_notes_add(notes, "alpha_lost", "not carried: the fourth component of", "vertex color",
+        he_notes_add(notes, "alpha_lost", "not written: the fourth component of", "vertex color",
                      strlen("vertex color"), HE_PLACE_NONE, 0);
     }
     const he_column *used[SPANS + 4] = {w->color, w->uv.column, w->normal.column};

@@ -19,8 +19,8 @@ void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned h
     values->vertex_colors.fractions = values->face_colors.fractions = true;
     he_places_init(&values->into->vertices, HE_PLACE_BYTE, (uint32_t)vertex_numbers(binary) * WORD);
     he_places_init(&values->into->faces, HE_PLACE_BYTE, SHORTEST_FACE);
-    he_notes_add(&values->into->notes, "binary_off", "read as binary, high bytes first: the body",
-                 NULL, 0, HE_PLACE_BYTE, offset);
+    he_notes_add(&values->into->notes, "binary_off", "read as big-endian binary: the body", NULL, 0,
+                 HE_PLACE_BYTE, offset);
 }
 
 static uint32_t word_at(const unsigned char *p)
@@ -55,11 +55,12 @@ static he_status take_count(const unsigned char *p, const char *what, uint64_t l
     uint32_t count = word_at(p);
     if (count > HE_MAX_ROWS) {
         return he_fail_at(err, HE_BAD_VALUE, HE_PLACE_BYTE, at,
-                          "%u %s are more than a mesh can have", count, what);
+                          "the file declares %u %s, more than a mesh can have", count, what);
     }
     if (limit != 0 && count > limit) {
-        return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, at, "%u %s are more than the limit of %llu",
-                          count, what, (unsigned long long)limit);
+        return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, at,
+                          "the file declares %u %s, more than the limit of %llu", count, what,
+                          (unsigned long long)limit);
     }
     *out = count;
     return HE_OK;
@@ -145,8 +146,8 @@ static he_status take_corner(he_off_binary *b, const unsigned char *p, he_error 
     uint32_t vertex = word_at(p);
     if (vertex >= b->vertices) {
         return he_fail_at(err, HE_BAD_INDEX, HE_PLACE_BYTE, begin_of(b, WORD),
-                          "there is no vertex %lld, only 0 to %lld", (long long)(int32_t)vertex,
-                          (long long)b->vertices - 1);
+                          "there is no vertex %lld; the vertices are 0 to %lld",
+                          (long long)(int32_t)vertex, (long long)b->vertices - 1);
     }
     b->part = --b->left > 0 ? HE_OFF_CORNER : HE_OFF_COLOR_COUNT;
     return he_soup_add_corner(&b->values->into->soup, vertex, err);
@@ -241,7 +242,7 @@ static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
     return b->trailing < SHORTEST_FACE
                ? HE_OK
                : he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, b->offset - b->trailing,
-                            "more than the %llu faces that are announced",
+                            "the file has more than the %llu faces that it declares",
                             (unsigned long long)b->faces);
 }
 
@@ -281,7 +282,7 @@ static he_status too_short(const he_off_binary *b, const char *what, size_t came
                            uint64_t announced, he_error *err)
 {
     return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, b->offset,
-                      "the file ends after %zu of the %llu %s it announces", came,
+                      "the file ends after %zu of the %llu %s that it declares", came,
                       (unsigned long long)announced, what);
 }
 

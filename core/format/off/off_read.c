@@ -126,12 +126,13 @@ static he_status read_count(const he_line *line, const char **p, const char *wha
     char text[40];
     he_quote(*p, *p + used, text, sizeof text);
     if (status != HE_OK || value > HE_MAX_ROWS) {
-        return he_line_fail(err, HE_BAD_VALUE, line, *p, "%s %s are more than a mesh can have",
-                            text, what);
+        return he_line_fail(err, HE_BAD_VALUE, line, *p,
+                            "the file declares %s %s, more than a mesh can have", text, what);
     }
     if (limit != 0 && value > limit) {
-        return he_line_fail(err, HE_LIMIT, line, *p, "%s %s are more than the limit of %llu", text,
-                            what, (unsigned long long)limit);
+        return he_line_fail(err, HE_LIMIT, line, *p,
+                            "the file declares %s %s, more than the limit of %llu", text, what,
+                            (unsigned long long)limit);
     }
     *count = value;
     *p += used;
@@ -247,7 +248,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     /* If vertices continue on the next line, surplus numbers belong to the next vertex. Then no
      * vertex may omit its last values, because the two cases could not be distinguished. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
-        return he_line_fail(err, HE_SYNTAX, line, line->begin, "%zu numbers do not fit the header",
+        return he_line_fail(err, HE_SYNTAX, line, line->begin,
+                            "the line has %zu numbers, which is not what the header declares",
                             count);
     }
     he_status status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
@@ -264,10 +266,11 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
         note(o, "color_index", "ignored: an index into a colour map", line);
     }
     if (lacking) {
-        note(o, "missing_numbers", "read without what the header announces: a vertex", line);
+        note(o, "missing_numbers",
+             "read although numbers that the header declares are missing: a vertex", line);
     }
     if (count > end) {
-        note(o, "extra_numbers", "ignored: numbers the header does not announce", line);
+        note(o, "extra_numbers", "ignored: numbers that the header does not declare", line);
     }
     forget_numbers(o);
     if (soup->vertex_count == o->vertices) {
@@ -358,8 +361,9 @@ static he_status read_corner(off *o, const he_line *line, const char **p, he_err
     if (status != HE_OK || value >= o->vertices || negative) {
         char text[40];
         he_quote(*p, *p + sign + used, text, sizeof text);
-        return he_line_fail(err, HE_BAD_INDEX, line, *p, "there is no vertex %s, only 0 to %lld",
-                            text, (long long)o->vertices - 1);
+        return he_line_fail(err, HE_BAD_INDEX, line, *p,
+                            "there is no vertex %s; the vertices are 0 to %lld", text,
+                            (long long)o->vertices - 1);
     }
     *p += sign + used;
     o->missing--;
@@ -478,7 +482,8 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
             status = read_face(o, line, &p, err);
             break;
         case DONE:
-            return he_token_fail(err, HE_SYNTAX, line, p, "comes after the last face announced");
+            return he_token_fail(err, HE_SYNTAX, line, p,
+                                 "comes after the last face that the header declares");
         }
         p = he_skip_blanks(p, line->end);
     }
@@ -561,7 +566,7 @@ static he_status too_short(uint64_t last_line, const char *what, size_t came, ui
                            he_error *err)
 {
     return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, last_line,
-                      "the file ends after %zu of the %llu %s it announces", came,
+                      "the file ends after %zu of the %llu %s that it declares", came,
                       (unsigned long long)announced, what);
 }
 

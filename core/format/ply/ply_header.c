@@ -117,11 +117,11 @@ static he_status read_element(he_ply_header *h, const he_line *line, const char 
     }
     bool held = is(name, "vertex") || is(name, "face");
     if (status != HE_OK || count > (held ? HE_MAX_ROWS : MOST_ROWS)) {
-        return refuse(err, HE_BAD_VALUE, line, rows, "rows are more than there can be");
+        return refuse(err, HE_BAD_VALUE, line, rows, "rows are more than a mesh can have");
     }
     if (h->count == HE_PLY_ELEMENTS) {
-        return he_line_fail(err, HE_LIMIT, line, line->begin, "more than %d elements",
-                            HE_PLY_ELEMENTS);
+        return he_line_fail(err, HE_LIMIT, line, line->begin,
+                            "the header declares more than %d elements", HE_PLY_ELEMENTS);
     }
     if (h->count == h->capacity) {
         size_t capacity = he_mem_grown(h->capacity, h->count + 1);
@@ -185,7 +185,8 @@ static bool is_nameable(word w)
 static he_status read_property(he_ply_header *h, const he_line *line, const char *p, he_error *err)
 {
     if (h->count == 0) {
-        return he_line_fail(err, HE_SYNTAX, line, line->begin, "a property before any element");
+        return he_line_fail(err, HE_SYNTAX, line, line->begin,
+                            "a property comes before the first element");
     }
     he_ply_property property = {.line = line->number};
     he_status status = read_types(&property, line, &p, err);
@@ -197,14 +198,14 @@ static he_status read_property(he_ply_header *h, const he_line *line, const char
     property.nameable = is_nameable(name);
     he_ply_element *e = &h->elements[h->count - 1];
     if (name.begin == name.end) {
-        return he_line_fail(err, HE_SYNTAX, line, line->begin, "a property without a name");
+        return he_line_fail(err, HE_SYNTAX, line, line->begin, "a property has no name");
     }
     if (property.nameable && he_ply_find(h, e, property.name) < e->properties) {
         return refuse(err, HE_SYNTAX, line, name, "is the name of two properties of the element");
     }
     if (h->property_count == HE_PLY_PROPERTIES) {
-        return he_line_fail(err, HE_LIMIT, line, line->begin, "more than %d properties",
-                            HE_PLY_PROPERTIES);
+        return he_line_fail(err, HE_LIMIT, line, line->begin,
+                            "an element has more than %d properties", HE_PLY_PROPERTIES);
     }
     if (h->property_count == h->property_capacity) {
         size_t capacity = he_mem_grown(h->property_capacity, h->property_count + 1);

@@ -70,8 +70,8 @@ static void join_copies(he_import *into, size_t mark)
         join(soup, column, vertices);
     } else if (soup->vertex_count > 0) {
         he_notes_add(&into->notes, "stale_copies",
-                     "kept apart: vertices that are said to be copies, and lie elsewhere", NULL, 0,
-                     HE_PLACE_NONE, 0);
+                     "not joined, because their positions differ: vertices marked as copies", NULL,
+                     0, HE_PLACE_NONE, 0);
     }
     soup->column_count--;
     memmove(soup->columns + mark, soup->columns + mark + 1,

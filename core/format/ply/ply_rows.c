@@ -145,8 +145,9 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
     }
     if (property->type >= HE_PLY_FLOAT) {
         he_notes_add(&rows->into->notes, "fraction_indices",
-                     "read as whole numbers: corners of the type", he_ply_type_name(property->type),
-                     strlen(he_ply_type_name(property->type)), HE_PLACE_LINE, property->line);
+                     "read although it is not a type of whole numbers: vertex indices of type",
+                     he_ply_type_name(property->type), strlen(he_ply_type_name(property->type)),
+                     HE_PLACE_LINE, property->line);
     }
     rows->targets[e->first + k].role = role;
     return HE_OK;
@@ -375,12 +376,13 @@ he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count, he
     case HE_PLY_CORNERS:
         if (count > HE_MAX_ROWS) {
             return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at,
-                              "%lld corners are more than a mesh can have", (long long)count);
+                              "the file has %lld corners, more than a mesh can have",
+                              (long long)count);
         }
         if (limit != 0 && (uint64_t)count > limit) {
             return he_fail_at(err, HE_LIMIT, rows->unit, rows->at,
-                              "%lld corners are more than the limit of %llu", (long long)count,
-                              (unsigned long long)limit);
+                              "the file has %lld corners, more than the limit of %llu",
+                              (long long)count, (unsigned long long)limit);
         }
         return at_place(rows, begin_face(rows, err), err);
     case HE_PLY_STRIP:
@@ -443,10 +445,10 @@ he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int64_t value, he
     if (value < 0 || (uint64_t)value >= rows->vertices) {
         if (rows->vertices == 0) {
             return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
-                              "there is no vertex %lld, nor any other", (long long)value);
+                              "there is no vertex %lld: the file has none", (long long)value);
         }
         return he_fail_at(err, HE_BAD_INDEX, rows->unit, rows->at,
-                          "there is no vertex %lld, only 0 to %lld", (long long)value,
+                          "there is no vertex %lld; the vertices are 0 to %lld", (long long)value,
                           (long long)rows->vertices - 1);
     }
     uint32_t vertex = (uint32_t)value;
@@ -495,9 +497,9 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
     rows->uv_count = 0;
     if (count != 2 * corners) {
         he_notes_add(&rows->into->notes, count == 0 ? "faces_without_uv" : "texcoord_count",
-                     count == 0 ? "set to 0: texture coordinates of a face without any"
-                                : "set to 0: texture coordinates of a face that are not two a "
-                                  "corner",
+                     count == 0 ? "set to 0, because it has none: texture coordinates of a face"
+                                : "set to 0, because there are not two for each corner: texture "
+                                  "coordinates of a face",
                      NULL, 0, rows->unit, rows->at);
         return HE_OK;
     }

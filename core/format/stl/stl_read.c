@@ -105,10 +105,10 @@ static const char *skip_normal(const he_line *line, const char *p)
 static he_status end_facet(stl *o, const he_line *line, const char *p, he_error *err)
 {
     if (!o->in_facet) {
-        return he_token_fail(err, HE_SYNTAX, line, p, "is not in a facet");
+        return he_token_fail(err, HE_SYNTAX, line, p, "is outside a facet");
     }
     if (o->corner_count != 3) {
-        return he_line_fail(err, HE_SYNTAX, line, p, "a facet ends with %u corners",
+        return he_line_fail(err, HE_SYNTAX, line, p, "a facet has %u corners, not 3",
                             o->corner_count);
     }
     o->in_facet = false;
@@ -122,7 +122,8 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     if (is(word, end, "vertex")) {
         if (!o->in_facet || o->corner_count == 3) {
             return he_token_fail(err, HE_SYNTAX, line, word,
-                                 o->in_facet ? "is the fourth of a facet" : "is not in a facet");
+                                 o->in_facet ? "is a fourth vertex in one facet"
+                                             : "is outside a facet");
         }
         o->numbers = 3;
     } else if (is(word, end, "facet") || is(word, end, "solid") || is(word, end, "endsolid")) {
@@ -212,15 +213,14 @@ static he_status take_header(stl *o, const unsigned char *bytes, he_error *err)
     o->has_header = true;
     o->count = o->left = word_at(bytes + COUNT_AT);
     if (o->count > HE_MAX_ROWS) {
-        return he_fail_at(
-            err, HE_BAD_VALUE, HE_PLACE_BYTE, COUNT_AT,
-            "not an STL file: it does not begin with \"solid\", and what should count "
-            "its facets is %llu",
-            (unsigned long long)o->count);
+        return he_fail_at(err, HE_BAD_VALUE, HE_PLACE_BYTE, COUNT_AT,
+                          "not an STL file: it does not begin with \"solid\", and read as binary "
+                          "it would have %llu facets",
+                          (unsigned long long)o->count);
     }
     if (limit != 0 && o->count > limit) {
         return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, COUNT_AT,
-                          "%llu facets are more than the limit of %llu",
+                          "the file declares %llu facets, more than the limit of %llu",
                           (unsigned long long)o->count, (unsigned long long)limit);
     }
     return HE_OK;
@@ -269,7 +269,7 @@ static he_status take_trailing(stl *o, size_t n, he_error *err)
     o->trailing += n < FACET ? n : FACET;
     if (o->trailing >= FACET || o->count == 0) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, HEADER + FACET * o->count,
-                          "more than the %llu facets that are announced",
+                          "the file has more than the %llu facets that it declares",
                           (unsigned long long)o->count);
     }
     return HE_OK;
@@ -319,7 +319,7 @@ static he_status finish_binary(const stl *o, he_error *err)
     }
     if (o->left > 0) {
         return he_fail_at(err, HE_SYNTAX, HE_PLACE_BYTE, o->offset,
-                          "the file ends after %llu of the %llu facets it announces",
+                          "the file ends after %llu of the %llu facets that it declares",
                           (unsigned long long)(o->count - o->left), (unsigned long long)o->count);
     }
     return HE_OK;

@@ -61,8 +61,8 @@ static he_status add_value(scan *s, uint64_t place)
         return status;
     }
     if (json->count == HE_JSON_VALUES) {
-        return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE, place, "JSON of more than %zu values",
-                          HE_JSON_VALUES);
+        return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE, place,
+                          "JSON: there are more than %zu values", HE_JSON_VALUES);
     }
     if (json->count == json->capacity) {
         size_t capacity = he_mem_grown(json->capacity, json->count + 1);
@@ -152,7 +152,8 @@ static he_status check_members(scan *s, uint32_t object)
         he_json_raw(json, i, &length);
         if (length >= NAME_ROOM) {
             return he_fail_at(s->err, HE_LIMIT, HE_PLACE_BYTE, he_json_place(json, i),
-                              "JSON: a member's name of more than %d bytes", (int)NAME_ROOM - 1);
+                              "JSON: the name of a member has more than %d bytes",
+                              (int)NAME_ROOM - 1);
         }
         count++;
     }
@@ -204,8 +205,8 @@ he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t
 {
     *json = (he_json){.text = text, .length = length, .offset = offset};
     if (length > HE_JSON_TEXT) {
-        return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset, "JSON of more than %zu bytes",
-                          HE_JSON_TEXT);
+        return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset,
+                          "JSON: there are more than %zu bytes", HE_JSON_TEXT);
     }
     scan s = {.json = json, .watch = watch, .told = text, .err = err};
     he_lexer_init(&s.lexer, NULL);

@@ -216,11 +216,12 @@ static he_status refuse_nul(const he_lines *lines, he_error *err)
         return refuse_wide(lines, err);
     }
     if (first && lines->length < 2) {
-        return he_fail_at(err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
-                          "a NUL is among the first two bytes, as in UTF-16: text is UTF-8");
+        return he_fail_at(
+            err, HE_UNSUPPORTED, HE_PLACE_LINE, lines->number,
+            "one of the first two bytes is zero, as in UTF-16; the text must be UTF-8");
     }
     return he_fail_at(err, HE_SYNTAX, HE_PLACE_LINE, lines->number + lines->joined,
-                      "a NUL byte is in the text");
+                      "the text contains a NUL byte");
 }
 
 he_status he_lines_feed(he_lines *lines, const void *bytes, size_t n, he_error *err)
