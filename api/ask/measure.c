@@ -279,7 +279,8 @@ static bool read_options(const api_in *question, asked *q)
     int choice = HE_WEIGHT_ANGLE;
     if (api_in_find(question, "weights", &in)) {
         if (q->measure->option != WEIGHTS) {
-            return api_in_fail(&in, API_UNKNOWN_MEMBER, "normals of vertices have \"weights\"");
+            return api_in_fail(&in, API_UNKNOWN_MEMBER,
+                               "\"weights\" is for normals of vertices only");
         }
         if (!api_in_choice(&in, weights, &choice)) {
             return false;
@@ -291,7 +292,7 @@ static bool read_options(const api_in *question, asked *q)
                api_in_number_within(&in, 0, HE_PI, false, &q->options.crease);
     }
     if (api_in_find(question, "crease", &in)) {
-        return api_in_fail(&in, API_UNKNOWN_MEMBER, "normals of half-edges have a \"crease\"");
+        return api_in_fail(&in, API_UNKNOWN_MEMBER, "\"crease\" is for normals of half-edges only");
     }
     return true;
 }

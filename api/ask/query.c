@@ -168,7 +168,8 @@ static void answer(api_exchange *x, api_asker *a)
             return;
         }
         if (api_media_choose(x->request.headers[API_HEADER_ACCEPT], json_only) < 0) {
-            api_fail(x, API_NOT_ACCEPTABLE, "octets answer one question about many elements");
+            api_fail(x, API_NOT_ACCEPTABLE,
+                     "application/octet-stream answers exactly one question, about many elements");
             x->problem.supported = json_only;
             return;
         }

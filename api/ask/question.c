@@ -133,7 +133,7 @@ bool api_asker_element(api_asker *a, const api_in *in, unsigned kinds, he_kind *
                 strncat(list, he_kind_name(k), sizeof list - strlen(list) - 1);
             }
         }
-        return api_in_fail(&member, HE_BAD_VALUE, "a %s is given where %s is expected",
+        return api_in_fail(&member, HE_BAD_VALUE, "a %s is given, and %s is expected",
                            he_kind_name(*kind), list);
     }
     return he_mesh_require(a->mesh, *kind, *id, &err) == HE_OK ||
@@ -206,7 +206,9 @@ bool api_asker_target(api_asker *a, const api_in *of, api_target *out)
     out->dense = true;
     api_in second = member;
     if (api_in_next(&second)) {
-        return api_in_fail(&second, API_UNKNOWN_MEMBER, "elements are named by one member");
+        return api_in_fail(
+            &second, API_UNKNOWN_MEMBER,
+            "give exactly one of \"vertices\", \"halfedges\", \"edges\" and \"faces\"");
     }
     return read_many(a, &member, out);
 }

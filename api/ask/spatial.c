@@ -55,7 +55,7 @@ bool api_ray_ask(api_asker *a, const api_in *question)
         return false;
     }
     if (direction.x == 0 && direction.y == 0 && direction.z == 0) {
-        return api_in_fail(&along, HE_BAD_VALUE, "a ray needs a direction that is not zero");
+        return api_in_fail(&along, HE_BAD_VALUE, "the ray's direction must not be zero");
     }
     const he_bvh *tree = api_asker_tree(a, question);
     if (tree == NULL) {

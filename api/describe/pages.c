@@ -80,7 +80,7 @@ void api_page_get(api_exchange *x)
      * table. */
     if (options->asset == NULL || !options->asset(options->asset_context, x->request.path, &bytes,
                                                   &length, &type, &etag, &immutable)) {
-        api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+        api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
         return;
     }
     api_answer_header(x, "Cache-Control",

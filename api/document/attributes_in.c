@@ -111,7 +111,7 @@ static bool end_value(api_attributes_in *in, bool row)
     }
     if (width != in->width) {
         return refuse_value(in, in->rows, HE_BAD_VALUE,
-                            "the value has another number of components than those before");
+                            "the value does not have as many components as the values before it");
     }
     in->rows++;
     in->column = 0;
@@ -123,7 +123,8 @@ static bool take_value(api_attributes_in *in, const he_lexer *x, he_token token)
 {
     double value = token == HE_TOKEN_NUMBER ? x->number : token == HE_TOKEN_TRUE;
     if (token == HE_TOKEN_NULL) {
-        return refuse_value(in, in->rows, API_WRONG_TYPE, "a value is a number, true or false");
+        return refuse_value(in, in->rows, API_WRONG_TYPE,
+                            "a value must be a number, true or false");
     }
     in->has_numbers |= token == HE_TOKEN_NUMBER;
     in->has_words |= token != HE_TOKEN_NUMBER;
@@ -184,12 +185,13 @@ static bool pack(api_attributes_in *in, item *out)
     bool words = column->type == HE_BOOL;
     he_error err = {0};
     if (in->rows > 0 && in->width != (column->components == 1 ? 0 : column->components)) {
-        return refuse_value(in, 0, HE_BAD_VALUE, "the values do not have the components said");
+        return refuse_value(in, 0, HE_BAD_VALUE,
+                            "the values do not have as many components as \"components\" says");
     }
     if (words ? in->has_numbers : in->has_words) {
         return refuse_value(in, 0, API_WRONG_TYPE,
-                            words ? "values of a bool are true and false"
-                                  : "true and false are values of a bool only");
+                            words ? "values of a bool must be true or false"
+                                  : "only an attribute of type bool has the values true and false");
     }
     out->values = he_mem_array(NULL, in->number_count + 1, size);
     if (out->values == NULL) {
@@ -198,7 +200,7 @@ static bool pack(api_attributes_in *in, item *out)
     for (size_t i = 0; i < in->number_count; i++) {
         if (!pack_number(column, in->numbers[i], out->values + i * size)) {
             return refuse_value(in, i / column->components, HE_BAD_VALUE,
-                                "the number does not fit the type");
+                                "the number is out of range for the attribute's type");
         }
     }
     if (he_attribute_check(column, out->values, in->rows, &at, &err) != HE_OK) {
@@ -278,7 +280,7 @@ static bool expect_value(api_attributes_in *in, char c)
     bool other = c == '"' || c == '{' || c == '[';
     return is_value_byte(c) ||
            refuse_value(in, in->rows, other ? API_WRONG_TYPE : API_MALFORMED_JSON,
-                        "a number, true or false is expected");
+                        "a number, true or false is expected here");
 }
 
 bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken, api_problem *problem)
@@ -288,13 +290,13 @@ bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken, a
     in->problem = problem;
     switch (x->depth) {
     case IN_DOCUMENT:
-        return c == '[' || refuse(in, API_WRONG_TYPE, "attributes are an array of objects");
+        return c == '[' || refuse(in, API_WRONG_TYPE, "\"attributes\" must be an array of objects");
     case IN_LIST:
         return c == '{' ? in->count < API_MAX_ATTRIBUTES ||
                               refuse(in, HE_LIMIT, "there are too many attributes")
-                        : refuse(in, API_WRONG_TYPE, "an attribute is an object");
+                        : refuse(in, API_WRONG_TYPE, "an attribute must be an object");
     case IN_OBJECT:
-        return c == '[' || refuse(in, API_WRONG_TYPE, "values are an array");
+        return c == '[' || refuse(in, API_WRONG_TYPE, "\"values\" must be an array");
     case IN_VALUES: {
         if (c != '[') {
             return expect_value(in, c);
@@ -306,7 +308,8 @@ bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken, a
     default:
         return in->column < HE_COLUMN_COMPONENTS
                    ? expect_value(in, c)
-                   : refuse_value(in, in->rows, HE_BAD_VALUE, "a value has at most 16 components");
+                   : refuse_value(in, in->rows, HE_BAD_VALUE,
+                                  "a value may have at most 16 components");
     }
 }
 
@@ -408,7 +411,8 @@ bool api_attributes_in_repaired(const api_attributes_in *in, api_problem *proble
         const item *one = &in->items[i];
         if (goes_with_edges(one)) {
             api_problem_set(problem, HE_UNSUPPORTED,
-                            "values of %s go with edges that the repairs change",
+                            "the repairs change edges, so values of %s would be lost: leave out "
+                            "the repairs or the attribute",
                             he_kind_plural(one->column->domain));
             api_problem_set_pointer(problem, "/attributes/%zu/values", i);
             return false;

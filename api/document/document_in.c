@@ -120,7 +120,7 @@ static bool refuse_fault(api_document_in *in)
 {
     he_lexer *x = &in->lexer;
     if (x->fault == HE_FAULT_FOLLOWS) {
-        return refuse(in, API_MALFORMED_JSON, "something follows the document");
+        return refuse(in, API_MALFORMED_JSON, "extra text follows the mesh document");
     }
     if (x->fault == HE_FAULT_ITEM) {
         x->frames[x->depth - 1].index++; /* what stands there would be the next item */
@@ -141,7 +141,7 @@ static bool add_vertex(api_document_in *in, const double *values, size_t count)
     he_error err;
     if (count != 3) {
         api_json_refuse_at(in->problem, he_lexer_place(&in->lexer), HE_BAD_VALUE,
-                           "a vertex has three coordinates, this one has %zu", count);
+                           "a vertex must have three coordinates, and this one has %zu", count);
         return point(in, IN_LIST);
     }
     he_vec3 position = {values[0], values[1], values[2]};
@@ -185,10 +185,11 @@ static bool add_corner(api_document_in *in, double value)
 {
     he_error err;
     if (value < 0 || value != floor(value)) {
-        return refuse(in, HE_BAD_VALUE, "a corner is the index of a vertex, a whole number from 0");
+        return refuse(in, HE_BAD_VALUE,
+                      "a corner must be the index of a vertex: a whole number, counted from 0");
     }
     if (value >= HE_DEAD) {
-        return refuse(in, HE_BAD_INDEX, "the index is beyond the vertices");
+        return refuse(in, HE_BAD_INDEX, "there is no vertex with this index");
     }
     return he_soup_add_corner(&in->soup, (uint32_t)value, &err) == HE_OK ||
            refuse_core(in, IN_ITEM, &err);
@@ -201,7 +202,7 @@ static bool add_value(api_document_in *in, double value)
     }
     if (in->part == 3) {
         return refuse_in(in, IN_LIST, HE_BAD_VALUE,
-                         "a vertex has three coordinates, this one has more");
+                         "a vertex must have three coordinates, and this one has more");
     }
     in->point[in->part++] = value;
     return true;
@@ -314,7 +315,7 @@ static bool expect(api_document_in *in, bool *taken)
     switch (in->member) {
     case NO_MEMBER:
         return *in->lexer.at == '{' ||
-               refuse(in, API_MALFORMED_JSON, "the '{' of a mesh document is expected here");
+               refuse(in, API_MALFORMED_JSON, "a mesh document must begin with '{'");
     case VERTICES:
     case FACES:
         return expect_in_list(in, taken);
@@ -395,7 +396,7 @@ bool api_document_in_end(api_document_in *in, api_problem *problem)
 {
     in->problem = problem;
     if (in->lexer.state != HE_JSON_DONE) {
-        return refuse(in, API_MALFORMED_JSON, "the body ends within the document");
+        return refuse(in, API_MALFORMED_JSON, "the body ends before the mesh document does");
     }
     return read_materials(in, problem) &&
            api_members_parse(&in->rest, &in->document, &in->root, problem);

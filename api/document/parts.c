@@ -105,14 +105,14 @@ static bool refuse(api_exchange *x, const api_parts *p)
     }
     he_beside_list(&listed, names, sizeof names);
     if (p->candidates > 0) {
-        return api_fail(
-            x, API_UNCLEAR_PARTS,
-            "each of these files could be the mesh: %s; send one, or say ?format=", names);
+        return api_fail(x, API_UNCLEAR_PARTS,
+                        "each of these files could be the mesh: %s; send only one of them, or "
+                        "choose with ?format=",
+                        names);
     }
     return api_fail(x, API_UNCLEAR_PARTS,
-                    "none of the files is %s%s, by name, media type or "
-                    "first bytes: %s",
-                    p->wanted == NULL ? "of a format that is read" : "of the format ",
+                    "none of the files is %s%s, judged by name, media type and first bytes: %s",
+                    p->wanted == NULL ? "in a format that the server reads" : "in the format ",
                     p->wanted == NULL ? "" : p->wanted, names);
 }
 

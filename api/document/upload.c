@@ -173,7 +173,8 @@ static bool choose(api_exchange *x, upload *u)
         return false;
     }
     if (!json && (format == NULL || format->reading == NULL)) {
-        return api_refuse_format(x, "the first bytes are of no format this server reads");
+        return api_refuse_format(
+            x, "the format cannot be recognized from the first bytes; name it with ?format=");
     }
     return (json ? open_document(x, u) : open_reader(x, u, format)) &&
            feed(x, u, u->head, u->head_length);
@@ -330,7 +331,7 @@ static bool end_document(upload *u)
     }
     if (api_document_in_has_vertices(u->document) || api_document_in_has_faces(u->document)) {
         return api_in_fail(&member, API_CONFLICTING_MEMBERS,
-                           "a shape makes its own vertices and faces: give either");
+                           "give either \"shape\", or \"vertices\" and \"faces\"");
     }
     return read_shape(u, rest, &member);
 }
@@ -490,8 +491,9 @@ static void note_edges(upload *u, const he_mesh *mesh)
     const he_import *import = &u->import;
     if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
-        he_notes_add(&u->import.notes, "edge_count", "ignored: the number of edges, which is wrong",
-                     NULL, 0, HE_PLACE_LINE, import->edges_line);
+        he_notes_add(&u->import.notes, "edge_count",
+                     "ignored, because it is wrong: the number of edges", NULL, 0, HE_PLACE_LINE,
+                     import->edges_line);
     }
 }
 

@@ -76,8 +76,9 @@ bool api_cursor_read(const char *text, const char *collection, const st_mesh_inf
         return api_problem_set(problem, API_BAD_CURSOR, "the cursor is not one of %s", collection);
     }
     if (!is_of(&cursor, info)) {
-        return api_problem_set(problem, API_REVISION_GONE,
-                               "the cursor is of another mesh, or of one that had this id before");
+        return api_problem_set(
+            problem, API_REVISION_GONE,
+            "the cursor belongs to another mesh, or to a deleted mesh that had this id");
     }
     *position = cursor.position;
     return true;

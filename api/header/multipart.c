@@ -174,9 +174,10 @@ api_multipart *api_multipart_new(const char *content_type, api_problem *problem)
 {
     parameter boundary = {.length = 0};
     if (!find_boundary(content_type, &boundary)) {
-        api_problem_set(problem, API_BAD_HEADER,
-                        "multipart/form-data needs one parameter boundary, of 1 to %d characters",
-                        BOUNDARY);
+        api_problem_set(
+            problem, API_BAD_HEADER,
+            "the Content-Type multipart/form-data needs one boundary of 1 to %d characters",
+            BOUNDARY);
         return NULL;
     }
     api_multipart *m = he_mem_zero(1, sizeof *m);
@@ -231,13 +232,13 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
     found step;
     p = skip_token(p, end);
     if (!is_word(word, p, "form-data")) {
-        return "a Content-Disposition other than form-data";
+        return "a Content-Disposition is not form-data";
     }
     while ((step = next_parameter(&p, end, &next)) == FOUND) {
         bool is_file = is_named(&next, "filename");
         bool *seen = is_file ? &filename : is_named(&next, "name") ? &name : NULL;
         if (is_named(&next, "filename*")) {
-            return "filename*, which multipart/form-data has not: filename may be UTF-8";
+            return "filename* is not allowed in multipart/form-data: use filename, in UTF-8";
         }
         if (seen == NULL) {
             continue;
@@ -247,7 +248,7 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
         }
         *seen = true;
         if (!is_text(next.value, next.length)) {
-            return "a name that is not UTF-8, or has control characters";
+            return "a name is not UTF-8, or has control characters";
         }
         /* An HTML form sends an empty filename for a file input without a chosen file. */
         if (next.length > 0 && (is_file || !filename || m->name[0] == '\0')) {
@@ -255,16 +256,16 @@ static const char *read_disposition(api_multipart *m, const char *p, const char 
         }
     }
     if (step == WRONG) {
-        return "a Content-Disposition that is not name=\"value\" separated by ';', or too long";
+        return "a Content-Disposition is too long, or not name=\"value\" separated by ';'";
     }
-    return name ? NULL : "a part without a name";
+    return name ? NULL : "a part has no name";
 }
 
 static const char *read_header(api_multipart *m, head *seen, const char *p, const char *end)
 {
     const char *name = p, *stop = skip_token(p, end);
     if (stop == name || stop == end || *stop != ':') {
-        return "a line that is no header";
+        return "a line is not a header";
     }
     p = skip_blanks(stop + 1, end);
     while (end > p && (end[-1] == ' ' || end[-1] == '\t')) {
@@ -274,7 +275,7 @@ static const char *read_header(api_multipart *m, head *seen, const char *p, cons
     bool type = is_word(name, stop, "Content-Type");
     bool coding = is_word(name, stop, "Content-Transfer-Encoding");
     if ((disposition && seen->disposition) || (type && seen->type) || (coding && seen->coding)) {
-        return "a header that is given twice";
+        return "a header is given twice";
     }
     seen->disposition |= disposition;
     seen->type |= type;
@@ -284,17 +285,19 @@ static const char *read_header(api_multipart *m, head *seen, const char *p, cons
         return read_disposition(m, p, end);
     }
     if (type && length >= 10 && strncasecmp(p, "multipart/", 10) == 0) {
-        return "a part that has parts itself";
+        return "a part is itself multipart";
     }
     if (type && (length > API_MAX_PART_NAME || !is_text(p, length))) {
-        return "a Content-Type that is too long, not UTF-8 or has control characters";
+        return "a Content-Type is too long, not UTF-8 or has control characters";
     }
     if (type) {
         memcpy(m->type, p, length);
         m->type[length] = '\0';
     }
     bool plain = is_word(p, end, "7bit") || is_word(p, end, "8bit") || is_word(p, end, "binary");
-    return coding && !plain ? "a Content-Transfer-Encoding: send the bytes as they are" : NULL;
+    return coding && !plain
+               ? "Content-Transfer-Encoding is not supported: send the bytes as they are"
+               : NULL;
 }
 
 static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *out,
@@ -315,7 +318,7 @@ static api_multipart_step read_headers(api_multipart *m, api_multipart_piece *ou
         p = stop + 2;
     }
     if (!seen.disposition || m->name[0] == '\0') {
-        return refuse(problem, m->head_at, "a part without a name");
+        return refuse(problem, m->head_at, "a part has no name");
     }
     m->state = SEEK;
     m->inside = true;
@@ -399,15 +402,14 @@ api_multipart_step api_multipart_next(api_multipart *m, const char **at, const c
         case CLOSE:
             if (!close_delimiter(m, *(*at)++)) {
                 return refuse(problem, m->seen,
-                              "a delimiter goes on with neither \"--\" nor a "
-                              "new line");
+                              "a delimiter is followed by neither \"--\" nor a new line");
             }
             break;
         case HEADERS:
             if (m->head_length == 0) {
                 m->head_at = m->seen;
                 if (m->parts++ == API_MAX_PARTS) {
-                    api_problem_set(problem, API_BAD_MULTIPART, "more than %d parts",
+                    api_problem_set(problem, API_BAD_MULTIPART, "the body has more than %d parts",
                                     (int)API_MAX_PARTS);
                     return API_MULTIPART_BAD;
                 }
@@ -430,5 +432,5 @@ api_multipart_step api_multipart_next(api_multipart *m, const char **at, const c
 bool api_multipart_end(const api_multipart *m, api_problem *problem)
 {
     return m->state == EPILOGUE ||
-           refuse(problem, m->seen, "it ends before its last delimiter") != API_MULTIPART_BAD;
+           refuse(problem, m->seen, "the body ends before its last delimiter") != API_MULTIPART_BAD;
 }

@@ -30,13 +30,13 @@ static const char *decode(const char *raw, size_t length, int code, bool slash, 
             int high = i + 2 < length ? hex(raw[i + 1]) : -1;
             int low = high >= 0 ? hex(raw[i + 2]) : -1;
             if (low < 0) {
-                api_problem_set(problem, code, "an escape is not '%%' and two hexadecimal digits");
+                api_problem_set(problem, code, "'%%' must be followed by two hexadecimal digits");
                 return NULL;
             }
             c = (char)(high * 16 + low);
             i += 2;
             if (c == '\0' || (c == '/' && !slash)) {
-                api_problem_set(problem, code, "an escaped %s is not taken here",
+                api_problem_set(problem, code, "an escaped %s is not allowed here",
                                 c == '\0' ? "null character" : "slash");
                 return NULL;
             }
@@ -64,14 +64,16 @@ bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_proble
             return api_problem_set(problem, API_NO_SUCH_ROUTE, "a segment of the path is empty");
         }
         if (path.count == API_MAX_SEGMENTS || length > 3 * (size_t)API_MAX_SEGMENT) {
-            return api_problem_set(problem, API_NO_SUCH_ROUTE, "no path is that long");
+            return api_problem_set(problem, API_NO_SUCH_ROUTE,
+                                   "the path is longer than any path of this server");
         }
         const char *segment = decode(at, length, API_BAD_PATH, end == NULL, arena, problem);
         if (segment == NULL) {
             return false;
         }
         if (strlen(segment) > API_MAX_SEGMENT) {
-            return api_problem_set(problem, API_NO_SUCH_ROUTE, "no path is that long");
+            return api_problem_set(problem, API_NO_SUCH_ROUTE,
+                                   "the path is longer than any path of this server");
         }
         path.segments[path.count++] = segment;
         if (end == NULL) {
@@ -92,7 +94,7 @@ bool api_query_split(const char *raw, api_arena *arena, api_query *out, api_prob
         const char *equals = memchr(raw, '=', length);
         if (equals == NULL || equals == raw) {
             return api_problem_set(problem, API_BAD_QUERY,
-                                   "the query is not name=value pairs joined by '&'");
+                                   "the query must be name=value pairs separated by '&'");
         }
         if (query.count == API_MAX_PARAMETERS) {
             return api_problem_set(problem, API_BAD_QUERY, "there are more than %d parameters",

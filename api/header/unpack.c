@@ -37,9 +37,10 @@ struct api_unpack {
 static bool fail_memory(const api_unpack *u, api_problem *problem)
 {
     return u->memory.refused
-               ? api_problem_set(problem, API_TOO_MANY_CODED,
-                                 "the decoders of all bodies would take more than %zu bytes",
-                                 u->memory.most)
+               ? api_problem_set(
+                     problem, API_TOO_MANY_CODED,
+                     "decompressing this body too would take more than %zu bytes of memory in all",
+                     u->memory.most)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
 }
 
@@ -198,8 +199,8 @@ static bool give(api_unpack *u, size_t length, api_problem *problem)
     u->turn += length;
     if (u->beyond + beyond(u) > API_UNPACK_FREE) {
         return api_problem_set(problem, API_BODY_TOO_LARGE,
-                               "byte %llu of the %s body: what was compressed unfolds to more than "
-                               "%d times as many bytes, by more than %llu",
+                               "byte %llu of the %s body: the decompressed data is more than %d "
+                               "times its compressed size, by more than %llu bytes",
                                (unsigned long long)u->at, api_coding_name(u->coding),
                                API_UNPACK_RATIO, (unsigned long long)API_UNPACK_FREE);
     }
@@ -224,11 +225,11 @@ static bool refuse_gzip(api_unpack *u, int status, api_problem *problem)
     }
     if (status == Z_DATA_ERROR && z->total_in <= 2) {
         u->at -= z->total_in;
-        return refuse(u, problem, "no member begins here");
+        return refuse(u, problem, "the bytes are not in gzip format");
     }
     return refuse(u, problem,
-                  status == Z_NEED_DICT ? "a dictionary is wanted"
-                  : z->msg == NULL      ? "not of the coding"
+                  status == Z_NEED_DICT ? "a preset dictionary is needed, and none is supported"
+                  : z->msg == NULL      ? "the compressed data is damaged"
                                         : z->msg);
 }
 
@@ -280,10 +281,10 @@ static bool refuse_zstd(const api_unpack *u, size_t code, api_problem *problem)
         return fail_memory(u, problem);
     }
     if (error == ZSTD_error_frameParameter_windowTooLarge) {
-        return api_problem_set(problem, API_BODY_TOO_LARGE,
-                               "byte %llu of the zstd body: the frame wants a window of more than "
-                               "%lu bytes",
-                               (unsigned long long)u->at, 1UL << API_UNPACK_WINDOW);
+        return api_problem_set(
+            problem, API_BODY_TOO_LARGE,
+            "byte %llu of the zstd body: the frame needs a window of more than %lu bytes",
+            (unsigned long long)u->at, 1UL << API_UNPACK_WINDOW);
     }
     return refuse(u, problem, ZSTD_getErrorName(code));
 }
@@ -294,7 +295,7 @@ static bool end_frame(api_unpack *u, api_problem *problem)
 {
     unsigned long long said = ZSTD_getFrameContentSize(u->head, u->head_length);
     if (!u->skipped && said != ZSTD_CONTENTSIZE_UNKNOWN && said != u->to) {
-        return refuse(u, problem, "the frame has another length than its header says");
+        return refuse(u, problem, "the length of the frame differs from the one in its header");
     }
     u->head_length = 0;
     end_part(u);
@@ -337,7 +338,7 @@ static bool begin_frame(api_unpack *u, api_problem *problem)
     u->at -= MAGIC;
     u->skipped = (magic & ZSTD_ANY_SKIPPABLE) == ZSTD_SKIPPABLE;
     if (magic != ZSTD_FRAME && !u->skipped) {
-        return refuse(u, problem, "no frame begins here");
+        return refuse(u, problem, "the bytes are not in zstd format");
     }
     size_t taken;
     u->inside = true;
@@ -381,8 +382,8 @@ static bool feed_zstd(api_unpack *u, const unsigned char *bytes, size_t length, 
 static bool refuse_gone(const api_unpack *u, api_problem *problem)
 {
     return api_problem_set(problem, API_TOO_MANY_CODED,
-                           "this body came the slowest, and gave way to another: the decoders of "
-                           "all bodies have %zu bytes",
+                           "too many compressed bodies arrive at once, and this one was the "
+                           "slowest: the memory to decompress them is limited to %zu bytes",
                            u->memory.most);
 }
 
@@ -406,6 +407,6 @@ bool api_unpack_end(api_unpack *u, api_problem *problem)
     if (!u->inside && u->head_length == 0) {
         return true;
     }
-    return enter(u) ? refuse(u, problem, "the body ends before the coding does")
+    return enter(u) ? refuse(u, problem, "the body ends before its compressed data is complete")
                     : refuse_gone(u, problem);
 }

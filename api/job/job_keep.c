@@ -155,8 +155,8 @@ static bool interrupt(api_job_entry *j)
     api_problem problem = {0};
     api_text text = {0};
     (void)api_problem_set(&problem, API_INTERRUPTED,
-                          "the server stopped before the job had ended: nothing of it was done, "
-                          "and the request can be sent again");
+                          "the server stopped before the job ended: it changed nothing, and the "
+                          "request can be sent again");
     api_problem_write(&problem, "", &text);
     if (text.failed) {
         api_text_clear(&text);

@@ -135,8 +135,8 @@ static bool read_whole(const api_in *in, double low, double high, double *out)
         return false;
     }
     if (*out < low || *out > high || floor(*out) < *out) {
-        return api_in_fail(in, HE_BAD_VALUE, "the value is a whole number from %.0f to %.0f", low,
-                           high);
+        return api_in_fail(in, HE_BAD_VALUE, "the value must be a whole number from %.0f to %.0f",
+                           low, high);
     }
     return true;
 }
@@ -166,8 +166,8 @@ static bool read_number(const api_in *in, const he_column *column, unsigned char
         }
         uint32_t natural = (uint32_t)number;
         if (column->labels != NULL && natural >= he_labels_count(column->labels)) {
-            return api_in_fail(in, HE_BAD_VALUE, "%u is beyond the %zu labels", natural,
-                               he_labels_count(column->labels));
+            return api_in_fail(in, HE_BAD_VALUE, "%u is not the index of one of the %zu labels",
+                               natural, he_labels_count(column->labels));
         }
         memcpy(at, &natural, sizeof natural);
         return true;
@@ -178,7 +178,7 @@ static bool read_number(const api_in *in, const he_column *column, unsigned char
         }
         float single = (float)number;
         if (!isfinite(single)) {
-            return api_in_fail(in, HE_NOT_FINITE, "the number does not fit a float");
+            return api_in_fail(in, HE_NOT_FINITE, "the number is too large for a float");
         }
         memcpy(at, &single, sizeof single);
         return true;
@@ -192,7 +192,7 @@ static bool read_number(const api_in *in, const he_column *column, unsigned char
     case HE_TYPE_COUNT:
         break;
     }
-    return api_in_fail(in, API_INTERNAL, "an attribute has no type");
+    return api_in_fail(in, API_INTERNAL, "the type of the attribute is missing");
 }
 
 bool api_read_value(const api_in *in, const he_column *column, unsigned char *row)
@@ -240,7 +240,8 @@ static bool read_labels(const api_in *in, he_column *column)
 {
     api_in child;
     if (column->type != HE_UINT32 || column->components != 1) {
-        return api_in_fail(in, HE_BAD_VALUE, "labels belong to a uint32 of one component");
+        return api_in_fail(in, HE_BAD_VALUE,
+                           "only an attribute of type uint32 with one component can have labels");
     }
     if (!api_in_array(in, 1, API_MAX_LABELS)) {
         return false;

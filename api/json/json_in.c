@@ -246,7 +246,7 @@ static const char *type_name(const api_in *in)
 
 static bool wrong_type(const api_in *in, const char *wanted)
 {
-    return api_in_fail(in, API_WRONG_TYPE, "%s is given where %s is expected", type_name(in),
+    return api_in_fail(in, API_WRONG_TYPE, "%s is given, and %s is expected", type_name(in),
                        wanted);
 }
 
@@ -261,7 +261,7 @@ static bool refuse_member(const api_in *member, const char *const *names)
     for (; *names != NULL; names++) {
         api_known_names_add(&known, *names);
     }
-    return api_in_fail(member, API_UNKNOWN_MEMBER, "\"%.60s\" is not a member known here%s",
+    return api_in_fail(member, API_UNKNOWN_MEMBER, "there is no member \"%.60s\" here%s",
                        api_in_name(member), api_known_names_text(&known));
 }
 
@@ -306,11 +306,11 @@ bool api_in_array(const api_in *in, size_t min, size_t max)
     }
     size_t count = api_in_count(in);
     if (count < min || (count > max && min == max)) {
-        return api_in_fail(in, HE_BAD_VALUE, "the array has %zu values, %s%zu are needed", count,
+        return api_in_fail(in, HE_BAD_VALUE, "the array has %zu values and needs %s%zu", count,
                            min == max ? "" : "at least ", min);
     }
     if (count > max) {
-        return api_in_fail(in, HE_LIMIT, "the array has %zu values, at most %zu are taken", count,
+        return api_in_fail(in, HE_LIMIT, "the array has %zu values; at most %zu are allowed", count,
                            max);
     }
     return true;
@@ -360,7 +360,7 @@ bool api_in_number(const api_in *in, double *out)
         return wrong_type(in, "a number");
     }
     if (!isfinite(in->value->valuedouble)) {
-        return api_in_fail(in, HE_NOT_FINITE, "the number does not fit a double");
+        return api_in_fail(in, HE_NOT_FINITE, "the number is too large for a double");
     }
     *out = in->value->valuedouble;
     return true;
@@ -472,7 +472,7 @@ bool api_in_string(const api_in *in, size_t max, const char **out)
     }
     size_t length = strlen(in->value->valuestring);
     if (length > max) {
-        return api_in_fail(in, HE_BAD_VALUE, "the string has %zu bytes, at most %zu are taken",
+        return api_in_fail(in, HE_BAD_VALUE, "the string has %zu bytes; at most %zu are allowed",
                            length, max);
     }
     *out = in->value->valuestring;
@@ -494,7 +494,7 @@ bool api_in_choice(const api_in *in, const char *const *choices, int *out)
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", choices[i]);
     }
-    return api_in_fail(in, HE_BAD_VALUE, "\"%.60s\" is none of %s", text, list);
+    return api_in_fail(in, HE_BAD_VALUE, "\"%.60s\" is not one of %s", text, list);
 }
 
 bool api_in_element(const api_in *in, he_kind *kind, uint32_t *id)
@@ -509,7 +509,8 @@ bool api_in_element(const api_in *in, he_kind *kind, uint32_t *id)
     }
     second = member;
     if (api_in_next(&second)) {
-        return api_in_fail(&second, API_UNKNOWN_MEMBER, "one element is named by one member");
+        return api_in_fail(&second, API_UNKNOWN_MEMBER,
+                           "give exactly one of \"vertex\", \"halfedge\", \"edge\" and \"face\"");
     }
     for (he_kind k = HE_VERTEX; k <= HE_FACE; k++) {
         if (strcmp(api_in_name(&member), he_kind_name(k)) == 0) {
@@ -517,6 +518,8 @@ bool api_in_element(const api_in *in, he_kind *kind, uint32_t *id)
             return api_in_id(&member, id);
         }
     }
-    return api_in_fail(&member, API_UNKNOWN_MEMBER, "\"%.100s\" is not a kind of element",
-                       api_in_name(&member));
+    return api_in_fail(
+        &member, API_UNKNOWN_MEMBER,
+        "there is no kind of element \"%.100s\"; the kinds are vertex, halfedge, edge and face",
+        api_in_name(&member));
 }

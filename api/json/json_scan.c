@@ -26,14 +26,14 @@ static bool point(const he_lexer *x, api_problem *problem)
 bool api_json_refuse_fault(const he_lexer *x, uint64_t place, api_problem *problem)
 {
     if (x->fault == HE_FAULT_DEPTH) {
-        api_json_refuse_at(problem, place, API_MALFORMED_JSON, "nesting is deeper than %d levels",
-                           API_MAX_DEPTH);
+        api_json_refuse_at(problem, place, API_MALFORMED_JSON,
+                           "the JSON is nested deeper than %d levels", API_MAX_DEPTH);
     } else if (x->fault == HE_FAULT_LONG_NUMBER) {
         api_json_refuse_at(problem, place, HE_BAD_VALUE, "the number has more than %zu characters",
                            x->number_most);
     } else if (x->fault == HE_FAULT_LONG_NAME) {
         api_json_refuse_at(problem, place, API_UNKNOWN_MEMBER,
-                           "no member has a name of more than %zu bytes", x->name_most);
+                           "the name of a member is longer than %zu bytes", x->name_most);
     } else {
         api_json_refuse_at(problem, place,
                            x->fault == HE_FAULT_NOT_FINITE ? HE_NOT_FINITE : API_MALFORMED_JSON,
@@ -45,8 +45,8 @@ bool api_json_refuse_fault(const he_lexer *x, uint64_t place, api_problem *probl
 bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, api_problem *problem)
 {
     if (he_lexer_value_ahead(x) && ++*values > most) {
-        api_json_refuse_at(problem, he_lexer_place(x), HE_LIMIT, "there are more than %zu values",
-                           most);
+        api_json_refuse_at(problem, he_lexer_place(x), HE_LIMIT,
+                           "the JSON has more than %zu values", most);
         return point(x, problem);
     }
     *token = he_lexer_next(x);
@@ -55,7 +55,7 @@ bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, ap
     }
     if (*token == HE_TOKEN_NUMBER && x->length > API_MAX_NUMBER) {
         api_json_refuse_at(problem, x->start, HE_BAD_VALUE,
-                           "the number has %zu characters, at most %d are read", x->length,
+                           "the number has %zu characters; at most %d are allowed", x->length,
                            API_MAX_NUMBER);
         return point(x, problem);
     }

@@ -47,7 +47,7 @@ bool api_read_color(const api_in *in, size_t most, double color[4], size_t *coun
             return false;
         }
         if (color[n] < 0) {
-            return api_in_fail(&child, HE_BAD_VALUE, "a colour has no number below 0");
+            return api_in_fail(&child, HE_BAD_VALUE, "the numbers of a colour must not be below 0");
         }
         n++;
     }
@@ -95,7 +95,7 @@ static bool read_material(const api_in *in, he_materials *out)
         return false;
     }
     if (he_materials_find(out, text, strlen(text)) != SIZE_MAX) {
-        return api_in_fail(&name, API_DUPLICATE_MEMBER, "there are two materials of this name");
+        return api_in_fail(&name, API_DUPLICATE_MEMBER, "two materials have this name");
     }
     if (he_material_new(text, strlen(text), &look, &row, &err) != HE_OK ||
         he_materials_add(out, row, &err) != HE_OK) {

@@ -160,8 +160,8 @@ static bool read_ids(api_exchange *x, const char *text, choice *out)
             good = api_path_id(id, &ids[n]);
         }
         if (!good) {
-            return api_fail(x, API_BAD_PARAMETER, "\"ids\" is ids joined by commas, not \"%.40s\"",
-                            text);
+            return api_fail(x, API_BAD_PARAMETER,
+                            "\"ids\" must be ids separated by commas, not \"%.40s\"", text);
         }
         text += length;
         if (*text++ == '\0') {
@@ -177,7 +177,7 @@ static bool read_some(api_exchange *x, const he_mesh *mesh, choice *out)
 {
     he_error err = {0};
     if (api_param_text(x, "cursor") != NULL || api_param_text(x, "limit") != NULL) {
-        return api_fail(x, API_BAD_PARAMETER, "\"ids\" gives no page: leave out cursor and limit");
+        return api_fail(x, API_BAD_PARAMETER, "\"ids\" cannot be combined with cursor and limit");
     }
     if (!read_ids(x, api_param_text(x, "ids"), out)) {
         return false;
@@ -265,9 +265,10 @@ bool api_attribute_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     x->reading.tag = wants_octets(x) ? "octets" : "values";
     for (size_t i = 0; i < x->query.count && wants_octets(x); i++) {
         if (strcmp(x->query.pairs[i].name, "revision") != 0) {
-            return api_fail(x, API_BAD_PARAMETER,
-                            "\"%s\" belongs to pages: octets are all there is",
-                            x->query.pairs[i].name);
+            return api_fail(
+                x, API_BAD_PARAMETER,
+                "\"%s\" cannot be combined with application/octet-stream, which has all values",
+                x->query.pairs[i].name);
         }
     }
     bool some = api_param_text(x, "ids") != NULL;

@@ -11,7 +11,7 @@ static void make(api_exchange *x)
         api_answer_blob(x, 200, "application/vnd.sqlite3", &blob);
         api_answer_header(x, "Content-Disposition", "attachment; filename=\"hedge.db\"");
     } else if (status == ST_BUSY) {
-        api_fail(x, API_BACKUP_KEPT, "a backup is being made, or kept with its job");
+        api_fail(x, API_BACKUP_KEPT, "another backup is being made, or is still kept with its job");
     } else {
         api_fail(x, API_BACKUP_FAILED, "%s", message);
     }
@@ -22,7 +22,8 @@ static void make(api_exchange *x)
 void api_admin_backup(api_exchange *x)
 {
     if (x->service->options.backup == NULL) {
-        api_fail(x, API_NOTHING_KEPT, "meshes are kept in memory alone");
+        api_fail(x, API_NOTHING_KEPT,
+                 "the server keeps its meshes in memory only, so there is no store to back up");
         return;
     }
     api_run_long(x, make, true, 2 * API_PATIENCE);

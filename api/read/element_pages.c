@@ -169,7 +169,8 @@ bool api_elements_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     out->elements =
         (uint64_t)he_mesh_vertices(mesh) + he_mesh_count(mesh, HE_HALFEDGE) + he_mesh_faces(mesh);
     return api_param_text(x, of_pages) == NULL ||
-           api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to pages: lines are all there is",
+           api_fail(x, API_BAD_PARAMETER,
+                    "\"%s\" cannot be combined with application/x-ndjson, which has all elements",
                     of_pages);
 }
 

@@ -18,8 +18,8 @@ static bool read_since(api_exchange *x, st_since *since)
         return true;
     }
     return text == NULL || api_since_read(text, since) ||
-           api_fail(x, API_BAD_PARAMETER, "since is an event's id or a revision, not \"%.100s\"",
-                    text);
+           api_fail(x, API_BAD_PARAMETER,
+                    "\"since\" must be the id of an event or a revision, not \"%.100s\"", text);
 }
 
 void api_events_get(api_exchange *x)

@@ -287,7 +287,7 @@ bool api_geometry_cost(api_exchange *x, const he_mesh *mesh, api_cost *out)
     (void)mesh;
     (void)out; /* the cost depends on the kept slots */
     if ((api_param_text(x, "since") == NULL) != (api_param_text(x, "layout") == NULL)) {
-        return api_fail(x, API_BAD_PARAMETER, "`since` and `layout` are given together");
+        return api_fail(x, API_BAD_PARAMETER, "\"since\" and \"layout\" must be given together");
     }
     return !api_wants_job(x, 0) || name_kept(x);
 }

@@ -124,7 +124,7 @@ static bool read_cursor(api_exchange *x, const char *cursor, page *p)
         return false;
     }
     if (p->first > x->info.revision) {
-        return api_fail(x, API_BAD_CURSOR, "the cursor is not one of edits");
+        return api_fail(x, API_BAD_CURSOR, "the cursor does not belong to the list of edits");
     }
     return p->first <= p->last || find_entry(x, p, p->first, &entry) ||
            api_fail(x, API_REVISION_GONE, "the history does not reach back to revision %llu",

@@ -20,7 +20,8 @@ static bool read_list_cursor(api_exchange *x, const char **after)
         return true;
     }
     if (cursor[0] != 'm' || !api_path_is_mesh_id(cursor + 1)) {
-        return api_fail(x, API_BAD_CURSOR, "\"%s\" is not a cursor of this list", cursor);
+        return api_fail(x, API_BAD_CURSOR, "the cursor \"%s\" does not belong to this list",
+                        cursor);
     }
     *after = cursor + 1;
     return true;
@@ -247,7 +248,7 @@ static bool read_copy(api_exchange *x, copy_request *r)
             return false;
         }
         if (!api_path_is_mesh_id(r->id)) {
-            return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot name a mesh", r->id);
+            return api_in_fail(&member, API_BAD_ID, "\"%s\" cannot be the id of a mesh", r->id);
         }
         if (!api_gate_may_create(x, r->id)) {
             api_in_point(&member);

@@ -54,14 +54,15 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
     }
     for (const char *c = target; *c != '\0'; c++) {
         if (*c <= ' ' || *c > '~' || *c == '#') {
-            return api_in_fail(in, API_BAD_PATH, "byte %zu cannot be in a path",
+            return api_in_fail(in, API_BAD_PATH, "a path cannot contain byte %zu of this one",
                                (size_t)(c - target));
         }
     }
     if (raw[0] != '/' || strlen(target) > most || api_gate_ticket(query) != NULL) {
-        return api_in_fail(in, API_BAD_PATH,
-                           "a path begins with \"/\", has at most %zu characters and no ticket",
-                           most);
+        return api_in_fail(
+            in, API_BAD_PATH,
+            "a path must begin with \"/\", have at most %zu characters and contain no ticket",
+            most);
     }
     if (!api_path_split(raw, &x->arena, &path, &x->problem)) {
         x->problem.status = x->problem.code == HE_NO_MEMORY ? 0 : 400;
@@ -69,7 +70,7 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
         return false;
     }
     return api_route_find(x->service->routes, "GET", &path, &variables, allow) != NULL ||
-           api_in_fail(in, API_BAD_PATH, "no route takes GET at \"%.150s\"", raw);
+           api_in_fail(in, API_BAD_PATH, "the server does not answer GET \"%.150s\"", raw);
 }
 
 void api_tickets_post(api_exchange *x)
@@ -85,7 +86,7 @@ void api_tickets_post(api_exchange *x)
     }
     if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), ticket,
                           &expires)) {
-        api_fail(x, API_TOO_MANY_TICKETS, "as many tickets wait to be used as may");
+        api_fail(x, API_TOO_MANY_TICKETS, "too many tickets are waiting to be used");
         return;
     }
     char *whole = api_arena_array(&x->arena, strlen(target) + sizeof ticket + 10, 1);

@@ -79,7 +79,7 @@ static bool refuse_unknown(api_exchange *x, const char *name)
     for (size_t i = 0; x->route->parameters[i] != NULL; i++) {
         api_known_names_add(&known, x->route->parameters[i]->name);
     }
-    return api_fail(x, API_UNKNOWN_PARAMETER, "\"%.60s\" is not a parameter of this route%s", name,
+    return api_fail(x, API_UNKNOWN_PARAMETER, "there is no parameter \"%.60s\" here%s", name,
                     api_known_names_text(&known));
 }
 
@@ -146,15 +146,15 @@ static bool refuse_path(api_exchange *x, const api_path *path)
     const char *missed = api_route_choices(x->service->routes, path, list);
     if (path->has_slash) {
         return api_fail(x, API_BAD_PATH,
-                        "an escaped slash is taken only in the name of an attribute");
+                        "an escaped slash is allowed only in the name of an attribute");
     }
     if (list[0] == '\0') {
-        return api_fail(x, API_NO_SUCH_ROUTE, "there is nothing at \"%.150s\"", x->request.path);
+        return api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
     }
     if (missed == NULL) {
-        return api_fail(x, API_NO_SUCH_ROUTE, "the path goes on with one of %s", list);
+        return api_fail(x, API_NO_SUCH_ROUTE, "the path must continue with one of %s", list);
     }
-    return api_fail(x, API_NO_SUCH_ROUTE, "\"%.50s\" is none of %s", missed, list);
+    return api_fail(x, API_NO_SUCH_ROUTE, "\"%.50s\" is not one of %s", missed, list);
 }
 
 /* Redirects a GET whose path has one '/' too many at its end, such as "/docs/", to the path without
@@ -210,14 +210,15 @@ static bool find_route(api_exchange *x)
         return false;
     }
     if (x->route == NULL) {
-        return api_fail(x, API_METHOD_NOT_ALLOWED, "the path does not take %.20s, only %s",
+        return api_fail(x, API_METHOD_NOT_ALLOWED, "this path does not support %.20s, only %s",
                         x->request.method, x->allow);
     }
     x->answer.route = x->route->path;
     x->head = strcmp(x->request.method, "HEAD") == 0;
     if ((x->route->flags & API_EXPENSIVE) && is_of_other_site(x)) {
         return api_fail(x, API_FOREIGN_ORIGIN,
-                        "Sec-Fetch-Site says that another site asks for what is expensive to find");
+                        "this read is expensive, and Sec-Fetch-Site says that a page of another "
+                        "site asks for it");
     }
     return api_gate_enter(x) && check_variables(x, &variables) && check_query(x);
 }
@@ -302,10 +303,10 @@ uint64_t api_body_cap(const api_exchange *x)
 bool api_refuse_size(api_exchange *x)
 {
     if (x->route->body_kind == API_BODY_NONE) {
-        return api_fail(x, API_UNEXPECTED_BODY, "%s takes no body here", x->request.method);
+        return api_fail(x, API_UNEXPECTED_BODY, "%s must not have a body here", x->request.method);
     }
     return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
-                    x->unpack == NULL ? "exceeds" : "unfolds to more than",
+                    x->unpack == NULL ? "exceeds" : "decompresses to more than",
                     (unsigned long long)api_body_cap(x));
 }
 
@@ -332,7 +333,8 @@ bool api_refuse_format(api_exchange *x, const char *detail)
                                  format->choices[i]);
         assert(used < sizeof names);
     }
-    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s: say ?format=, one of %s", detail, names);
+    api_fail(x, API_UNSUPPORTED_MEDIA_TYPE, "%s: name the format with ?format=, one of %s", detail,
+             names);
     x->problem.supported = x->route->consumes;
     return false;
 }

@@ -26,7 +26,7 @@ bool api_at_revision_wanted(api_exchange *x, uint64_t *revision)
     *revision = asked != 0 ? asked : pinned;
     if (asked != 0 && pinned != 0 && asked != pinned) {
         *revision = 0;
-        api_fail(x, API_BAD_CURSOR, "the cursor is of revision %llu, not %llu",
+        api_fail(x, API_BAD_CURSOR, "the cursor belongs to revision %llu, not %llu",
                  (unsigned long long)pinned, (unsigned long long)asked);
     }
     return (asked != 0 || pinned != 0) && *revision != present;
@@ -35,10 +35,10 @@ bool api_at_revision_wanted(api_exchange *x, uint64_t *revision)
 bool api_at_revision_may(api_exchange *x, uint64_t revision)
 {
     uint64_t present = x->info.revision;
-    return revision != 0 &&
-           (revision <= present ||
-            api_fail(x, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
-                     (unsigned long long)present, (unsigned long long)revision));
+    return revision != 0 && (revision <= present ||
+                             api_fail(x, API_NO_SUCH_REVISION,
+                                      "the mesh is at revision %llu and has no revision %llu yet",
+                                      (unsigned long long)present, (unsigned long long)revision));
 }
 
 bool api_at_revision_take(api_exchange *x, uint64_t revision, st_snapshot **out)

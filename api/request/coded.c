@@ -6,7 +6,8 @@ bool api_coded_body(api_exchange *x)
 {
     const char *coding = x->request.headers[API_HEADER_CONTENT_ENCODING];
     if (!api_coding_of_body(coding, &x->coding_in)) {
-        api_fail(x, API_UNSUPPORTED_ENCODING, "\"%.60s\" is not taken, only one of %s and identity",
+        api_fail(x, API_UNSUPPORTED_ENCODING,
+                 "the content coding \"%.60s\" is not supported; use one of %s, or identity",
                  coding, api_codings_list);
         x->problem.supported = api_codings_taken;
         return false;
@@ -35,7 +36,8 @@ bool api_coded_accept(api_exchange *x)
     }
     if (!good) {
         api_fail(x, API_NOT_ACCEPTABLE,
-                 "\"%.100s\" allows no content coding this route answers with", accept);
+                 "Accept-Encoding \"%.100s\" allows none of the content codings of the answer",
+                 accept);
         x->problem.supported = plain ? identity : api_codings_taken;
     }
     return good;

@@ -125,7 +125,8 @@ static bool fail_lost(api_exchange *x)
     st_store_health(x->store, &health);
     return (x->route->flags & API_WRITES) && health.status != ST_OK
                ? api_fail_store(x, health.status)
-               : api_fail(x, API_STORE_LOST, "the mesh has a change that was lost");
+               : api_fail(x, API_STORE_LOST,
+                          "a change of this mesh could not be saved and was lost");
 }
 
 st_cause api_cause(const api_exchange *x)
@@ -144,28 +145,29 @@ bool api_fail_store(api_exchange *x, st_status status)
         return api_fail(x, API_NO_SUCH_MESH, "no mesh has the id \"%s\"",
                         x->mesh_id == NULL ? "" : x->mesh_id);
     case ST_TAKEN:
-        return api_fail(x, API_MESH_EXISTS, "the id is that of another mesh");
+        return api_fail(x, API_MESH_EXISTS, "another mesh has this id");
     case ST_NO_MEMORY:
         return api_fail_memory(x);
     case ST_BUDGET:
-        return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit the memory budget");
+        return api_fail(x, API_MEMORY_BUDGET, "the mesh does not fit in the memory budget");
     case ST_TOO_MANY:
-        return api_fail(x, API_TOO_MANY_MESHES, "the server holds as many meshes as it may");
+        return api_fail(x, API_TOO_MANY_MESHES,
+                        "the server already holds as many meshes as it is allowed to");
     case ST_BUSY:
         return x->info.job[0] == '\0'
-                   ? api_fail(x, API_MESH_BUSY, "a long operation changes the mesh")
-                   : api_fail(x, API_MESH_BUSY, "job %s changes the mesh: see /v1/jobs/%s",
+                   ? api_fail(x, API_MESH_BUSY, "a long operation is changing the mesh")
+                   : api_fail(x, API_MESH_BUSY, "job %s is changing the mesh: see /v1/jobs/%s",
                               x->info.job, x->info.job);
     case ST_NOTHING:
-        return api_fail(x, API_NOTHING_TO_UNDO, "the stack is empty");
+        return api_fail(x, API_NOTHING_TO_UNDO, "no edit is left to undo");
     case ST_LISTENERS:
-        return api_fail(x, API_OVERLOADED, "as many clients listen as may");
+        return api_fail(x, API_OVERLOADED, "too many clients are listening to events");
     case ST_AHEAD:
-        return api_fail(x, API_NO_SUCH_REVISION, "the revision is still to come");
+        return api_fail(x, API_NO_SUCH_REVISION, "the mesh does not have this revision yet");
     case ST_GONE:
         return api_fail(x, API_REVISION_GONE, "the history does not reach back to the revision");
     case ST_ELSEWHERE:
-        return api_fail(x, API_UNREACHABLE_REVISION, "the stack does not lead to the revision");
+        return api_fail(x, API_UNREACHABLE_REVISION, "neither undo nor redo leads to the revision");
     case ST_LOST:
         return fail_lost(x);
     case ST_BEHIND:
@@ -173,11 +175,14 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_FULL:
         return api_fail(x, API_STORE_FULL, "the disk is full");
     case ST_FAILED:
-        return api_fail(x, API_STORE_FAILED, "the disk failed: no change is taken any more");
+        return api_fail(
+            x, API_STORE_FAILED,
+            "the disk failed, and no changes are accepted until the server is restarted");
     case ST_TOO_LARGE:
-        return api_fail(x, HE_LIMIT,
-                        "more than %d bytes would be kept of the change: make it in several steps",
-                        (int)ST_MOST_BODY);
+        return api_fail(
+            x, HE_LIMIT,
+            "the change would take more than %d bytes in the history: make it in several steps",
+            (int)ST_MOST_BODY);
     case ST_LOADING:
         return api_fail(x, API_LOADING, "the mesh is being loaded from the disk");
     case ST_DAMAGED:
@@ -189,7 +194,7 @@ bool api_fail_store(api_exchange *x, st_status status)
     case ST_COLD:
         break;
     }
-    return api_fail(x, API_INTERNAL, "the store refused without a reason");
+    return api_fail(x, API_INTERNAL, "the store failed without giving a reason");
 }
 
 bool api_fail_memory(api_exchange *x)
@@ -199,7 +204,8 @@ bool api_fail_memory(api_exchange *x)
 
 bool api_fail_accept(api_exchange *x)
 {
-    api_fail(x, API_NOT_ACCEPTABLE, "\"%.100s\" allows nothing this route answers with",
+    api_fail(x, API_NOT_ACCEPTABLE,
+             "Accept \"%.100s\" allows none of the media types of the answer",
              x->request.headers[API_HEADER_ACCEPT]);
     x->problem.supported = x->route->produces;
     return false;
@@ -221,10 +227,11 @@ bool api_preconditions_hold(api_exchange *x, const uint64_t *expected)
     const char *match = x->request.headers[API_HEADER_IF_MATCH];
     const char *none = x->request.headers[API_HEADER_IF_NONE_MATCH];
     if (match != NULL && !api_etag_is_present(match, &x->info)) {
-        return refuse_stale(x, "If-Match names no present state of the mesh");
+        return refuse_stale(x, "If-Match does not name the present state of the mesh");
     }
     if (none != NULL && api_etag_is_present(none, &x->info)) {
-        return api_fail(x, API_PRECONDITION, "the mesh exists in a state If-None-Match names");
+        return api_fail(x, API_PRECONDITION,
+                        "the mesh exists, in a state that If-None-Match excludes");
     }
     if (expected != NULL && *expected != x->info.revision) {
         char what[64];
@@ -298,7 +305,7 @@ bool api_write_commit(api_exchange *x, const char *ops)
 bool api_precondition_absent(api_exchange *x)
 {
     return x->request.headers[API_HEADER_IF_MATCH] == NULL ||
-           api_fail(x, API_PRECONDITION, "If-Match asks for a mesh that does not exist");
+           api_fail(x, API_PRECONDITION, "If-Match is given, but the mesh does not exist");
 }
 
 /* --- work --- */

@@ -29,14 +29,14 @@ static bool refuse_unknown(api_exchange *x, bool has_token)
         return false;
     }
     x->has_bad_token = has_token;
-    return has_token ? api_fail(x, API_UNAUTHORIZED, "the token is not known, or not any more")
+    return has_token ? api_fail(x, API_UNAUTHORIZED, "the token is unknown, expired or revoked")
                      : api_fail(x, API_UNAUTHORIZED, "the header Authorization: Bearer is missing");
 }
 
 static bool refuse_role(api_exchange *x, api_role needed)
 {
     const char *role = api_role_name(needed);
-    api_fail(x, API_FORBIDDEN, "this takes a token of the role \"%s\"", role);
+    api_fail(x, API_FORBIDDEN, "this needs a token with the role \"%s\"", role);
     x->problem.role = role;
     return false;
 }
@@ -122,7 +122,7 @@ bool api_gate_sees(const api_exchange *x, const char *mesh)
 bool api_gate_may_create(api_exchange *x, const char *mesh)
 {
     return api_gate_sees(x, mesh) ||
-           api_fail(x, API_PREFIX, "the id does not begin with a prefix of the token");
+           api_fail(x, API_PREFIX, "the id must begin with one of the prefixes of the token");
 }
 
 bool api_gate_may_change(api_exchange *x)

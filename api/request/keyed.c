@@ -25,8 +25,9 @@ bool api_keyed_begin(api_exchange *x)
         }
     }
     if (length == 0 || length > API_MAX_KEY_LENGTH) {
-        return api_fail(x, API_BAD_HEADER, "Idempotency-Key has %zu characters, 1 to %d are taken",
-                        length, API_MAX_KEY_LENGTH);
+        return api_fail(x, API_BAD_HEADER,
+                        "Idempotency-Key has %zu characters; 1 to %d are allowed", length,
+                        API_MAX_KEY_LENGTH);
     }
     x->key = api_arena_copy(&x->arena, key, length); /* a job outlives the connection's buffer */
     if (x->key == NULL) {
@@ -107,17 +108,16 @@ bool api_keyed_find(api_exchange *x)
         replay(x);
         return false;
     case ST_KEYED_BUSY:
-        return api_fail(x, API_IDEMPOTENCY_BUSY, "the request with the key \"%.100s\" is under way",
-                        x->key);
+        return api_fail(x, API_IDEMPOTENCY_BUSY,
+                        "a request with the key \"%.100s\" is still in progress", x->key);
     case ST_KEYED_OTHER:
-        return api_fail(x, API_IDEMPOTENCY_MISMATCH, "the key \"%.100s\" is of another request",
-                        x->key);
+        return api_fail(x, API_IDEMPOTENCY_MISMATCH,
+                        "the key \"%.100s\" was used for another request", x->key);
     case ST_KEYED_DAMAGED:
-        return api_fail(
-            x, API_IDEMPOTENCY_MISMATCH,
-            "what the disk kept of the request with the key \"%.100s\" is damaged: look "
-            "whether it was done, and give a request that is to be done another key",
-            x->key);
+        return api_fail(x, API_IDEMPOTENCY_MISMATCH,
+                        "the record of the request with the key \"%.100s\" is damaged on the disk: "
+                        "check whether it was done, and use another key to do it",
+                        x->key);
     case ST_KEYED_NO_MEMORY:
         break;
     }

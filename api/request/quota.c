@@ -33,7 +33,7 @@ static bool refuse_bytes(api_exchange *x, const st_usage *usage)
 {
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESH_BYTES);
     return api_fail(x, API_QUOTA,
-                    "the meshes that the token made may take %llu bytes, and take %llu",
+                    "the meshes of this token may take %llu bytes in all, and take %llu",
                     (unsigned long long)usage->most_bytes, (unsigned long long)usage->bytes);
 }
 
@@ -45,7 +45,7 @@ bool api_quota_fail_new(api_exchange *x)
         return refuse_bytes(x, &usage);
     }
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESHES);
-    return api_fail(x, API_QUOTA, "the token may have made %llu meshes, and has made %llu",
+    return api_fail(x, API_QUOTA, "this token may have %llu meshes, and has %llu",
                     (unsigned long long)usage.most_meshes, (unsigned long long)usage.meshes);
 }
 
@@ -59,5 +59,5 @@ bool api_quota_fail(api_exchange *x)
     }
     api_limited_count(&x->service->limited, API_CLIENT_TOKEN, API_LIMIT_MESH_BYTES);
     return api_fail(x, API_QUOTA,
-                    "the meshes of the token that made this one may take no more memory");
+                    "the meshes of the token that made this one may not take more memory");
 }

@@ -11,10 +11,10 @@ static bool refuse(api_exchange *x, api_client_kind kind)
     api_limited_count(&x->service->limited, kind,
                       by_requests ? API_LIMIT_REQUESTS : API_LIMIT_BYTES);
     if (by_requests) {
-        api_fail(x, API_RATE_LIMIT, "the %s may have %llu requests a second", whose,
+        api_fail(x, API_RATE_LIMIT, "the %s is limited to %llu requests a second", whose,
                  (unsigned long long)x->rate.requests);
     } else {
-        api_fail(x, API_RATE_LIMIT, "the %s may have %llu bytes a second", whose,
+        api_fail(x, API_RATE_LIMIT, "the %s is limited to %llu bytes a second", whose,
                  (unsigned long long)x->rate.bytes);
     }
     x->problem.retry = wait;
@@ -25,7 +25,7 @@ static bool refuse_connection(api_exchange *x)
 {
     api_limited_count(&x->service->limited, API_CLIENT_ADDRESS, API_LIMIT_CONNECTIONS);
     return api_fail(
-        x, API_TOO_MANY_CONNECTIONS, "the address may have %llu connections at once",
+        x, API_TOO_MANY_CONNECTIONS, "the address is limited to %llu connections at once",
         (unsigned long long)x->service->options.address_limits.most[API_LIMIT_CONNECTIONS]);
 }
 

@@ -190,7 +190,7 @@ static void end_given_up(api_exchange *x)
     if (x->watch.cancelled && x->problem.code != HE_OK) {
         x->problem = x->given_up;
         if (x->problem.code == HE_OK) {
-            api_fail(x, HE_CANCELLED, "given up while %s", x->watch.phase);
+            api_fail(x, HE_CANCELLED, "cancelled while %s", x->watch.phase);
         }
     }
 }
@@ -487,11 +487,12 @@ api_exchange *api_detach(api_exchange *x)
         api_free(x);
     }
     if (status == ST_TOO_MANY) {
-        api_fail(answer, API_TOO_MANY_JOBS, "as many jobs wait as may");
+        api_fail(answer, API_TOO_MANY_JOBS, "too many jobs are waiting");
     } else if (status == ST_QUOTA) {
         api_limited_count(&answer->service->limited, API_CLIENT_TOKEN, API_LIMIT_JOBS);
         api_fail(answer, API_TOO_MANY_JOBS_OF_TOKEN,
-                 "%llu jobs of the token may wait or run at once", (unsigned long long)most);
+                 "the token is limited to %llu jobs that wait or run at once",
+                 (unsigned long long)most);
     } else if (status != ST_OK) {
         api_fail_store(answer, status);
     }

@@ -182,7 +182,8 @@ static uint64_t body_cap(const writing *w)
 static bool refuse_body(api_exchange *x, const writing *w)
 {
     return api_fail(x, API_BODY_TOO_LARGE, "the body exceeds %llu bytes%s",
-                    (unsigned long long)body_cap(w), w->octets ? "" : ": octets may have more");
+                    (unsigned long long)body_cap(w),
+                    w->octets ? "" : "; application/octet-stream may be larger");
 }
 
 /* Limits the body to the size of valid octets, which is known before the body arrives if the mesh
@@ -202,7 +203,8 @@ static bool describe_by_query(api_exchange *x, writing *w)
     int type = api_param_choice(x, "type"), rule = api_param_choice(x, "rule");
     he_error err = {0};
     if (type < 0) {
-        return api_fail(x, API_BAD_PARAMETER, "octets need \"type\" in the query");
+        return api_fail(x, API_BAD_PARAMETER,
+                        "application/octet-stream needs the parameter \"type\"");
     }
     rule = rule < 0 ? (int)api_default_rule((he_type)type) : rule;
     return he_column_new(x->attribute, x->kind, (he_type)type,
@@ -223,13 +225,16 @@ void api_attribute_put_begin(api_exchange *x)
         return;
     }
     if (length >= HE_COLUMN_NAME) {
-        api_fail(x, HE_BAD_VALUE, "an attribute's name has 1 to %d bytes, not %zu",
+        api_fail(x, HE_BAD_VALUE,
+                 "an attribute's name must have 1 to %d bytes, and this one has %zu",
                  HE_COLUMN_NAME - 1, length);
         return;
     }
     w->octets = x->media_in != NULL && strcmp(x->media_in, "application/octet-stream") == 0;
     if (!w->octets && x->query.count > 0) {
-        api_fail(x, API_BAD_PARAMETER, "\"%s\" belongs to octets: say it in the body",
+        api_fail(x, API_BAD_PARAMETER,
+                 "\"%s\" is a parameter for application/octet-stream only: in JSON it is a member "
+                 "of the body",
                  x->query.pairs[0].name);
         return;
     }
@@ -280,7 +285,8 @@ static bool decode_octets(api_exchange *x, writing *w)
     size_t row = w->column->row_bytes, at = 0;
     he_error err = {0};
     if (w->body.length % row != 0) {
-        return api_fail(x, HE_BAD_VALUE, "%zu bytes are not rows of %zu", w->body.length, row);
+        return api_fail(x, HE_BAD_VALUE, "%zu bytes are not a whole number of values of %zu bytes",
+                        w->body.length, row);
     }
     w->count = w->body.length / row;
     if (he_attribute_check(w->column, w->body.bytes, w->count, &at, &err) != HE_OK) {
@@ -302,7 +308,8 @@ static bool fill(api_exchange *x, writing *w, const he_mesh *mesh)
                         (unsigned long long)API_MAX_ATTRIBUTE_BYTES);
     }
     if (w->octets && w->count != issued) {
-        he_fail_plain(&err, HE_BAD_VALUE, "there are %zu rows, but %u ids of %s were issued",
+        he_fail_plain(&err, HE_BAD_VALUE,
+                      "the body has %zu values, and must have one for each of the %u ids of %s",
                       w->count, issued, he_kind_plural(x->kind));
         return refuse_values(x, w, &err);
     }
@@ -339,7 +346,7 @@ static void put(api_exchange *x, writing *w)
     he_error err = {0};
     bool is_new = he_mesh_find_column(mesh, x->kind, x->attribute) == NULL;
     bool good = !is_new || count_columns(mesh) < API_MAX_ATTRIBUTES ||
-                api_fail(x, HE_LIMIT, "the mesh has %zu attributes, no more are taken",
+                api_fail(x, HE_LIMIT, "the mesh has %zu attributes, and may not have more",
                          count_columns(mesh));
     good = good && fill(x, w, mesh);
     if (good && he_attribute_put(mesh, w->column, &err) != HE_OK) {
@@ -445,7 +452,7 @@ static bool patch(api_exchange *x, writing *w, he_mesh *mesh)
         return api_in_fail(&x->root, API_MISSING_MEMBER, "\"values\" or \"value\" is missing");
     }
     if (!w->same && w->count != count) {
-        he_fail_plain(&err, HE_BAD_VALUE, "there are %zu values for %zu ids", w->count, count);
+        he_fail_plain(&err, HE_BAD_VALUE, "%zu values are given for %zu ids", w->count, count);
         return refuse_values(x, w, &err);
     }
     if (count > API_MAX_EDITS_ROWS / (column->row_bytes / 4 + 1)) {

@@ -227,7 +227,7 @@ void api_meshes_create(api_exchange *x)
 {
     const char *id = api_param_text(x, "id");
     if (id != NULL && !api_path_is_mesh_id(id)) {
-        api_fail(x, API_BAD_ID, "\"%.100s\" cannot name a mesh", id);
+        api_fail(x, API_BAD_ID, "\"%.100s\" cannot be the id of a mesh", id);
         return;
     }
     finish(x, create);

@@ -30,9 +30,9 @@ static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_
         return false;
     }
     if (text[0] != '$') {
-        return api_in_fail(in, API_WRONG_TYPE,
-                           "a string in the place of an id is a reference such as "
-                           "\"$name.result\"");
+        return api_in_fail(
+            in, API_WRONG_TYPE,
+            "a string in place of an id must be a reference such as \"$name.result\"");
     }
     return d->references->find(d->references->context, in, text, kind, found);
 }
@@ -73,7 +73,7 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
             return false;
         }
         if (found.count > API_MAX_IDS - count) {
-            return api_in_fail(&child, HE_LIMIT, "the list stands for more than %d ids",
+            return api_in_fail(&child, HE_LIMIT, "the list refers to more than %d elements",
                                (int)API_MAX_IDS);
         }
         if (found.count > capacity - count) {
@@ -94,7 +94,8 @@ static bool decode_list(const decoder *d, he_kind kind, size_t min, const api_in
         return api_in_fail(in, HE_NO_MEMORY, "no memory for a list of ids");
     }
     if (count < min) {
-        return api_in_fail(in, HE_NO_SUCH_ELEMENT, "the references in the list stand for nothing");
+        return api_in_fail(in, HE_NO_SUCH_ELEMENT,
+                           "the references in the list refer to no elements");
     }
     arg->ids = ids;
     arg->count = count;
@@ -167,7 +168,7 @@ static bool decode_matrix(const api_in *in, he_arg *arg)
             return false;
         }
         if (i >= 12 && (arg->matrix[i] < last[i - 12] || arg->matrix[i] > last[i - 12])) {
-            return api_in_fail(&child, HE_BAD_VALUE, "the last row of the matrix is 0 0 0 1");
+            return api_in_fail(&child, HE_BAD_VALUE, "the last row of the matrix must be 0 0 0 1");
         }
         i++;
     }
@@ -269,8 +270,9 @@ static bool decode_as(const decoder *d, const api_in *in)
         }
     }
     if (as[0] == '\0') {
-        return api_in_fail(in, HE_BAD_VALUE,
-                           "a name is letters, digits and '_', and does not begin with a digit");
+        return api_in_fail(
+            in, HE_BAD_VALUE,
+            "a name must consist of letters, digits and '_', and not begin with a digit");
     }
     d->call->as = as;
     return true;
@@ -296,7 +298,7 @@ static bool refuse_parameter(const decoder *d, const api_in *in)
             api_known_names_add(&known, param->plural);
         }
     }
-    return api_in_fail(in, API_UNKNOWN_MEMBER, "\"%.60s\" is not a parameter of %s%s",
+    return api_in_fail(in, API_UNKNOWN_MEMBER, "there is no parameter \"%.60s\" of %s%s",
                        api_in_name(in), d->op->name, api_known_names_text(&known));
 }
 
@@ -316,7 +318,7 @@ static bool decode_member(const decoder *d, const char *const *also, const api_i
     }
     he_arg *arg = &d->call->args[i];
     if (arg->given) {
-        return api_in_fail(in, API_CONFLICTING_MEMBERS, "\"%s\" and \"%s\" exclude each other",
+        return api_in_fail(in, API_CONFLICTING_MEMBERS, "give either \"%s\" or \"%s\", not both",
                            d->op->params[i].name, d->op->params[i].plural);
     }
     arg->given = true;
@@ -344,7 +346,7 @@ static bool check_given(const decoder *d)
                     at = *d->object;
                 }
                 return api_in_fail(&at, API_CONFLICTING_MEMBERS,
-                                   "\"%s\" and \"%s\" exclude each other", param->name,
+                                   "give either \"%s\" or \"%s\", not both", param->name,
                                    other->name);
             }
             given = given || d->call->args[j].given;
@@ -378,7 +380,7 @@ static bool check_points(const decoder *d)
         api_in at;
         if (d->op->params[i].type == HE_PARAM_POINTS && arg->given && arg->list &&
             arg->count != elements && api_in_find(d->object, d->op->params[i].name, &at)) {
-            return api_in_fail(&at, HE_BAD_VALUE, "there are %zu points for %zu elements",
+            return api_in_fail(&at, HE_BAD_VALUE, "%zu points are given for %zu elements",
                                arg->count, elements);
         }
     }

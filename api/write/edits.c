@@ -135,10 +135,10 @@ static bool check_ops(const api_exchange *x, edits *e)
 static bool check_count(const api_in *list, size_t count)
 {
     if (count == 0) {
-        return api_in_fail(list, HE_BAD_VALUE, "the list has no operation");
+        return api_in_fail(list, HE_BAD_VALUE, "the list of operations is empty");
     }
     return count <= API_MAX_OPS ||
-           api_in_fail(list, HE_LIMIT, "the list has %zu operations, at most %d are taken", count,
+           api_in_fail(list, HE_LIMIT, "the list has %zu operations; at most %d are allowed", count,
                        (int)API_MAX_OPS);
 }
 
@@ -177,15 +177,21 @@ static uint64_t issued(const he_mesh *mesh)
 static bool within_limits(const edits *e, const he_delta *delta, const api_in *in)
 {
     if (e->looked_at > API_MAX_EDITS_ELEMENTS) {
-        return api_in_fail(in, HE_LIMIT, "the operations before look at %llu elements, over %d",
+        return api_in_fail(in, HE_LIMIT,
+                           "the list is too long from here: the operations before this one visit "
+                           "%llu elements, and at most %d are allowed",
                            (unsigned long long)e->looked_at, (int)API_MAX_EDITS_ELEMENTS);
     }
     if (e->steps > API_MAX_EDITS_STEPS) {
-        return api_in_fail(in, HE_LIMIT, "the operations before take %llu steps, over %llu",
+        return api_in_fail(in, HE_LIMIT,
+                           "the list is too long from here: the operations before this one take "
+                           "%llu steps, and at most %llu are allowed",
                            (unsigned long long)e->steps, (unsigned long long)API_MAX_EDITS_STEPS);
     }
     if (delta->count > API_MAX_EDITS_ROWS) {
-        return api_in_fail(in, HE_LIMIT, "the operations before change %zu rows, over %d",
+        return api_in_fail(in, HE_LIMIT,
+                           "the list is too long from here: the operations before this one change "
+                           "%zu rows, and at most %d are allowed",
                            delta->count, (int)API_MAX_EDITS_ROWS);
     }
     return true;
@@ -242,11 +248,13 @@ static bool within_attributes(attribute_count before, const he_mesh *mesh, const
 {
     attribute_count after = count_attributes(mesh);
     if (after.columns > before.columns && after.columns > API_MAX_ATTRIBUTES) {
-        return api_in_fail(in, HE_LIMIT, "the mesh would have %zu attributes, over %d",
+        return api_in_fail(in, HE_LIMIT,
+                           "the mesh would have %zu attributes; at most %d are allowed",
                            after.columns, (int)API_MAX_ATTRIBUTES);
     }
     if (after.labels > before.labels && after.labels > API_MAX_LABELS) {
-        return api_in_fail(in, HE_LIMIT, "an attribute would have %zu labels, over %d",
+        return api_in_fail(in, HE_LIMIT,
+                           "an attribute would have %zu labels; at most %d are allowed",
                            after.labels, (int)API_MAX_LABELS);
     }
     return true;

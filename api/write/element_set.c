@@ -12,17 +12,18 @@ bool api_in_set(const api_in *in, const char **name)
     }
     if (!api_in_first(in, &member)) {
         return api_in_fail(in, API_MISSING_MEMBER,
-                           "a set is named by a bool attribute: {\"selected\":true}");
+                           "a set must name a bool attribute, such as {\"selected\":true}");
     }
     second = member;
     if (api_in_next(&second)) {
-        return api_in_fail(&second, API_UNKNOWN_MEMBER, "a set is named by one attribute");
+        return api_in_fail(&second, API_UNKNOWN_MEMBER, "a set must name exactly one attribute");
     }
     if (!api_in_bool(&member, &flag)) {
         return false;
     }
     if (!flag) {
-        return api_in_fail(&member, HE_BAD_VALUE, "a set is where the attribute is true");
+        return api_in_fail(&member, HE_BAD_VALUE,
+                           "the value of the attribute in a set must be true");
     }
     *name = api_in_name(&member);
     return true;

@@ -63,8 +63,9 @@ static bool find_value(const api_in *at, const char *text, const api_name *name,
         return true;
     }
     if (list && (uint64_t)index >= ids->count) {
-        return api_in_fail(at, HE_NO_SUCH_ELEMENT, "\"%.100s\" is beyond the %zu of the result",
-                           text, ids->count);
+        return api_in_fail(at, HE_NO_SUCH_ELEMENT,
+                           "\"%.100s\" is out of range: the result has %zu elements", text,
+                           ids->count);
     }
     out->ids = list ? &ids->ids[index] : &results->id[row];
     if (!results->present[row] || *out->ids == HE_NONE) {
@@ -80,12 +81,12 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
     const char *dot = strchr(text, '.');
     if (dot == NULL) {
         return api_in_fail(at, API_BAD_REFERENCE,
-                           "\"%.100s\" names no result: \"$name.result\" is expected", text);
+                           "\"%.100s\" is not a reference such as \"$name.result\"", text);
     }
     const api_name *name = find_name(names, text + 1, (size_t)(dot - text - 1));
     if (name == NULL) {
         return api_in_fail(at, API_BAD_REFERENCE,
-                           "no earlier operation carries the name of \"%.100s\"", text);
+                           "no earlier operation has the name that \"%.100s\" refers to", text);
     }
     const char *result = dot + 1, *second = strchr(result, '.');
     size_t length = second == NULL ? strlen(result) : (size_t)(second - result);
@@ -105,7 +106,7 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
         }
         return find_value(at, text, name, row, index, out);
     }
-    return api_in_fail(at, API_BAD_REFERENCE, "%s has no result of the name in \"%.100s\"",
+    return api_in_fail(at, API_BAD_REFERENCE, "%s has no result such as \"%.100s\" refers to",
                        name->op->name, text);
 }
 
@@ -166,7 +167,8 @@ bool api_names_add(api_names *names, const api_in *at, const api_call *call)
     api_in_find(at, "as", &as);
     size_t length = strlen(call->as);
     if (find_name(names, call->as, length) != NULL) {
-        return api_in_fail(&as, API_REPEATED_NAME, "\"%s\" names an earlier operation", call->as);
+        return api_in_fail(&as, API_REPEATED_NAME,
+                           "an earlier operation already has the name \"%s\"", call->as);
     }
     const char *name = grow(names) ? api_arena_copy(&names->texts, call->as, length) : NULL;
     if (name == NULL) {

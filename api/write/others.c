@@ -23,7 +23,7 @@ static bool find(void *context, const api_in *at, const char *id, const he_mesh 
         }
     }
     if (o->count == API_MAX_OTHERS) {
-        return api_in_fail(at, HE_LIMIT, "a request names at most %d other meshes",
+        return api_in_fail(at, HE_LIMIT, "a request may use at most %d other meshes",
                            (int)API_MAX_OTHERS);
     }
     api_other *other = &o->other[o->count];

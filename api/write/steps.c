@@ -37,7 +37,7 @@ static bool read_request(api_exchange *x, steps *s)
     }
     return api_in_u64(&s->to, 1, (uint64_t)1 << 53, &s->revision) &&
            (!has_count || api_in_fail(&s->to, API_CONFLICTING_MEMBERS,
-                                      "\"steps\" and \"to_revision\" exclude each other"));
+                                      "give either \"steps\" or \"to_revision\", not both"));
 }
 
 static const char *name_of(const steps *s)
@@ -55,15 +55,16 @@ static void refuse(api_exchange *x, const steps *s, st_status status)
                            : "fewer edits are left to %s at revision %llu than are asked for",
                  name_of(s), present);
     } else if (status == ST_AHEAD) {
-        api_in_fail(&s->to, API_NO_SUCH_REVISION, "the mesh is at revision %llu, before %llu",
-                    present, to);
+        api_in_fail(&s->to, API_NO_SUCH_REVISION,
+                    "the mesh is at revision %llu and has no revision %llu yet", present, to);
         x->problem.status = 422;
     } else if (status == ST_GONE) {
         api_in_fail(&s->to, API_REVISION_GONE, "the history does not reach back to revision %llu",
                     to);
     } else if (status == ST_ELSEWHERE) {
         api_in_fail(&s->to, API_UNREACHABLE_REVISION,
-                    "no number of steps to %s leads to revision %llu", name_of(s), to);
+                    "there is no number of steps to %s that leads to revision %llu", name_of(s),
+                    to);
     } else {
         api_fail_store(x, status);
     }

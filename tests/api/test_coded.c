@@ -372,17 +372,17 @@ static void what_unfolds_counts_against_the_limits(void **state)
         done(expect(200, send_json(b, "POST", "/v1/meshes/m/traverse", both[c], text)));
         text[API_MAX_CONTROL] = ' ';
         text[API_MAX_CONTROL + 1] = '\0';
-        refused(413, "body_too_large", "unfolds to more than 1048576 bytes",
+        refused(413, "body_too_large", "decompresses to more than 1048576 bytes",
                 send_json(b, "POST", "/v1/meshes/m/traverse", both[c], text));
         text[API_MAX_CONTROL + 1] = ' ';
-        refused(413, "body_too_large", "unfolds to more than 8388608 bytes",
+        refused(413, "body_too_large", "decompresses to more than 8388608 bytes",
                 send_json(b, "POST", "/v1/meshes/m/edits", both[c], text));
         memset(text, ' ', 37);
-        refused(413, "body_too_large", "unfolds to more than 8388608 bytes",
+        refused(413, "body_too_large", "decompresses to more than 8388608 bytes",
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         memset(text, ' ', 8 << 20);
         text[8 << 20] = '\0';
-        refused(413, "body_too_large", "unfolds to more than 100 times as many",
+        refused(413, "body_too_large", "is more than 100 times its compressed size",
                 send_json(b, "POST", "/v1/meshes", both[c], text));
         refused(400, "unexpected_body", "no body",
                 bench_send(b, "GET", "/livez", HEADERS("Content-Encoding", both[c]), "x"));

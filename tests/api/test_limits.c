@@ -69,7 +69,7 @@ static void an_address_has_its_requests_and_then_waits(void **state)
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
     assert_string_equal(bench_header(&r, "RateLimit"), "\"requests\";r=0;t=2");
     assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
-    expect_code(r, 429, "rate_limit", "the address may have 2 requests a second");
+    expect_code(r, 429, "rate_limit", "the address is limited to 2 requests a second");
     /* The limit applies to every request, even to an unknown path or method, except to those for
      * monitoring. */
     expect(b, 429, "/nowhere");
@@ -134,7 +134,7 @@ static void bytes_are_counted_both_ways_and_a_debt_is_waited_for(void **state)
     r = bench_expect(429, bench_get(b, "/v1/meshes/m"));
     assert_int_equal(strtoull(bench_header(&r, "Retry-After"), NULL, 10), wait);
     assert_true(strncmp(bench_header(&r, "RateLimit"), "\"bytes\";r=0;t=", 14) == 0);
-    expect_code(r, 429, "rate_limit", "the address may have 100 bytes a second");
+    expect_code(r, 429, "rate_limit", "the address is limited to 100 bytes a second");
     for (int i = 0; i < 50; i++) {
         expect(b, 429, "/v1/meshes/m"); /* a refused request takes nothing from the bucket */
     }
@@ -197,7 +197,7 @@ static void a_token_has_a_bucket_of_its_own_wherever_it_comes_from(void **state)
     bench_use_address(b, 5, false);
     expect(b, 200, "/v1/meshes");
     expect_code(bench_get(b, "/v1/meshes"), 429, "rate_limit",
-                "the token may have 1 requests a second");
+                "the token is limited to 1 requests a second");
     expect(b, 200, "/v1/openapi.json"); /* an open route uses the bucket of the address */
     bench_use_token(b, "prueba");
     for (int i = 0; i < 4; i++) {
@@ -253,7 +253,7 @@ static void a_connection_beyond_its_address_s_is_told_so(void **state)
     bench_use_address(b, 1, true);
     bench_reply r = bench_expect(429, bench_get(b, "/v1/meshes"));
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
-    expect_code(r, 429, "too_many_connections", "may have 3 connections at once");
+    expect_code(r, 429, "too_many_connections", "is limited to 3 connections at once");
     expect(b, 200, "/livez");
     bench_use_address(b, 1, false);
     expect(b, 200, "/v1/meshes");
@@ -299,10 +299,10 @@ static void a_mesh_counts_for_the_token_that_made_it(void **state)
     bench_done(bench_expect(201, bench_send(b, "PUT", "/v1/meshes/m", NULL, cube)));
     bench_done(bench_expect(201, bench_post(b, "/v1/meshes", cube)));
     expect_code(bench_post(b, "/v1/meshes", cube), 507, "quota",
-                "the token may have made 2 meshes, and has made 2");
+                "this token may have 2 meshes, and has 2");
     expect_code(bench_post(b, "/v1/meshes/m/copy", NULL), 507, "quota", "2 meshes");
     expect_code(bench_send(b, "PUT", "/v1/meshes/m", NULL, grid), 507, "quota",
-                "the meshes that the token made may take 20000 bytes");
+                "the meshes of this token may take 20000 bytes");
     /* The quota of the token that created a mesh also limits what other tokens write to it; the
      * message must not say how large that token's quota is. */
     bench_use_token(b, "prueba");

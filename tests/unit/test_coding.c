@@ -432,9 +432,9 @@ static void other_codings_are_not_taken_for_these(void **state)
     static const char plain[] = "{\"shape\":\"cube\"}";
     bytes empty = {0}, gzip = pack_bytes(API_GZIP, &empty), zstd = pack_bytes(API_ZSTD, &empty);
     expect_refused(API_GZIP, &(bytes){(char *)(uintptr_t)zlib, 8, 0}, 8, API_BAD_ENCODING,
-                   "byte 0 of the gzip body: no member begins here");
+                   "byte 0 of the gzip body: the bytes are not in gzip format");
     expect_refused(API_ZSTD, &(bytes){(char *)(uintptr_t)old, 7, 0}, 7, API_BAD_ENCODING,
-                   "byte 0 of the zstd body: no frame begins here");
+                   "byte 0 of the zstd body: the bytes are not in zstd format");
     expect_refused(API_GZIP, &(bytes){(char *)(uintptr_t)plain, 16, 0}, 1, API_BAD_ENCODING,
                    "byte 0");
     expect_refused(API_ZSTD, &(bytes){(char *)(uintptr_t)plain, 16, 0}, 1, API_BAD_ENCODING,

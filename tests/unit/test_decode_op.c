@@ -135,9 +135,9 @@ static void names_that_do_not_exist_are_answered_with_those_that_do(void **state
         {"{\"op\":\"frobnicate\"}",
          "there is no operation \"frobnicate\"; GET /v1/operations lists them"},
         {"{\"op\":\"edge_split\",\"edg\":0}",
-         "\"edg\" is not a parameter of edge_split; did you mean \"edge\"?"},
+         "there is no parameter \"edg\" of edge_split; did you mean \"edge\"?"},
         {"{\"op\":\"edge_flip\",\"what\":0}",
-         "\"what\" is not a parameter of edge_flip; there is edge"},
+         "there is no parameter \"what\" of edge_flip; there is edge"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         parsed p;

@@ -195,8 +195,8 @@ static void names_are_taken_as_they_are_given(void **state)
 static void names_that_are_none_are_refused(void **state)
 {
     (void)state;
-    expect_refused(NAMED("filename=\"x\""), "a part without a name");
-    expect_refused(NAMED("name=\"\""), "a part without a name");
+    expect_refused(NAMED("filename=\"x\""), "a part has no name");
+    expect_refused(NAMED("name=\"\""), "a part has no name");
     expect_refused(NAMED("name=a; name=b"), "given twice");
     expect_refused(NAMED("name=a; filename=b; filename=b"), "given twice");
     expect_refused(NAMED("name=f; filename*=UTF-8''x"), "filename*");
@@ -215,14 +215,14 @@ static void names_that_are_none_are_refused(void **state)
 static void headers_that_are_none_are_refused(void **state)
 {
     (void)state;
-    expect_refused("--AbC" LINE LINE "x" LAST, "byte 7 of the body: a part without a name");
+    expect_refused("--AbC" LINE LINE "x" LAST, "byte 7 of the body: a part has no name");
     expect_refused("--AbC" LINE "Content-Type: text/plain" LINE LINE LAST, "without a name");
     expect_refused("--AbC" LINE "Content-Disposition: attachment; name=a" LINE LINE LAST,
                    "other than form-data");
     expect_refused("--AbC" LINE "Content-Disposition" LINE LINE LAST, "byte 7 of the body: a line");
     expect_refused("--AbC" LINE ": x" LINE LINE LAST, "no header");
     expect_refused("--AbC" LINE HEAD("a") " name=b" LINE LINE LAST, "no header");
-    expect_refused("--AbC" LINE HEAD("a") HEAD("a") LINE LAST, "a header that is given twice");
+    expect_refused("--AbC" LINE HEAD("a") HEAD("a") LINE LAST, "a header is given twice");
     expect_refused("--AbC" LINE HEAD("a") "Content-Type: a/b" LINE
                                           "content-type: a/b" LINE LINE LAST,
                    "given twice");
@@ -231,7 +231,7 @@ static void headers_that_are_none_are_refused(void **state)
     expect("--AbC" LINE HEAD("a") "Content-Transfer-Encoding: BINARY" LINE LINE LAST, "[a];");
     expect_refused(
         "--AbC" LINE HEAD("a") "Content-Type: multipart/mixed; boundary=x" LINE LINE LAST,
-        "a part that has parts itself");
+        "a part is itself multipart");
 }
 
 static void a_body_that_ends_too_early_is_refused(void **state)

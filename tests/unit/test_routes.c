@@ -634,15 +634,15 @@ static void what_is_not_there_is_refused_with_what_is(void **state)
         const char *line, *detail;
     } paths[] = {
         {"GET /v1/meshes/m/vertices/0/loop",
-         "\"loop\" is none of vertices, outgoing, incoming, edges, faces"},
-        {"POST /v1/meshes/m/edges/0/edges", "\"edges\" is none of vertices, halfedges, faces"},
+         "\"loop\" is not one of vertices, outgoing, incoming, edges, faces"},
+        {"POST /v1/meshes/m/edges/0/edges", "\"edges\" is not one of vertices, halfedges, faces"},
         {"GET /v1/meshes/m/attributes/corners/a",
-         "\"corners\" is none of vertices, halfedges, edges, faces, mesh"},
+         "\"corners\" is not one of vertices, halfedges, edges, faces, mesh"},
         {"GET /v1/mesh",
-         "\"mesh\" is none of meshes, jobs, token, tickets, admin, operations, openapi.json"},
-        {"GET /v1/admin", "the path goes on with one of reload, backup"},
+         "\"mesh\" is not one of meshes, jobs, token, tickets, admin, operations, openapi.json"},
+        {"GET /v1/admin", "the path must continue with one of reload, backup"},
         {"GET /v1/meshes/m/vertices/0/edges/1",
-         "there is nothing at \"/v1/meshes/m/vertices/0/edges/1\""},
+         "the server has no path \"/v1/meshes/m/vertices/0/edges/1\""},
     };
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         header_list headers;
