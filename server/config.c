@@ -17,121 +17,119 @@
 
 const srv_option srv_options[] = {
     {"config", SRV_SOURCE, MEMBER(config), "", "FILE", 0, 0,
-     "read settings from a file, a line each, as --print-config shows them"},
+     "file of settings, one in a line, as --print-config shows them"},
     {"listen", SRV_TEXT, MEMBER(listen), "127.0.0.1:8080", "HOST:PORT|unix:PATH", 0, 0,
-     "address to listen on; port 0 takes a free one. Or a Unix socket, whose file the daemon makes "
-     "(mode 0660) and removes"},
+     "address to listen on; port 0 chooses a free port. unix:PATH is a Unix socket, which the "
+     "daemon creates (mode 0660) and removes"},
     {"insecure", SRV_FLAG, MEMBER(insecure), "0", NULL, 0, 0,
-     "listen beyond loopback although nobody needs a token"},
+     "allow an address that other machines can reach without --tokens"},
     {"tokens", SRV_TEXT, MEMBER(tokens), "", "FILE", 0, 0,
-     "who may do what: a line for each token, as --new-token prints it. Without a file everybody "
-     "may do everything. SIGHUP and POST /v1/admin/reload read it again"},
+     "file of tokens and their roles, one in a line, as --new-token prints it. Without a file "
+     "every client may do everything. SIGHUP and POST /v1/admin/reload read it again"},
     {"token-requests", SRV_COUNT, LIMIT(token_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests a second of each token, 0 for any number; beyond it they are answered 429. Like the "
-     "other limits of tokens, a line of the file may set its own: requests=N"},
+     "requests a second for each token, 0: no limit; more are answered 429. A line of the token "
+     "file can set its own limit, here with requests=N"},
     {"token-bytes", SRV_BYTES, LIMIT(token_limits, BYTES), "0", "BYTES", 0, API_LIMIT_MOST_BYTES,
-     "bytes a second that bodies and answers of each token have together, 0 for any number"},
+     "bytes a second for each token, of requests and answers together, 0: no limit"},
     {"token-jobs", SRV_COUNT, LIMIT(token_limits, JOBS), "0", "N", 0, API_LIMIT_MOST,
-     "jobs of each token that wait or run, 0 for any number; beyond it they are answered 429"},
+     "jobs that wait or run for each token, 0: no limit; more are answered 429"},
     {"token-meshes", SRV_COUNT, LIMIT(token_limits, MESHES), "0", "N", 0, API_LIMIT_MOST,
-     "meshes that each token may have made, 0 for any number; beyond it they are answered 507"},
+     "meshes that each token may create, 0: no limit; more are answered 507"},
     {"token-mesh-bytes", SRV_BYTES, LIMIT(token_limits, MESH_BYTES), "0", "BYTES", 0,
      API_LIMIT_MOST_BYTES,
-     "bytes that the meshes each token made take in memory, 0 for any number; what would make them "
-     "more is answered 507"},
+     "memory of the meshes that each token created, 0: no limit; a request that would need more is "
+     "answered 507"},
     {"address-requests", SRV_COUNT, LIMIT(address_limits, REQUESTS), "0", "N", 0, API_LIMIT_MOST,
-     "requests a second of each address (of IPv6 each /64) that need no token or have none, 0 for "
-     "any number"},
+     "requests a second without a token for each address (each /64 of IPv6), 0: no limit; more are "
+     "answered 429"},
     {"address-bytes", SRV_BYTES, LIMIT(address_limits, BYTES), "0", "BYTES", 0,
-     API_LIMIT_MOST_BYTES, "bytes a second of such bodies and answers, 0 for any number"},
+     API_LIMIT_MOST_BYTES, "bytes a second of these requests and their answers, 0: no limit"},
     {"address-connections", SRV_COUNT, LIMIT(address_limits, CONNECTIONS), "0", "N", 0, 1000000,
-     "connections of each address at once, 0 for any number; beyond it they are answered 429 and "
-     "closed"},
+     "connections at once for each address, 0: no limit; more are answered 429 and closed"},
     {"limit-burst", SRV_COUNT, MEMBER(limit_burst), "10", "SECONDS", 1, API_BURST_MOST,
-     "of requests and bytes that a client may have at once when it had none before"},
+     "the limits a second can be used up for this many seconds at once, after a client was idle"},
     {"tls-cert", SRV_TEXT, MEMBER(tls_cert), "", "FILE", 0, 0,
-     "speak TLS alone, with the certificate in this file (PEM, those that vouch for it after it). "
-     "SIGHUP and POST /v1/admin/reload read it again"},
+     "serve HTTPS only, with the certificate in this file (PEM, followed by its chain). SIGHUP and "
+     "POST /v1/admin/reload read it again"},
     {"tls-key", SRV_TEXT, MEMBER(tls_key), "", "FILE", 0, 0,
      "the certificate's key (PEM, not encrypted)"},
     {"allow-host", SRV_LIST, MEMBER(policy.hosts), "", "NAME", 0, 0,
-     "answer requests for this Host too; may be repeated or a comma list"},
+     "also accept this name in the header Host; may be repeated, or a list with commas"},
     {"allow-origin", SRV_LIST, MEMBER(policy.origins), "", "ORIGIN", 0, 0,
-     "let pages of this origin (https://name) read and write; may be repeated or a comma list"},
+     "allow pages of this origin (https://name) to read and write; may be repeated, or a list with "
+     "commas"},
     {"trusted-proxy", SRV_LIST, MEMBER(trusted_proxies), "", "ADDRESS", 0, 0,
-     "believe the proxy at this address, of this network (10.0.0.0/8), or on the Unix socket "
-     "(unix) "
-     "what it tells of its client in Forwarded, X-Forwarded-For and X-Forwarded-Proto; may be "
-     "repeated or a comma list"},
+     "trust the headers Forwarded, X-Forwarded-For and X-Forwarded-Proto of the proxy at this "
+     "address, in this network (10.0.0.0/8), or on the Unix socket (unix); may be repeated, or a "
+     "list with commas"},
     {"web", SRV_TEXT, MEMBER(web), "", "DIR", 0, 0,
-     "folder of the built page; otherwise looked for beside the executable"},
+     "folder of the built page; if not given, it is looked for beside the executable"},
     {"store", SRV_TEXT, MEMBER(store), "sqlite:./hedge-data", "memory|sqlite:DIR", 0, 0,
-     "where meshes are kept: in memory until the daemon stops, or for good in a folder, which is "
-     "made if it is missing"},
+     "where meshes are kept: in memory until the daemon stops, or permanently in a folder, which "
+     "is created if it is missing"},
     {"samples", SRV_FLAG, MEMBER(samples), "0", NULL, 0, 0,
-     "put a few meshes into a store that is new"},
+     "put a few sample meshes into a new store"},
     {"log", SRV_CHOICE, MEMBER(log), "auto", "auto|access|off", 0, 0,
-     "access: a line on stderr for each request; auto: only if stderr is no terminal"},
+     "access: write a line to stderr for each request; auto: only if stderr is not a terminal"},
     {"log-format", SRV_CHOICE, MEMBER(log_format), "auto", "auto|text|json", 0, 0,
-     "of the lines on stderr; auto: text on a terminal, json elsewhere. The line that says where "
-     "hedged listens is plain text in both"},
+     "format of the lines on stderr; auto: text on a terminal, otherwise json. The line that says "
+     "where hedged listens is always plain text"},
     {"log-level", SRV_CHOICE, MEMBER(log_level), "info", "error|warning|info|debug", 0, 0,
-     "the least of what is said on stderr, beside the lines of --log"},
+     "the least important messages to write to stderr, apart from the lines of --log"},
     {"slow", SRV_COUNT, MEMBER(slow), "0", "MS", 0, 86400000,
-     "a line on stderr for each request that took longer than so many milliseconds, with where the "
-     "time went; 0: none"},
+     "write a line to stderr for each request that took longer than this many milliseconds, with "
+     "where the time went; 0: never"},
     {"max-upload", SRV_BYTES, MEMBER(max_upload), "1G", "BYTES", KIB, TIB,
-     "largest mesh document or file"},
+     "largest mesh document or file that can be uploaded"},
     {"memory-budget", SRV_BYTES, MEMBER(memory_budget), "0", "BYTES", 0, TIB,
-     "memory for everything; 0 takes three quarters of the machine's, or of the smallest limit of "
-     "its control groups"},
+     "memory for everything; 0: three quarters of the machine's memory, or of the smallest limit "
+     "of its control groups"},
     {"undo-budget", SRV_BYTES, MEMBER(undo_budget), "256M", "BYTES", 0, TIB,
-     "memory for the history of one mesh; the oldest edits go first"},
-    {"no-compression", SRV_FLAG, MEMBER(no_compression), "0", NULL, 0, 0,
-     "send answers as they are, whatever coding a client accepts"},
+     "memory for the undo history of one mesh; the oldest edits are dropped first"},
+    {"no-compression", SRV_FLAG, MEMBER(no_compression), "0", NULL, 0, 0, "never compress answers"},
     {"max-meshes", SRV_COUNT, MEMBER(max_meshes), "10000000", "N", 1, 10000000,
-     "meshes in the store"},
+     "most meshes in the store"},
     {"workers", SRV_COUNT, MEMBER(workers), "0", "N", 0, 64,
-     "threads that serve connections; 0 takes one a core"},
+     "threads that serve connections; 0: one for each core"},
     {"jobs", SRV_COUNT, MEMBER(jobs), "0", "N", 0, 64,
-     "long reads at once, and as many jobs, beside which imports and edits keep a thread; 0 takes "
-     "one a core, but two at least. Parts of one run on all cores"},
+     "threads for long reads, and as many for jobs; one thread is kept free for imports and edits; "
+     "0: one for each core, but at least two. Parts of one job run on all cores"},
     {"job-queue", SRV_COUNT, MEMBER(job_queue), "256", "N", 1, 100000,
-     "jobs, long reads, and imports or edits, each, that may wait for a thread; beyond it they are "
-     "answered 503"},
+     "how many jobs may wait for a thread, and likewise how many long reads, and imports or edits; "
+     "more are answered 503"},
     {"read-seconds", SRV_COUNT, MEMBER(read_seconds), "30", "SECONDS", 1, 86400,
-     "that a thread works on a check, a query, a walk or an export; beyond it they are answered "
-     "503, "
-     "while a job has the time it needs"},
+     "longest time that a check, a query, a walk or an export may compute; longer ones are "
+     "answered 503 (a job has no limit)"},
     {"max-connections", SRV_COUNT, MEMBER(max_connections), "10000", "N", 1, 1000000,
-     "connections at once; beyond it they are answered 503"},
+     "connections at once; more are answered 503"},
     {"max-listeners", SRV_COUNT, MEMBER(max_listeners), "5000", "N", 0, 1000000,
-     "event streams at once; beyond it they are answered 503"},
+     "event streams at once; more are answered 503"},
     {"max-mesh-listeners", SRV_COUNT, MEMBER(max_mesh_listeners), "2000", "N", 0, 1000000,
      "event streams of one mesh at once"},
     {"heartbeat", SRV_COUNT, MEMBER(heartbeat), "15", "SECONDS", 1, 3600,
-     "of silence in an event stream, after which a comment is sent"},
+     "a comment is sent in an event stream after this long without an event"},
     {"idle-timeout", SRV_COUNT, MEMBER(idle_timeout), "30", "SECONDS", 1, 86400,
-     "until a connection without a request is closed"},
+     "a connection without a request is closed after this long"},
     {"header-timeout", SRV_COUNT, MEMBER(header_timeout), "10", "SECONDS", 1, 86400,
-     "for the headers after the request line"},
+     "time for the headers to arrive after the request line"},
     {"body-grace", SRV_COUNT, MEMBER(body_grace), "10", "SECONDS", 1, 86400,
-     "before a body, or the reading of an answer, must keep to --min-rate"},
+     "time before a body, or the reading of an answer, must keep to --min-rate"},
     {"min-rate", SRV_BYTES, MEMBER(min_rate), "4K", "BYTES", 0, TIB,
-     "bytes a second a client must send or take on average"},
+     "bytes a second that a client must send or read on average"},
     {"request-timeout", SRV_COUNT, MEMBER(request_timeout), "600", "SECONDS", 1, 86400,
-     "for a whole body, however fast"},
+     "longest time for a whole body to arrive"},
     {"backup", SRV_COMMAND, MEMBER(backup), "", "FILE", 0, 0,
      "write the store to a file, even while a daemon uses it, and exit"},
     {"restore", SRV_COMMAND, MEMBER(restore), "", "FILE", 0, 0,
-     "replace the store by such a file, while no daemon uses it, and exit"},
+     "replace the store by a file of --backup, while no daemon uses it, and exit"},
     {"verify", SRV_ACTION, MEMBER(verify), "0", "[FILE]", 0, 0,
-     "read every mesh of the store, or of such a file: exit status 0 when all are whole"},
+     "read every mesh of the store, or of a file of --backup, and exit: status 0 if all are "
+     "undamaged"},
     {"dump", SRV_COMMAND, MEMBER(dump), "", "DIR", 0, 0,
-     "write every mesh of the store that is whole to a folder, as GLB, and exit"},
+     "write every undamaged mesh of the store to a folder, as GLB, and exit"},
     {"new-token", SRV_ACTION, MEMBER(new_token), "0", "[NAME [ROLE]]", 0, 0,
-     "print a new token, which is kept nowhere, and the line for the file of --tokens, and exit. "
-     "ROLE is read, which is what it is unless given, write, admin or metrics"},
+     "print a new token, which is not saved anywhere, and its line for the file of --tokens, and "
+     "exit. ROLE is read (if not given), write, admin or metrics"},
     {"healthcheck", SRV_ACTION, MEMBER(healthcheck), "0", "[URL]", 0, 0,
      "ask a running daemon for /livez: exit status 0 when it answers"},
     {"print-config", SRV_ACTION, MEMBER(print_config), "0", NULL, 0, 0,

@@ -29,7 +29,7 @@ static void tell_health(srv_log *log, const st_health *before, const st_health *
                      folder);
     }
     if ((was_full || found_full) && now->status == ST_OK) {
-        srv_log_tell(log, SRV_LEVEL_INFO, "the disk of %s has space again: changes are taken",
+        srv_log_tell(log, SRV_LEVEL_INFO, "the disk of %s has space again: changes are accepted",
                      folder);
     }
     if (now->damaged_keys > 0 && before->damaged_keys == 0) {

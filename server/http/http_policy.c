@@ -67,8 +67,9 @@ bool srv_policy_host(const srv_policy *policy, const char *host, size_t length,
             }
         }
     }
-    return api_problem_set(problem, API_WRONG_HOST,
-                           "this server does not answer for the given Host; --allow-host adds one");
+    return api_problem_set(
+        problem, API_WRONG_HOST,
+        "the server does not accept this Host; its option --allow-host adds one");
 }
 
 bool srv_policy_is_name(const srv_policy *policy, const char *host)
@@ -141,18 +142,18 @@ bool srv_policy_origin(const srv_policy *policy, const srv_sender *sender, api_p
         return true;
     }
     if (origin != NULL && !is_own_origin(origin, sender->host, sender->scheme)) {
-        return api_problem_set(problem, API_FOREIGN_ORIGIN,
-                               "the Origin is not this server's; --allow-origin adds one");
+        return api_problem_set(
+            problem, API_FOREIGN_ORIGIN,
+            "a page of another origin sent this; the server's option --allow-origin allows it");
     }
     if (fetch_site != NULL && strcasecmp(fetch_site, "cross-site") == 0) {
         return api_problem_set(problem, API_FOREIGN_ORIGIN,
-                               "Sec-Fetch-Site says that another site sent this");
+                               "a page of another site sent this, says Sec-Fetch-Site");
     }
     if (fetch_site != NULL && strcasecmp(fetch_site, "same-site") == 0 && origin == NULL) {
-        return api_problem_set(
-            problem, API_FOREIGN_ORIGIN,
-            "Sec-Fetch-Site says that another origin of this site sent this, and "
-            "there is no Origin that says which");
+        return api_problem_set(problem, API_FOREIGN_ORIGIN,
+                               "a page of another origin of this site sent this, says "
+                               "Sec-Fetch-Site, and the header Origin is missing");
     }
     return true;
 }
