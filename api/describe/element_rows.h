@@ -18,9 +18,9 @@
         .parameters = {&api_parameter_revision, &api_parameter_limit, &api_parameter_cursor},     \
         .headers = {&next_page}, .statuses = {200, 202, 304, 410}, .response = one "_page",       \
         .item = (one), .summary = "List the " words,                                              \
-        .doc = "A page in the order of ids, or all of them as lines of JSON that end in "         \
-               "{\"end\":true,\"count\":n}. Pages go on with the revision they began with while " \
-               "the history holds it."                                                            \
+        .doc = "A page in the order of ids, or all of them as lines of JSON with "                \
+               "{\"end\":true,\"count\":n} as the last line. Later pages show the same revision " \
+               "as the first, while the history holds it."                                        \
     }
 
 #define ELEMENT(of, one, many, text)                                                            \
@@ -29,7 +29,7 @@
         .kind = (of), .run = api_element_get, .role = API_ROLE_READ, .reads = API_READS_LOCKED, \
         .produces = json, .parameters = {&api_parameter_revision}, .statuses = {200, 304, 410}, \
         .response = (one), .summary = "One " one " with all its links",                         \
-        .doc = text " A deleted one is 410, one that never was is 404."                         \
+        .doc = text " A deleted one is answered 410, one that never existed 404."               \
     }
 
 #define ADJACENCY(of, one, many, what, title, text)                                              \
@@ -58,14 +58,14 @@
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "vertices", "Neighbours of a vertex",          \
                   "The vertices at the other ends of its edges. " AROUND),                        \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "outgoing", "Half-edges that leave a vertex",  \
-                  "Those that have it as their origin. " AROUND),                                 \
+                  "The half-edges whose origin is the vertex. " AROUND),                          \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "incoming",                                    \
                   "Half-edges that arrive at a vertex",                                           \
-                  "The twins of those that leave it, in their order. " AROUND),                   \
+                  "The twins of the half-edges that leave it, in the same order. " AROUND),       \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "edges", "Edges of a vertex",                  \
-                  "Those that end at it. " AROUND),                                               \
+                  "The edges that end at the vertex. " AROUND),                                   \
         ADJACENCY(HE_VERTEX, "vertex", "vertices", "faces", "Faces around a vertex",              \
-                  "Those left of the half-edges that leave it; holes are left out. " AROUND),     \
+                  "The faces left of the half-edges that leave it; holes are left out. " AROUND), \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "loop", "The loop of a half-edge",        \
                   "The half-edges around its face or hole, from itself by next."),                \
         ADJACENCY(HE_HALFEDGE, "halfedge", "halfedges", "ring", "The ring of a half-edge",        \
@@ -75,14 +75,14 @@
         ADJACENCY(HE_EDGE, "edge", "edges", "halfedges", "Half-edges of an edge",                 \
                   "2 * id and 2 * id + 1."),                                                      \
         ADJACENCY(HE_EDGE, "edge", "edges", "faces", "Faces beside an edge",                      \
-                  "Those left of its half-edges, each once; holes are left out."),                \
+                  "The faces left of its half-edges, each once; holes are left out."),            \
         ADJACENCY(HE_FACE, "face", "faces", "vertices", "Corners of a face",                      \
                   "The origins of its half-edges. " AROUND),                                      \
         ADJACENCY(HE_FACE, "face", "faces", "halfedges", "Half-edges of a face",                  \
-                  "Those that have it on their left. " AROUND),                                   \
+                  "The half-edges that have the face on their left. " AROUND),                    \
         ADJACENCY(HE_FACE, "face", "faces", "edges", "Edges of a face",                           \
-                  "Those of its half-edges. " AROUND),                                            \
+                  "The edges of its half-edges. " AROUND),                                        \
         ADJACENCY(HE_FACE, "face", "faces", "faces", "Faces beside a face",                       \
-                  "Those across its edges; holes are left out. " AROUND)
+                  "The faces across its edges; holes are left out. " AROUND)
 
 #endif

@@ -244,22 +244,22 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     api_out_key(out, "headers");
     api_out_object_begin(out);
     if (status == 202) {
-        write_header(out, "Location", "Where the job is.", (route->flags & API_LONG) != 0);
-        write_header(out, "Preference-Applied", "respond-async, where the client asked for it.",
+        write_header(out, "Location", "The path of the job.", (route->flags & API_LONG) != 0);
+        write_header(out, "Preference-Applied", "respond-async, if the client asked for it.",
                      false);
     }
     if (tagged) {
         /* A dry run makes no state, and the short answer of a published write may not know its
          * state, so neither always has a tag. */
         bool always = status != 204 && !(route->flags & (API_REHEARSED | API_TAG_OF_OTHERS));
-        write_header(out, "ETag", "Names the state that is shown.", always);
+        write_header(out, "ETag", "Names the state that the answer shows.", always);
     }
     if (status == 201) {
-        write_header(out, "Location", "Where the new mesh is.", true);
+        write_header(out, "Location", "The path of the new mesh.", true);
     }
     if (route->flags & (API_KEYED | API_KEYED_NEW)) {
         write_header(out, "Idempotency-Replayed",
-                     "true: the answer of the first request with this key.", false);
+                     "true: this is the answer of the first request with this key.", false);
     }
     for (size_t i = 0; status == 200 && route->headers[i] != NULL; i++) {
         write_header(out, route->headers[i]->name, route->headers[i]->doc, false);
@@ -277,14 +277,13 @@ static const char *const job_media[] = {"application/json", NULL};
 
 static void write_success(api_out *out, const api_route *route, int status)
 {
-    const char *what = status == 201
-                           ? "Created. Only where memory ran out right after, or where it "
-                             "is given again and was not kept, does it come without a "
-                             "body and tag."
-                       : status == 202 ? "Not ended yet: a job."
-                       : status == 204 ? "Done; nothing is returned."
-                       : status == 304 ? "The client's copy is the present one."
-                                       : "Success.";
+    const char *what =
+        status == 201 ? "Created. The answer has no body and no ETag if memory ran out afterwards, "
+                        "or if it repeats an answer (Idempotency-Key) that was not kept."
+        : status == 202 ? "Not finished yet: the answer is a job."
+        : status == 204 ? "Done. The answer has no body."
+        : status == 304 ? "The client's copy is up to date."
+                        : "Success.";
     api_out_object_begin(out);
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
@@ -304,12 +303,12 @@ static const struct {
     const char *name, *header, *doc;
     bool required;
 } headed_problems[] = {
-    {401, "unauthorized", "WWW-Authenticate", "Bearer, and what was wrong with a token.", true},
+    {401, "unauthorized", "WWW-Authenticate", "Bearer, and what is wrong with the token.", true},
     {403, "forbidden", "WWW-Authenticate",
-     "Bearer with the role that is missing, where it is that.", false},
-    {405, "not_allowed", "Allow", "The methods of the path.", true},
-    {409, "conflict", "Retry-After", "Seconds, where waiting helps.", false},
-    {415, "unsupported", "Accept-Encoding", "The codings that are taken, where it was that.",
+     "Bearer with the role that is missing, if that is the reason.", false},
+    {405, "not_allowed", "Allow", "The methods that the path supports.", true},
+    {409, "conflict", "Retry-After", "Seconds to wait, if waiting helps.", false},
+    {415, "unsupported", "Accept-Encoding", "The supported content codings, if that is the reason.",
      false},
     {429, "limited", "Retry-After", "Seconds.", true},
     {503, "unavailable", "Retry-After", "Seconds.", true},
@@ -368,45 +367,46 @@ static void write_header_parameter(api_out *out, const char *name, const char *d
 static void write_header_parameters(api_out *out, const api_route *route)
 {
     if (answers(route, 304)) {
-        write_header_parameter(out, "If-None-Match", "ETag of the copy the client has.");
+        write_header_parameter(out, "If-None-Match", "The ETag of the client's copy.");
     }
     if (answers(route, 412)) {
-        write_header_parameter(out, "If-Match", "ETag of the state the request was made for.");
-        write_header_parameter(out, "If-None-Match", "ETag of a state it must not meet, or *.");
+        write_header_parameter(out, "If-Match",
+                               "The ETag of the state that the request is meant for.");
+        write_header_parameter(out, "If-None-Match",
+                               "The ETag of a state in which the request must not be done, or *: "
+                               "only if there is no mesh yet.");
     }
     if (route->body_kind != API_BODY_NONE) {
-        write_header_parameter(
-            out, "Content-Encoding",
-            "gzip (with one member or several) or zstd (with one frame or several, and windows up "
-            "to 8 MiB): the body is unfolded as it arrives, and may not exceed the limit of a "
-            "plain "
-            "one nor, beyond the first MiB, 100 times what was sent. One coding, not several.");
+        write_header_parameter(out, "Content-Encoding",
+                               "gzip, or zstd with windows up to 8 MiB, and only one of them. "
+                               "Decompressed, the body may not exceed the limit of an uncompressed "
+                               "one nor, past 1 MiB, 100 times its compressed size.");
     }
     if (is_stream(route)) {
-        write_header_parameter(out, "Last-Event-ID",
-                               "Id of the last event the client has seen; wins over `since`.");
+        write_header_parameter(
+            out, "Last-Event-ID",
+            "The id of the last event that the client has seen. It overrides `since`.");
     }
     bool minimal = answers(route, 204) && answers(route, 200);
     if (route->flags & API_LONG) {
-        write_header_parameter(out, "Prefer",
-                               minimal ? "respond-async: a job and 202. wait=N: the answer itself, "
-                                         "if it will take N seconds at most. return=minimal: 204 "
-                                         "in place of the answer."
-                                       : "respond-async: a job and 202, unless the request is "
-                                         "refused or If-None-Match names the answer, which is said "
-                                         "at once. wait=N: the answer itself, if it will take N "
-                                         "seconds at most.");
+        write_header_parameter(
+            out, "Prefer",
+            minimal
+                ? "respond-async: do it as a job and answer 202. wait=N: answer 200 if it takes at "
+                  "most N seconds. return=minimal: answer 204 without a body."
+                : "respond-async: do it as a job and answer 202, unless the answer is an error or "
+                  "304, which comes at once. wait=N: answer 200 if it takes at most N seconds.");
     } else if (minimal) {
-        write_header_parameter(out, "Prefer", "return=minimal: 204 in place of the answer.");
+        write_header_parameter(out, "Prefer", "return=minimal: answer 204 without a body.");
     }
     if (route->flags & (API_KEYED | API_KEYED_NEW)) {
         write_header_parameter(
             out, "Idempotency-Key",
-            "1 to 255 visible characters of the client's choice. A request that took effect is "
-            "not done again for a day: its answer is repeated, with Idempotency-Replayed: true, or "
-            "is 204 or 201 without a body if the first was too large to keep or the server was "
-            "restarted. The key with another request is 422, and 409 while the first is under way. "
-            "Refusals are not kept.");
+            "1 to 255 visible characters that the client chooses. For a day, a request with the "
+            "same key is not done again: its first answer is repeated with Idempotency-Replayed: "
+            "true, or is 204 or 201 without a body if it was too large to keep or the server was "
+            "restarted. A different request with the same key is answered 422; while the first is "
+            "in progress, 409. Errors are not kept.");
     }
 }
 
@@ -415,7 +415,7 @@ enum { MOST_DOC = 2000 };
 
 static void write_doc(api_out *out, const api_route *route)
 {
-    static const char expensive[] = "Expensive: refused to pages of other sites.";
+    static const char expensive[] = "Expensive: pages of other sites may not ask for it.";
     const char *doc = route->doc == NULL ? "" : route->doc;
     char text[MOST_DOC];
     bool is_expensive = (route->flags & API_EXPENSIVE) != 0;
@@ -526,9 +526,9 @@ static void write_security_schemes(api_out *out)
     api_out_key_string(out, "type", "http");
     api_out_key_string(out, "scheme", "bearer");
     api_out_key_string(out, "description",
-                       "A server with --tokens asks for one, with at least the role that an "
-                       "operation names: read, write (which includes read), admin (everything) or "
-                       "metrics. A dry run of an edit takes read.");
+                       "A server with the option --tokens needs a token with at least the role "
+                       "that the operation names: read, write (includes read), admin (includes "
+                       "everything) or metrics. A dry run of an edit needs only read.");
     api_out_object_end(out);
     api_out_key(out, "ticket");
     api_out_object_begin(out);
@@ -536,7 +536,7 @@ static void write_security_schemes(api_out *out)
     api_out_key_string(out, "in", "query");
     api_out_key_string(out, "name", "ticket");
     api_out_key_string(out, "description",
-                       "The last parameter of a GET, as POST /v1/tickets gives it.");
+                       "A ticket of POST /v1/tickets, as the last parameter of a GET.");
     api_out_object_end(out);
     api_out_object_end(out);
 }
@@ -575,20 +575,21 @@ static void write_shared_headers(api_out *out)
     api_out_key(out, "Content-Encoding");
     api_out_object_begin(out);
     api_out_key_string(out, "description",
-                       "The coding of the body, where Accept-Encoding asked for one.");
+                       "The content coding of the body, if Accept-Encoding allows one.");
     api_out_key(out, "schema");
     api_out_object_begin(out);
     api_out_key_string(out, "type", "string");
     api_schema_choices(out, "enum", codings);
     api_out_object_end(out);
     api_out_object_end(out);
-    write_header(out, "Vary", "What of the request the answer depends on.", false);
+    write_header(out, "Vary", "The request headers that the answer depends on.", false);
     write_header(out, "RateLimit-Policy",
-                 "Where the client has a limit of requests or bytes a second: how many it may have "
-                 "at once (q), over how many seconds (w).",
+                 "If the client is limited to requests or bytes a second: the quota (q) in a "
+                 "window of seconds (w).",
                  false);
     write_header(out, "RateLimit",
-                 "What is left of each (r), and the seconds until it is whole (t).", false);
+                 "What is left of each quota (r), and the seconds until it is full again (t).",
+                 false);
     api_out_object_end(out);
 }
 
@@ -623,13 +624,14 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_object_begin(out);
     api_out_key_string(out, "title", "hedge");
     api_out_key_string(out, "version", version);
-    api_out_key_string(out, "description",
-                       "Half-edge meshes over HTTP. Every GET answers HEAD too. Every refusal is "
-                       "application/problem+json. Bodies of more than 1 KiB are sent in gzip or "
-                       "zstd where Accept-Encoding likes that best; their ETag is one of its own, "
-                       "and as good in If-Match. Pages of other sites may change nothing and "
-                       "are refused expensive reads, which say that they are: 403 where "
-                       "Sec-Fetch-Site is cross-site, unless --allow-origin names the Origin.");
+    api_out_key_string(
+        out, "description",
+        "Half-edge meshes over HTTP. Every path with GET also answers HEAD. Every error is "
+        "application/problem+json. Bodies of more than 1 KiB are compressed with gzip or zstd if "
+        "Accept-Encoding allows; compressed answers have their own ETag, which also works in "
+        "If-Match. Pages of other sites may not change anything, and may not make the reads that "
+        "are described as expensive: these requests are answered 403 if Sec-Fetch-Site is "
+        "cross-site, unless the server's option --allow-origin names the Origin.");
     api_out_key(out, "license");
     api_out_object_begin(out);
     api_out_key_string(out, "name", "MIT");

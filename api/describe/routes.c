@@ -9,11 +9,11 @@
 
 /* --- headers --- */
 
-static const api_told_header next_page = {"Link", "The next page, where there is one."};
-static const api_told_header disposition = {"Content-Disposition", "A name for a file."};
+static const api_told_header next_page = {"Link", "A link to the next page, if there is one."};
+static const api_told_header disposition = {"Content-Disposition", "A name for the file."};
 static const api_told_header ranges = {
-    "Accept-Ranges", "`none`: Range is ignored, for a file is made while it is sent."};
-static const api_told_header warnings = {"Export-Warnings", "What the format could not carry."};
+    "Accept-Ranges", "`none`: Range is ignored, because a file is generated while it is sent."};
+static const api_told_header warnings = {"Export-Warnings", "What the format has no place for."};
 
 /* --- the table --- */
 
@@ -49,11 +49,11 @@ static const api_route routes[] = {
      .request = "create",
      .response = "created",
      .summary = "Create a mesh",
-     .doc = "From a mesh document, a shape, or a file. A file that refers to others, as a .gltf to "
-            "its .bin and an OBJ file to its .mtl, comes with them as multipart/form-data, each "
-            "under the name by which it is referred to. A surface that is no mesh is refused; the "
-            "problem names each offending "
-            "element, and the repairs that would let it pass."},
+     .doc = "From a mesh document, a shape, or a file. A file that refers to others (a .gltf to "
+            "its .bin, an OBJ file to its .mtl) is sent together with them as multipart/form-data, "
+            "each with the file name by which it is referred to. A surface that is not a valid "
+            "mesh is answered with a problem that lists each wrong element, and the repairs that "
+            "would make it valid."},
 
     /* one mesh */
     {.method = "GET",
@@ -71,7 +71,7 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410},
      .response = "summary",
      .summary = "Summary of a mesh",
-     .doc = "Counts, topology and measures of the present revision, or of the one that is named."},
+     .doc = "Counts, topology and measures of the present revision, or of the one in `revision`."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}",
      .name = "update_mesh",
@@ -86,8 +86,8 @@ static const api_route routes[] = {
      .request = "mesh_patch",
      .response = "summary",
      .summary = "Change the name",
-     .doc = "A JSON merge patch (RFC 7396) of the mesh's own members; the content and its revision "
-            "stay."},
+     .doc = "A JSON merge patch (RFC 7396) of the mesh's name. The content and its revision do not "
+            "change."},
     {.method = "PUT",
      .path = "/v1/meshes/{mesh}",
      .name = "replace_mesh",
@@ -108,8 +108,8 @@ static const api_route routes[] = {
      .request = "create",
      .response = "created",
      .summary = "Replace a mesh, or create it under this id",
-     .doc = "The body is that of a create. Replacing makes a new revision and ends the undo stack. "
-            "With If-None-Match: * an existing mesh is 412."},
+     .doc = "The body is the same as for creating a mesh. Replacing makes a new revision and "
+            "clears the undo history. With If-None-Match: * an existing mesh is answered 412."},
     {.method = "DELETE",
      .path = "/v1/meshes/{mesh}",
      .name = "delete_mesh",
@@ -121,7 +121,7 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {204, 412},
      .summary = "Delete a mesh",
-     .doc = "Its id may be used again; entity tags and event ids do not repeat."},
+     .doc = "Its id may be used again for another mesh; ETags and event ids are never repeated."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/content",
      .name = "export_mesh",
@@ -137,16 +137,15 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410, 422},
      .response = "document",
      .summary = "Export a mesh",
-     .doc =
-         "In the format that `format` or Accept asks for. What the format cannot carry is named "
-         "in the header Export-Warnings, at most 1000 bytes, the rest as \"and 3 more\". A "
-         "position beyond the range of floats is refused by glb and binary stl. A mesh holds "
-         "texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (glTF's runs down), and "
-         "colours `color` of 0 to 1, which are bytes "
-         "in PLY; reading and writing convert both. A file is sent at once however large the mesh "
-         "is, unless a job is preferred: for each million faces a thread works about a second "
-         "before the first byte of STL, half of that before one of GLB, and little before others; "
-         "what takes longer than the server's limit for reads is 503 `read_timeout`."},
+     .doc = "In the format that `format` or Accept names. What the format has no place for is "
+            "listed in the header Export-Warnings, at most 1000 bytes, the rest as \"and 3 more\". "
+            "A position too large for a float is an error for glb and binary stl. A mesh holds "
+            "texture coordinates `uv` with v upward, as OBJ, PLY and OFF do (in glTF v runs down), "
+            "and colours `color` from 0 to 1, which are bytes in PLY; reading and writing convert "
+            "both. A file is sent directly however large the mesh is, unless the client prefers a "
+            "job. The first byte takes about a second for each million faces of STL, half a second "
+            "of GLB, and little of other formats; what takes longer than the server's limit for "
+            "reads is answered 503 `read_timeout`."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/geometry",
      .name = "get_geometry",
@@ -158,7 +157,7 @@ static const api_route routes[] = {
      .produces = octets,
      .parameters = {&api_parameter_drawn, &api_parameter_layout},
      .statuses = {200, 202, 304},
-     .summary = "Arrays to draw a mesh from",
+     .summary = "Arrays for drawing a mesh",
      .doc =
          "Little-endian: a header of 96 bytes (\"HEDG\", u32 version 2, u64 revision, u64 base, "
          "u64 bytes of vertices, u64 bytes of triangles, u32 vertices, u32 triangles, f64 x 3 "
@@ -212,8 +211,8 @@ static const api_route routes[] = {
      .request = "copy",
      .response = "summary",
      .summary = "Copy a mesh",
-     .doc = "An independent mesh with the same ids and attributes and a history of its own; of an "
-            "earlier revision where one is named."},
+     .doc = "Makes an independent mesh with the same element ids and attributes and its own "
+            "history, from the present revision or the one in `revision`."},
 
     /* --- elements of a mesh: a collection, an element and its neighbours, for each kind --- */
     ELEMENT_ROWS,
@@ -246,7 +245,7 @@ static const api_route routes[] = {
      .statuses = {200, 304, 410},
      .response = "attribute_list",
      .summary = "List the attributes",
-     .doc = "All of them, of every domain, without their values."},
+     .doc = "The attributes of every domain, without their values."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "get_attribute",
@@ -262,9 +261,10 @@ static const api_route routes[] = {
      .statuses = {200, 202, 304, 410},
      .response = "attribute_values",
      .summary = "Values of an attribute",
-     .doc = "A page of live elements in the order of ids, or those that `ids` names. As octets: a "
-            "row for each id ever issued, dead ones hold the default; bool is one byte, the other "
-            "types are 4 or 8, little-endian, without gaps."},
+     .doc = "A page of elements in the order of ids, or the elements in `ids`. As "
+            "application/octet-stream: a value for each id ever given out, where deleted elements "
+            "have the default; a bool is one byte, the other types are 4 or 8 bytes, "
+            "little-endian, without gaps."},
     {.method = "PUT",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "replace_attribute",
@@ -285,9 +285,10 @@ static const api_route routes[] = {
      .request = "attribute",
      .response = "attribute_written",
      .summary = "Create an attribute, or replace it",
-     .doc = "As a whole, with the values of all elements, one for all, or the default. As octets: "
-            "rows as GET gives them, described by the query; what they say of dead elements is not "
-            "looked at. One revision, which can be undone."},
+     .doc = "Writes the whole attribute: values for all elements, one value for all, or the "
+            "default. As application/octet-stream: values as GET gives them, described by the "
+            "query parameters; the values of deleted elements are ignored. One revision, which can "
+            "be undone."},
     {.method = "PATCH",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "update_attribute",
@@ -303,8 +304,8 @@ static const api_route routes[] = {
      .request = "attribute_patch",
      .response = "attribute_written",
      .summary = "Write values by ids",
-     .doc = "A value for each id, or one for all. One revision, which can be undone; none where "
-            "nothing changes."},
+     .doc = "A value for each id, or one for all. One revision, which can be undone; no revision "
+            "if nothing changes."},
     {.method = "DELETE",
      .path = "/v1/meshes/{mesh}/attributes/{domain}/{name}",
      .name = "delete_attribute",
@@ -335,14 +336,13 @@ static const api_route routes[] = {
      .request = "query",
      .response = "query_results",
      .summary = "Ask many questions at once",
-     .doc =
-         "Adjacency, walks, elements, half-edges between vertices, measures, rays, nearest points "
-         "and self-intersections, all of one revision. One question about many elements may be "
-         "answered as octets: of a relation n + 1 offsets and the ids as 32-bit integers, of a "
-         "measure doubles, NaN for null; all little-endian. What is asked about all of a mesh and "
-         "would take more than a second becomes a job where the client does not wait: the first "
-         "ray or nearest point of 580,000 quads, self-intersections of 340,000, relations and "
-         "measures of all of some million."},
+     .doc = "Neighbours, walks, elements, half-edges between vertices, measures, rays, nearest "
+            "points and self-intersections, all of the same revision. A single question about many "
+            "elements can be answered as application/octet-stream: for a relation n + 1 offsets "
+            "and the ids as 32-bit integers, for a measure doubles with NaN for null, all "
+            "little-endian. A question that would take more than a second becomes a job, unless "
+            "the client waits: the first ray or nearest point on 580,000 quads, self-intersections "
+            "of 340,000 quads, relations and measures of all elements of several million."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/traverse",
      .name = "traverse_mesh",
@@ -359,9 +359,9 @@ static const api_route routes[] = {
      .request = "walk",
      .response = "walked",
      .summary = "Walk over a mesh",
-     .doc = "Paths of next, prev and twin, loops, rings, breadth-first and shortest paths. "
-            "Where the client does not wait, a walk that meets 4 million elements becomes a job, "
-            "and so does a shortest path on a mesh of 2 million quads."},
+     .doc = "Paths of next, prev and twin, loops, rings, breadth-first search and shortest paths. "
+            "A walk that visits 4 million elements, or a shortest path on a mesh of 2 million "
+            "quads, becomes a job, unless the client waits."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/boundaries",
      .name = "list_boundaries",
@@ -375,7 +375,7 @@ static const api_route routes[] = {
      .parameters = {&api_parameter_revision},
      .statuses = {200, 202, 304, 410},
      .response = "boundaries",
-     .summary = "Boundary loops",
+     .summary = "List the boundary loops",
      .doc = "Each boundary half-edge is in one loop."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/components",
@@ -390,7 +390,7 @@ static const api_route routes[] = {
      .parameters = {&api_parameter_revision, &api_parameter_by},
      .statuses = {200, 202, 304, 410},
      .response = "components",
-     .summary = "Connected components",
+     .summary = "List the connected components",
      .doc = "Isolated vertices are left out."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/check",
@@ -434,8 +434,8 @@ static const api_route routes[] = {
      .request = "edit",
      .response = "edited",
      .summary = "Edit a mesh",
-     .doc = "One operation, or a list that is applied as a whole or not at all: one revision and "
-            "one undo step."},
+     .doc = "One operation, or a list of them that is applied completely or not at all. It makes "
+            "one revision and one undo step."},
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/edits",
      .name = "list_edits",
@@ -448,12 +448,10 @@ static const api_route routes[] = {
      .statuses = {200, 304, 410},
      .response = "history",
      .summary = "History of a mesh",
-     .doc =
-         "What each revision did, newest first. `oldest` can still be read; `dropped` entries were "
-         "dropped to keep within the undo budget, of revisions that may still be on the disk. The "
-         "steps to undo that were taken first go with them; what was undone can be done again "
-         "until the next "
-         "edit, however full the history is."},
+     .doc = "What each revision did, newest first. `oldest` is the oldest revision that can still "
+            "be read. `dropped` entries were removed to keep within the undo budget, and the "
+            "oldest undo steps with them. What was undone can be redone until the next edit, "
+            "however full the history is."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/undo",
      .name = "undo_edits",
@@ -470,9 +468,9 @@ static const api_route routes[] = {
      .request = "step",
      .response = "edited",
      .summary = "Undo the last edit",
-     .doc =
-         "The last edit, the last `steps`, or all that were done since revision `to_revision`: at "
-         "once, each as a new revision, or not at all. The sets are what all of it comes to."},
+     .doc = "Undoes the last edit, the last `steps` edits, or all edits since revision "
+            "`to_revision`, completely or not at all. Each makes a new revision. The answer has "
+            "the changes of all steps together."},
     {.method = "POST",
      .path = "/v1/meshes/{mesh}/redo",
      .name = "redo_edits",
@@ -488,10 +486,10 @@ static const api_route routes[] = {
      .statuses = {200, 204, 409, 410, 412, 413, 415, 422},
      .request = "step",
      .response = "edited",
-     .summary = "Do again what was undone",
-     .doc =
-         "What was undone last, the last `steps`, or as far as revision `to_revision` was: each as "
-         "a new revision, with the ids it had."},
+     .summary = "Redo what was undone",
+     .doc = "Redoes the last undone edit, the last `steps` of them, or as many as lead to the "
+            "content of revision `to_revision`. Each makes a new revision, and elements get the "
+            "ids they had."},
 
     {.method = "GET",
      .path = "/v1/meshes/{mesh}/events",
@@ -503,12 +501,12 @@ static const api_route routes[] = {
      .parameters = {&api_parameter_last_seen},
      .statuses = {200},
      .item = "mesh_event",
-     .summary = "Every change as it happens",
-     .doc = "Server-Sent Events: `edit` holds a revision as a delta, exact enough to keep a copy "
-            "link for link; `metadata` a new name; `job` that one of this mesh has begun or ended; "
-            "`resync` says to fetch the mesh anew, `bye` that the stream ends. Last-Event-ID or "
-            "`since` goes on where a client was cut off, "
-            "or gives one `resync` where the history does not reach."},
+     .summary = "Events of a mesh",
+     .doc = "Server-sent events. `edit`: a new revision as a delta, complete enough to mirror the "
+            "mesh exactly. `metadata`: the name changed. `job`: a job on this mesh started or "
+            "ended. `resync`: fetch the mesh again, because events were left out. `bye`: the "
+            "stream ends. With Last-Event-ID or `since` the stream continues where a client was "
+            "interrupted, or begins with `resync` if the history does not reach back that far."},
 
     /* jobs */
     {.method = "GET",
@@ -522,7 +520,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "job_page",
      .summary = "List the jobs",
-     .doc = "A page in the order of their submission, without results and problems."},
+     .doc = "A page in the order in which they were submitted, without results and problems."},
     {.method = "GET",
      .path = "/v1/jobs/{job}",
      .name = "get_job",
@@ -531,13 +529,13 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {200},
      .response = "job",
-     .summary = "How far a job is",
-     .doc =
-         "With what the request would have been answered with, once it has ended: its result or "
-         "problem. What is no JSON, or a whole mesh, is fetched by `result_link`. A job that has "
-         "ended is kept for an hour, if there is room, also when the server is started again: then "
-         "without an answer of more than 64 KiB, and one that had not ended has failed, with the "
-         "problem `interrupted`: nothing of it was done."},
+     .summary = "State of a job",
+     .doc = "When the job has ended, this includes what the request would have been answered with: "
+            "a result or a problem. Results that are not JSON, or a whole mesh, are fetched by "
+            "`result_link`. A job that has ended is kept for an hour, if there is room, also "
+            "across a restart of the server, but then without an answer of more than 64 KiB. A job "
+            "that had not ended at a restart has failed with the problem `interrupted`, and has "
+            "changed nothing."},
     {.method = "GET",
      .path = "/v1/jobs/{job}/result",
      .name = "get_job_result",
@@ -548,10 +546,10 @@ static const api_route routes[] = {
      .headers = {&disposition, &warnings},
      .statuses = {200, 202, 304},
      .response = "job_result",
-     .summary = "The answer of a job by itself",
-     .doc = "The body that the request would have been answered with, and its type: `result_link` "
-            "of the job leads here. Files, octets and lines are fetched here alone. 202 with the "
-            "job until it has ended, 404 where it failed or has no body."},
+     .summary = "Result of a job",
+     .doc = "The body that the request would have been answered with, with its media type. "
+            "`result_link` of a job leads here. The answer is 202 with the job until it has ended, "
+            "and 404 if it failed or has no body."},
     {.method = "GET",
      .path = "/v1/jobs/{job}/events",
      .name = "follow_job",
@@ -560,9 +558,9 @@ static const api_route routes[] = {
      .produces = event_stream,
      .statuses = {200},
      .item = "job_event",
-     .summary = "How a job goes on",
-     .doc = "Server-Sent Events: `job` holds the job whenever it has come further, the last with "
-            "its result or problem where that is small; `bye` says that the stream ends."},
+     .summary = "Events of a job",
+     .doc = "Server-sent events. `job`: the job, whenever it has made progress; the last one has "
+            "its result or problem if that is small. `bye`: the stream ends."},
     {.method = "DELETE",
      .path = "/v1/jobs/{job}",
      .name = "delete_job",
@@ -572,8 +570,8 @@ static const api_route routes[] = {
      .statuses = {202, 204},
      .response = "job",
      .summary = "Cancel or forget a job",
-     .doc = "One that waits or runs is told to end (202): what it had changed is undone and its "
-            "memory given back. One that has ended is forgotten (204)."},
+     .doc = "A job that waits or runs is cancelled (202): what it had changed is undone and its "
+            "memory is freed. A job that has ended is forgotten (204)."},
 
     /* tokens */
     {.method = "GET",
@@ -585,9 +583,9 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {200},
      .response = "token",
-     .summary = "Who one is",
-     .doc = "What the token of the request may do. Where the server asks for no tokens the name is "
-            "null and the role admin."},
+     .summary = "The client's own token",
+     .doc = "What the token of the request may do. If the server needs no tokens, the name is null "
+            "and the role admin."},
     {.method = "POST",
      .path = "/v1/tickets",
      .name = "create_ticket",
@@ -600,10 +598,10 @@ static const api_route routes[] = {
      .statuses = {200, 413, 415},
      .request = "ticket_asked",
      .response = "ticket",
-     .summary = "One GET without a header",
-     .doc = "For images and downloads of a page, where a browser sends no Authorization: `path` of "
-            "the answer is that of the request with a ticket. It is good for one GET within 60 "
-            "seconds, and does what the token may that asked for it."},
+     .summary = "Ticket for one GET",
+     .doc = "For images and downloads in a page, where a browser sends no header Authorization. "
+            "`path` in the answer is the path of the request with a ticket added. It is valid for "
+            "one GET within 60 seconds, with the rights of the token that asked for it."},
     {.method = "POST",
      .path = "/v1/admin/reload",
      .name = "reload_tokens",
@@ -614,9 +612,9 @@ static const api_route routes[] = {
      .statuses = {200, 409},
      .response = "reloaded",
      .summary = "Read the file of tokens again",
-     .doc = "As SIGHUP does. A token that is not in it any more is refused from now on, and its "
-            "event streams end with `bye`. Where the file is wrong what was in force stays, and "
-            "the refusal names the line."},
+     .doc = "Does the same as SIGHUP. Tokens that are no longer in the file are not accepted any "
+            "more, and their event streams end with `bye`. If the file is wrong, the tokens stay "
+            "as they are and the problem names the line."},
 
     {.method = "POST",
      .path = "/v1/admin/backup",
@@ -628,8 +626,9 @@ static const api_route routes[] = {
      .headers = {&disposition},
      .statuses = {200, 202, 409},
      .summary = "Back up the store",
-     .doc = "A file for `hedged --restore`. A job unless the client waits; its result is the file, "
-            "of which the server keeps one at a time: DELETE the job when it is fetched."},
+     .doc =
+         "Makes a file for `hedged --restore`. It is a job unless the client waits; its result is "
+         "the file. The server keeps one backup at a time: DELETE the job when it is fetched."},
 
     /* descriptions of the API */
     {.method = "GET",
@@ -641,8 +640,9 @@ static const api_route routes[] = {
      .produces = json,
      .statuses = {200},
      .response = "operations",
-     .summary = "The operation table",
-     .doc = "Every operation with its parameters, results, refusals and its change in V, E and F."},
+     .summary = "List the operations",
+     .doc = "Every operation with its parameters, its results, the errors it can give, and how it "
+            "changes the numbers of vertices, edges and faces."},
     {.method = "GET",
      .path = "/v1/openapi.json",
      .name = "get_openapi",
@@ -666,7 +666,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "health",
      .summary = "Is the process alive?",
-     .doc = "It answers, whatever else is wrong."},
+     .doc = "It answers even if the store has failed."},
     {.method = "GET",
      .path = "/readyz",
      .name = "get_readiness",
@@ -677,11 +677,11 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "readiness",
      .summary = "Does the server take requests?",
-     .doc = "503 `not_ready` while it starts and stops, and 503 `store_failed` when a write or a "
-            "sync of the disk failed: then no change is taken until it is started again. A full "
-            "disk is no reason to take it out of service, for reads go on and meshes can be "
-            "deleted: `\"store\": \"full\"` with 200, until there is space again. So is memory: "
-            "`\"memory\": \"full\"` with 200 while no mesh can leave it and new ones are refused."},
+     .doc = "503 `not_ready` while it starts or stops, and 503 `store_failed` after a write or a "
+            "sync of the disk failed: then no changes are accepted until it is restarted. If the "
+            "disk is full, the answer is 200 with `\"store\": \"full\"`, because reads continue "
+            "and meshes can be deleted. If memory is full, that is, no mesh can leave it and new "
+            "ones are refused, the answer is 200 with `\"memory\": \"full\"`."},
     {.method = "GET",
      .path = "/metrics",
      .name = "get_metrics",
@@ -690,10 +690,10 @@ static const api_route routes[] = {
      .flags = API_FIXED | API_UNLIMITED,
      .produces = plain,
      .statuses = {200},
-     .summary = "What the server counts",
-     .doc = "In the text format of Prometheus, version 0.0.4; hedged(8) lists the metrics. It "
-            "needs a token of the role metrics or admin where the server asks for tokens, and "
-            "waits neither for the disk nor for threads."},
+     .summary = "Metrics",
+     .doc = "In the text format of Prometheus, version 0.0.4; hedged(8) lists the metrics. If the "
+            "server needs tokens, it needs one with the role metrics or admin. It never waits for "
+            "the disk or for a thread."},
     {.method = "GET",
      .path = "/version",
      .name = "get_version",
@@ -704,7 +704,7 @@ static const api_route routes[] = {
      .statuses = {200},
      .response = "version",
      .summary = "Version of the server",
-     .doc = "Its name, and its version as in \"info\" of this document."},
+     .doc = "Its name and its version, as in `info` of this document."},
     {.method = "GET",
      .path = "/v1",
      .name = "get_index",
@@ -726,7 +726,7 @@ static const api_route routes[] = {
      .produces = html,
      .statuses = {200},
      .summary = "What a problem means",
-     .doc = "Where `type` of a problem leads: a page about its code."},
+     .doc = "A page that explains the code of a problem. `type` of a problem links to it."},
     {.method = "GET",
      .path = "/",
      .name = "get_viewer",
@@ -736,7 +736,7 @@ static const api_route routes[] = {
      .produces = html,
      .statuses = {200, 304},
      .summary = "The viewer",
-     .doc = "A page to look at meshes, to edit them and to see what they are made of."},
+     .doc = "A page to view, inspect and edit meshes."},
     {.method = "GET",
      .path = "/docs",
      .name = "get_docs",
@@ -755,8 +755,8 @@ static const api_route routes[] = {
      .flags = API_FIXED | API_OWN_ACCEPT,
      .produces = anything,
      .statuses = {200, 304},
-     .summary = "Files of the viewer",
-     .doc = "Scripts and styles of the two pages."},
+     .summary = "Files of the pages",
+     .doc = "Scripts and styles of the viewer and the manual."},
 };
 
 api_route_table api_routes(void)

@@ -399,7 +399,7 @@ static void write_adjacency_schema(api_out *out, const he_relation *relation)
     api_out_key_string(out, "type", "string");
     api_out_key_string(out, "const", relation->name);
     api_out_object_end(out);
-    snprintf(text, sizeof text, "Of %s.", he_kind_plural(relation->gives));
+    snprintf(text, sizeof text, "Ids of %s.", he_kind_plural(relation->gives));
     api_out_key(out, "ids");
     write_type(out, "*id", strlen("*id"), text);
     api_out_object_end(out);

@@ -7,14 +7,14 @@ static const struct {
 } tags[] = {
     {"meshes", "Meshes by id: create, list, rename, replace, copy, delete."},
     {"files", "Meshes as files, and as arrays to draw."},
-    {"elements", "Vertices, half-edges, edges and faces, and what is adjacent to each."},
+    {"elements", "Vertices, half-edges, edges and faces, and their neighbours."},
     {"edits", "Edits, lists of edits, undo and redo."},
     {"questions", "Queries, walks, checks, boundaries and components."},
     {"attributes", "Typed values of elements."},
     {"materials", "The table of materials of a mesh."},
-    {"events", "Every change as it happens, as server-sent events."},
-    {"jobs", "Requests that outlive their connection."},
-    {"access", "Tokens, tickets, and what an administrator does."},
+    {"events", "Changes of a mesh as server-sent events."},
+    {"jobs", "Requests that continue after their connection ends."},
+    {"access", "Tokens, tickets, and tasks of an administrator."},
     {"server", "The server itself: health, version, metrics, documentation, the page."},
 };
 
