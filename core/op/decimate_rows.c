@@ -29,49 +29,43 @@ static he_status run_decimate(he_mesh *m, const he_arg *args, he_results *out, h
 const he_op he_decimate_rows[] = {
     {
         .name = "decimate",
-        .doc =
-            "Collapse edges of triangles until few are left, those first that change the shape "
-            "least; a vertex of more than 256 edges neither goes nor moves, and one of nearly as "
-            "many makes each collapse beside it as dear as that many others: a face that goes "
-            "takes "
-            "1 us on an ordinary surface, up to 5 us in stars of 130 to 256 corners.",
+        .doc = "Simplify a mesh of triangles by collapsing the edges that change the shape least. "
+               "A vertex with more than 256 edges is neither removed nor moved. Each removed face "
+               "takes about 1 us, and up to 5 us near vertices with 130 to 256 edges.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "faces",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_REQUIRED | HE_RANGE | HE_WHOLE,
                     .group = 'f',
                     .max = HE_MAX_ROWS,
-                    .doc = "Stop when there are no more than so many."},
+                    .doc = "Target number of faces."},
                    {.name = "ratio",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_REQUIRED | HE_RANGE,
                     .group = 'f',
                     .max = 1,
-                    .doc = "The same, of the faces there are."},
+                    .doc = "Target as a fraction of the present number of faces."},
                    {.name = "max_error",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_RANGE | HE_DERIVED,
                     .max = DBL_MAX,
-                    .doc =
-                        "Collapse no edge whose new vertex would lie farther from the planes of "
-                        "the faces it stands for: the root of the mean square, by area. No limit "
-                        "when not given."},
+                    .doc = "Do not collapse an edge if the new vertex would be farther than this "
+                           "from the planes of the original faces (root mean square, weighted by "
+                           "area). Default: no limit."},
                    {.name = "boundary_weight",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_RANGE,
                     .max = HE_BOUNDARY_WEIGHT_MAX,
                     .fallback = HE_BOUNDARY_WEIGHT,
-                    .doc = "How much more a boundary or feature edge counts than a face as large "
-                           "as the square over it."}},
+                    .doc = "Weight of boundary and feature edges relative to faces."}},
         .results = {{.name = "stop",
                      .type = HE_RESULT_CHOICE,
                      .choices = he_decimate_stop_names,
-                     .doc = "Why it ended: few enough faces, edges left that max_error does not "
-                            "allow, or none left that can be collapsed."},
+                     .doc = "Why it stopped: the target was reached, max_error allows no more, or "
+                            "no edge can be collapsed any more."},
                     {.name = "error",
                      .type = HE_RESULT_NUMBER,
-                     .doc = "The largest error of an edge that was collapsed, as max_error means "
-                            "it."}},
+                     .doc = "The largest error of a collapsed edge, measured as for max_error."}},
         .refusals = {HE_NOT_TRIANGLE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 5,

@@ -53,8 +53,8 @@ static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out,
 const he_op he_loop_rows[] = {
     {
         .name = "loop_bridge",
-        .doc = "Join two holes by a strip of faces: quadrilaterals where they have equally many "
-               "edges, else triangles.",
+        .doc = "Join two holes by a strip of faces: quads if both have the same number of edges, "
+               "otherwise triangles.",
         .params = {{.name = "a",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_HALFEDGE,
@@ -64,12 +64,13 @@ const he_op he_loop_rows[] = {
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_HALFEDGE,
                     .flags = HE_REQUIRED | HE_WALKS,
-                    .doc = "One of the other hole. Which corners are joined follows from where "
-                           "they lie."}},
+                    .doc = "A boundary half-edge of the other hole. The positions decide which "
+                           "corners are joined."}},
         .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges, from the origin of `a` on; each leaves its loop."},
+                     "The new edges, beginning at the origin of `a`."},
                     {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                     "The new faces, each between the edge in its place and the one after."}},
+                     "The new faces: each lies between the new edge at the same place in the list "
+                     "and the next one."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_SAME_LOOP,
                      HE_SHARED_VERTEX, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
@@ -77,22 +78,22 @@ const he_op he_loop_rows[] = {
     },
     {
         .name = "loop_join",
-        .doc = "Sew two loops of equally many edges together, each a face's or a hole's; the "
-               "faces go.",
+        .doc = "Sew two loops with the same number of edges together. Each is the outline of a "
+               "face, which is removed, or of a hole.",
         .params = {{.name = "a",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_HALFEDGE,
                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                    .doc = "One loop; its vertices and edges stay."},
+                    .doc = "A half-edge of one loop, whose vertices and edges stay."},
                    {.name = "b",
                     .type = HE_PARAM_ELEMENT,
                     .kind = HE_HALFEDGE,
                     .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                    .doc = "The other, by the edge that becomes one with that of `a`: its target "
-                           "is merged into the origin of `a`."}},
+                    .doc = "The half-edge of the other loop that is merged with `a`: its target "
+                           "becomes the origin of `a`."}},
         .results = {{"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices went to corners, since they differ from those of "
-                     "the vertex that stays."}},
+                     "How many values of vertices became values of corners, because merged "
+                     "vertices had different ones."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_SAME_LOOP, HE_LOOP_LENGTH,
                      HE_REPEATED_CORNER, HE_SHARED_VERTEX, HE_BOUNDARY_EDGE, HE_DOUBLED_EDGE,
                      HE_LOCKED_ELEMENT},
@@ -103,27 +104,31 @@ const he_op he_loop_rows[] = {
         .name = "loop_split",
         .doc = "Cut the mesh around three edges and cap both sides with triangles; the inverse of "
                "loop_join.",
-        .params = {{.name = "a",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED | HE_WALKS,
-                    .doc = "One edge; what is left of its first half-edge keeps the vertices."},
-                   {.name = "b",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED,
-                    .doc = "Another that makes up a cycle with it."},
-                   {.name = "c",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED,
-                    .doc = "The third."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices, from that of the origin of the first half-edge of `a` on."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges: between the first two vertices, and so on around."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                     "The caps: that of the old vertices, then that of the new ones."}},
+        .params =
+            {{.name = "a",
+              .type = HE_PARAM_ELEMENT,
+              .kind = HE_EDGE,
+              .flags = HE_REQUIRED | HE_WALKS,
+              .doc =
+                  "An edge of the cycle. The side left of its first half-edge keeps the vertices."},
+             {.name = "b",
+              .type = HE_PARAM_ELEMENT,
+              .kind = HE_EDGE,
+              .flags = HE_REQUIRED,
+              .doc = "The second edge of the cycle."},
+             {.name = "c",
+              .type = HE_PARAM_ELEMENT,
+              .kind = HE_EDGE,
+              .flags = HE_REQUIRED,
+              .doc = "The third edge of the cycle."}},
+        .results =
+            {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+              "The new vertices, beginning with the copy of the origin of the first half-edge of "
+              "`a`."},
+             {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+              "The new edges: between the first and second new vertex, and so on around."},
+             {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+              "The two caps: first the one at the old vertices, then the one at the new ones."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CYCLE, HE_BOUNDARY_VERTEX,
                      HE_SHARED_FACE, HE_LOCKED_ELEMENT},
         .change = {3, 3, 2},

@@ -79,14 +79,14 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
 }
 
 /* The parameters that plane_split and plane_cut have in common. */
-#define PLANE                                                           \
-    {.name = "point",                                                   \
-     .type = HE_PARAM_POINT,                                            \
-     .flags = HE_REQUIRED,                                              \
-     .doc = "Any point of the plane."},                                 \
-    {                                                                   \
-        .name = "normal", .type = HE_PARAM_POINT, .flags = HE_REQUIRED, \
-        .doc = "The direction it faces, of any length but zero."        \
+#define PLANE                                                                                   \
+    {.name = "point",                                                                           \
+     .type = HE_PARAM_POINT,                                                                    \
+     .flags = HE_REQUIRED,                                                                      \
+     .doc = "Any point of the plane."},                                                         \
+    {                                                                                           \
+        .name = "normal", .type = HE_PARAM_POINT, .flags = HE_REQUIRED,                         \
+        .doc = "The direction of its normal. Its length does not matter, but must not be zero." \
     }
 #define TOLERANCE                                                                        \
     {                                                                                    \
@@ -95,10 +95,10 @@ static he_status run_compact(he_mesh *m, const he_arg *args, he_results *out, he
                "longest side of the box around the edges when not given, or what "       \
                "rounding needs where coordinates are larger than that."                  \
     }
-#define SPLIT_COUNTS                                                            \
-    {"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges got a vertex."}, \
-    {                                                                           \
-        "faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."    \
+#define SPLIT_COUNTS                                                          \
+    {"edges_split", HE_RESULT_NUMBER, HE_EDGE, "How many edges were split."}, \
+    {                                                                         \
+        "faces_split", HE_RESULT_NUMBER, HE_FACE, "How many faces were cut."  \
     }
 
 /* The names of the values of he_cut_side, in their order. */
@@ -107,7 +107,7 @@ static const char *const cut_sides[] = {"above", "below", NULL};
 const he_op he_mesh_rows[] = {
     {
         .name = "transform",
-        .doc = "Apply an affine map to vertices, and to attributes `normal`.",
+        .doc = "Apply an affine transformation to vertices and to attributes `normal`.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "matrix",
                     .type = HE_PARAM_MATRIX,
@@ -117,7 +117,7 @@ const he_op he_mesh_rows[] = {
                     .plural = "vertices",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_VERTEX,
-                    .doc = "What moves; all vertices when not given."}},
+                    .doc = "The vertices to move. Default: all."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_FINITE,
                      HE_LOCKED_ELEMENT},
         .change = {0, 0, 0},
@@ -125,7 +125,7 @@ const he_op he_mesh_rows[] = {
     },
     {
         .name = "plane_split",
-        .doc = "Split the faces a plane crosses: a vertex on each edge it crosses, a diagonal in "
+        .doc = "Split the faces that a plane crosses: a new vertex on each edge, a new edge in "
                "each face.",
         .size = HE_OP_WHOLE,
         .params = {PLANE,
@@ -133,12 +133,13 @@ const he_op he_mesh_rows[] = {
                     .plural = "faces",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_FACE,
-                    .doc = "What is cut; all faces when not given."},
+                    .doc = "The faces to cut. Default: all."},
                    TOLERANCE},
         .results = {SPLIT_COUNTS,
                     {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "The new vertices."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, one a diagonal."}},
+                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges inside the faces."},
+                    {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                     "The new faces, one for each of these edges."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -153,15 +154,15 @@ const he_op he_mesh_rows[] = {
                    {.name = "keep",
                     .type = HE_PARAM_CHOICE,
                     .choices = cut_sides,
-                    .doc = "The side that stays; above is where the normal points. A face in the "
-                           "plane is below it when it faces up."},
+                    .doc = "The side that is kept; above is where the normal points. A face in the "
+                           "plane counts as below if its own normal points up."},
                    {.name = "cap",
                     .type = HE_PARAM_FLAG,
                     .doc = "Close each loop of the cut with a polygon."},
                    TOLERANCE},
         .results = {SPLIT_COUNTS,
                     {"faces_deleted", HE_RESULT_NUMBER, HE_FACE,
-                     "How many faces went, the parts of those that were cut among them."},
+                     "How many faces were deleted, including the parts of faces that were cut."},
                     {"caps", HE_RESULT_ELEMENTS, HE_FACE, "The polygons that close the cut."}},
         .refusals = {HE_BAD_VALUE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT, HE_OPEN_LOOP,
                      HE_REPEATED_CORNER},
@@ -171,20 +172,21 @@ const he_op he_mesh_rows[] = {
     },
     {
         .name = "delaunay",
-        .doc = "Flip edges between triangles while the angles opposite to them sum to more than "
-               "pi; flips may grow with the square of the edges, and what takes more than 512 "
-               "steps for each edge of the mesh is refused.",
+        .doc = "Flip edges between triangles until the angles opposite each edge add up to at most "
+               "pi (Delaunay). An input that takes more than 512 steps for each edge of the mesh "
+               "is refused.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "edge",
                     .plural = "edges",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_EDGE,
-                    .doc = "Where to begin, from where flips spread; all edges when not given. "
-                           "Edges whose bool attribute `feature` or `locked` is true are kept, "
-                           "and those beside a locked face."}},
-        .results = {{"flips", HE_RESULT_NUMBER, HE_EDGE, "How many."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "What was flipped, in order; twice what was flipped twice."}},
+                    .doc = "The edges to begin with; flips spread from there. Default: all. Edges "
+                           "whose bool attribute `feature` or `locked` is true, and edges of "
+                           "locked faces, are not flipped."}},
+        .results =
+            {{"flips", HE_RESULT_NUMBER, HE_EDGE, "How many flips were made."},
+             {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+              "The flipped edges, in order. An edge that was flipped twice is listed twice."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_LIMIT},
         .change = {0, 0, 0},
         .pace = 2,
@@ -192,11 +194,11 @@ const he_op he_mesh_rows[] = {
     },
     {
         .name = "compact",
-        .doc = "Drop deleted ids and number what lives anew.",
+        .doc = "Renumber all elements without gaps. All ids change, and the history is cleared.",
         .size = HE_OP_WHOLE,
-        .results = {{"vertices", HE_RESULT_MAP, HE_VERTEX, "The new id of each old one."},
-                    {"edges", HE_RESULT_MAP, HE_EDGE, "The new id of each old one."},
-                    {"faces", HE_RESULT_MAP, HE_FACE, "The new id of each old one."}},
+        .results = {{"vertices", HE_RESULT_MAP, HE_VERTEX, "For each old id the new one, or null."},
+                    {"edges", HE_RESULT_MAP, HE_EDGE, "For each old id the new one, or null."},
+                    {"faces", HE_RESULT_MAP, HE_FACE, "For each old id the new one, or null."}},
         .change = {0, 0, 0},
         .pace = 2,
         .run = run_compact,

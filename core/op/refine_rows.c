@@ -41,29 +41,29 @@ static const char *const schemes[] = {"loop", "catmull_clark", "linear", "sqrt3"
 const he_op he_refine_rows[] = {
     {
         .name = "subdivide",
-        .doc = "Refine the whole mesh by a subdivision scheme: finer faces, and, but for linear, "
-               "a smoother surface.",
+        .doc = "Refine the whole mesh by a subdivision scheme: finer faces and, except with "
+               "linear, a smoother surface.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "scheme",
                     .type = HE_PARAM_CHOICE,
                     .fallback = HE_CATMULL_CLARK,
                     .choices = schemes,
                     .doc = "loop: each triangle becomes 4. catmull_clark: each face becomes quads. "
-                           "linear: triangles become 4, other faces quads, and no vertex moves. "
-                           "sqrt3: each triangle becomes 3. Boundaries, and edges whose bool "
-                           "attribute `feature` is true, become curves of their own; vertices "
-                           "whose `locked` is true stay."},
+                           "linear: each triangle becomes 4, each other face becomes quads, and no "
+                           "vertex moves. sqrt3: each triangle becomes 3. Boundaries, and edges "
+                           "whose bool attribute `feature` is true, are smoothed as curves; "
+                           "vertices whose `locked` is true do not move."},
                    {.name = "steps",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_RANGE | HE_WHOLE,
                     .min = 1,
                     .max = HE_SUBDIVIDE_STEPS,
                     .fallback = 1,
-                    .doc = "How often."}},
+                    .doc = "How many steps."}},
         .results = {{"vertices", HE_RESULT_COUNTS, HE_VERTEX,
-                     "How many there are after each step."},
-                    {"edges", HE_RESULT_COUNTS, HE_EDGE, "The same of edges."},
-                    {"faces", HE_RESULT_COUNTS, HE_FACE, "The same of faces."}},
+                     "The number of vertices after each step."},
+                    {"edges", HE_RESULT_COUNTS, HE_EDGE, "The number of edges after each step."},
+                    {"faces", HE_RESULT_COUNTS, HE_FACE, "The number of faces after each step."}},
         .refusals = {HE_LIMIT, HE_NOT_TRIANGLE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .growth = subdivide_growth,

@@ -65,30 +65,32 @@ static he_status run_delete_isolated(he_mesh *m, const he_arg *args, he_results 
 const he_op he_weld_rows[] = {
     {
         .name = "vertex_weld",
-        .doc = "Make vertices one, and the boundary edges that come to coincide. Faces left with "
-               "fewer than three corners go, and all but the first of those that come to be the "
-               "same.",
-        .params = {{.name = "vertex",
-                    .plural = "vertices",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                    .group = 'w',
-                    .doc = "What becomes one; the lowest id stays."},
-                   {.name = "tolerance",
-                    .type = HE_PARAM_NUMBER,
-                    .flags = HE_REQUIRED | HE_COSTS_MESH,
-                    .group = 'w',
-                    .doc = "Each vertex joins the lowest one no farther away than this that has "
-                           "not joined another."},
-                   {.name = "position",
-                    .type = HE_PARAM_CHOICE,
-                    .choices = positions,
-                    .doc = "Where it lies then: at the mean, or where the lowest was."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."},
+        .doc = "Merge vertices, and the boundary edges that then coincide. Faces left with fewer "
+               "than three corners are deleted, and all but the first of faces that become equal.",
+        .params =
+            {{.name = "vertex",
+              .plural = "vertices",
+              .type = HE_PARAM_ELEMENTS,
+              .kind = HE_VERTEX,
+              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+              .group = 'w',
+              .doc = "The vertices to merge. The lowest id stays."},
+             {.name = "tolerance",
+              .type = HE_PARAM_NUMBER,
+              .flags = HE_REQUIRED | HE_COSTS_MESH,
+              .group = 'w',
+              .doc = "Each vertex is merged into the lowest one within this distance that was not "
+                     "itself merged."},
+             {.name = "position",
+              .type = HE_PARAM_CHOICE,
+              .choices = positions,
+              .doc =
+                  "Where the merged vertex is placed: at the mean, or where the lowest one was."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The vertices that others were merged into."},
                     {"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices went to corners, since they differ from those of "
-                     "the vertex that stays."}},
+                     "How many values of vertices became values of corners, because merged "
+                     "vertices had different ones."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
                      HE_LOCKED_ELEMENT},
@@ -98,15 +100,15 @@ const he_op he_weld_rows[] = {
     },
     {
         .name = "vertex_separate",
-        .doc = "Give each fan of a bow-tie a vertex of its own, at the same place.",
+        .doc = "Split bow-ties: give each fan of faces a vertex of its own, in the same place.",
         .params = {{.name = "vertex",
                     .plural = "vertices",
                     .type = HE_PARAM_ELEMENTS,
                     .kind = HE_VERTEX,
                     .flags = HE_REQUIRED,
-                    .doc = "What is taken apart; nothing changes at one that is no bow-tie."}},
+                    .doc = "The vertices to split. Vertices that are not bow-ties do not change."}},
         .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices; each descends from the one it was part of."}},
+                     "The new vertices. `parents` tells which vertex each comes from."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
@@ -115,18 +117,19 @@ const he_op he_weld_rows[] = {
     },
     {
         .name = "weld",
-        .doc = "Make vertices one that lie close together, and what comes to coincide with them; "
-               "vertex_weld for the whole mesh.",
+        .doc = "Merge vertices that are close together, and the edges and faces that then "
+               "coincide: vertex_weld for the whole mesh.",
         .size = HE_OP_WHOLE,
         .params = {{.name = "tolerance",
                     .type = HE_PARAM_NUMBER,
                     .flags = HE_REQUIRED,
-                    .doc = "Each vertex joins the lowest one no farther away than this that has "
-                           "not joined another; 0 for equal positions."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX, "Those that took in others."},
+                    .doc = "Each vertex is merged into the lowest one within this distance that "
+                           "was not itself merged; 0 merges equal positions."}},
+        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                     "The vertices that others were merged into."},
                     {"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices went to corners, since they differ from those of "
-                     "the vertex that stays."}},
+                     "How many values of vertices became values of corners, because merged "
+                     "vertices had different ones."}},
         .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
                      HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -135,10 +138,10 @@ const he_op he_weld_rows[] = {
     },
     {
         .name = "separate_bowties",
-        .doc = "Give each fan of every bow-tie a vertex of its own.",
+        .doc = "Split every bow-tie: give each fan of faces a vertex of its own.",
         .size = HE_OP_WHOLE,
         .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices; each descends from the one it was part of."}},
+                     "The new vertices. `parents` tells which vertex each comes from."}},
         .refusals = {HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
         .pace = 4,
