@@ -92,7 +92,7 @@ test('an OBJ file and its library show their colours and names', async (t) => {
         ['lamp', ''],
         ['glass', 'opacity 0.5'],
         ['unused', ''],
-        ['unheard_of', 'no colour known'],
+        ['unheard_of', 'unknown colour'],
     ]);
     const [red] = await page.locator('#legend .swatch').evaluateAll((swatches) =>
         swatches.map((swatch) => getComputedStyle(swatch).backgroundColor));

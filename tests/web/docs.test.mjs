@@ -84,7 +84,7 @@ test('types are words', () => {
     assert.deepEqual(typeOf({ type: 'integer', minimum: 0 }), ['integer from 0']);
     assert.deepEqual(typeOf({ type: 'number', exclusiveMinimum: 0, maximum: 1, default: 1 }), [
         'number above 0 to 1',
-        '; 1 when not given',
+        '; 1 if not given',
     ]);
     const id = { $ref: '#/components/schemas/id' };
     assert.deepEqual(typeOf({ type: 'array', items: id }), ['array of ', { ref: 'id' }]);

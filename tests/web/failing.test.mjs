@@ -77,10 +77,10 @@ test('geometry that breaks off or is none is said, not drawn', async (t) => {
     const wrong = Buffer.from(whole);
     wrong.writeUInt32LE(99, 4);
     for (const [body, text] of [
-        [whole.subarray(0, 50), /broke off/],
-        [whole.subarray(0, whole.length - 4), /broke off/],
-        [Buffer.concat([whole, Buffer.alloc(4)]), /longer than it says/],
-        [wrong, /no geometry this page can read/],
+        [whole.subarray(0, 50), /did not arrive completely/],
+        [whole.subarray(0, whole.length - 4), /did not arrive completely/],
+        [Buffer.concat([whole, Buffer.alloc(4)]), /longer than its header says/],
+        [wrong, /cannot read the geometry/],
     ]) {
         await page.route(`**/${other}/geometry`, (route) => route.fulfill({ body }));
         await page.locator(`#meshes button[data-mesh="${other}"]`).click();

@@ -137,7 +137,7 @@ test('a point that lacks a number is said, and its field marked', async (t) => {
     const { page } = await openMesh(t, GRID, { allowed: [/status of 4\d\d/] });
     await choose(page, 'vertex_add');
     await page.getByLabel('position x', { exact: true }).fill('1');
-    await expectVerdict(page, 'Would be refused: position lacks its y.');
+    await expectVerdict(page, 'Not possible: position needs its y.');
     await page.locator('.wrong [aria-label="position x"][aria-invalid="true"]').waitFor();
     await fillVector(page, 'position', [1, 2, 3]);
     await expectVerdict(page, 'Would make: +1 V');
@@ -146,7 +146,7 @@ test('a point that lacks a number is said, and its field marked', async (t) => {
     await choose(page, 'edge_split');
     await field(page, 'edge').fill('0');
     await field(page, 't').fill('7');
-    await expectVerdict(page, 'Would be refused');
+    await expectVerdict(page, 'Not possible');
     await page.locator('.wrong #param-t').waitFor();
     await checkAccessible(page, 'wrong', '#details');
 });
@@ -196,7 +196,7 @@ test('what an edit would make or why not is said before it is sent', async (t) =
     await expectVerdict(page, 'Would make: +1 V +4 E +3 F');
     await checkAccessible(page, 'tried', '#details');
     await field(page, 'face').fill('66');
-    await expectVerdict(page, /Would be refused:.*66/);
+    await expectVerdict(page, /Not possible:.*66/);
     await checkAccessible(page, 'would be refused', '#details');
     await field(page, 'face').fill('six');
     await expectVerdict(page, /six.*not a number/);
@@ -254,7 +254,7 @@ test('what an edit would make is asked again when another client has edited', as
     await expectVerdict(page, 'Would make: +1 V +4 E +3 F');
     await post(daemon, `/${mesh}/edits`, { ops: [{ op: 'face_delete', face: 2 }] });
     await waitForFrame(page, { revision: 2 });
-    await expectVerdict(page, /Would be refused/);
+    await expectVerdict(page, /Not possible/);
 });
 
 test('only the last of what is typed is tried', async (t) => {
@@ -296,7 +296,7 @@ test('what works on all of a large mesh is not tried', async (t) => {
         }
     });
     await choose(page, 'triangulate');
-    await expectVerdict(page, 'Not tried first');
+    await expectVerdict(page, 'No preview');
     await choose(page, 'face_poke');
     await field(page, 'face').fill('2');
     await expectVerdict(page, 'Would make');

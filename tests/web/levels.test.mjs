@@ -127,7 +127,7 @@ test('a mesh is shown from coarse to fine, and any level by a slider', async (t)
     for (const name of ['Move', 'Apply', 'Split', 'Delete']) {
         assert.ok(await page.getByRole('button', { name, exact: true }).isDisabled(), name);
     }
-    assert.match(await page.locator('#level-hint').textContent(), /Picking and editing are off/);
+    assert.match(await page.locator('#level-hint').textContent(), /You cannot pick or edit/);
     await press(page, 'Escape');
     await waitForMesh(page);
     assert.equal(await page.locator('#canvas').getAttribute('data-selection'), '');
@@ -197,7 +197,7 @@ test('levels are given up while they are waited for, and asked for again', async
         () => page.keyboard.press('Escape'),
     ]) {
         const answer = await ask();
-        await page.getByText('The server makes the levels').waitFor();
+        await page.getByText('The server is computing the levels').waitFor();
         assert.equal(await levels(page).getAttribute('aria-pressed'), 'true');
         await giveUp();
         await checkGivenUp(page);
@@ -286,7 +286,7 @@ test('a mesh that changes while its levels come is shown as it is now', async (t
 
 test('levels that break off are said, and the mesh is back', async (t) => {
     const { mesh, page, ask } = await openHeld(t, { allowed: [/ERR_INCOMPLETE_CHUNKED/] });
-    for (const [stop, text] of [['breakOff', /cannot be reached/], ['end', /broke off/]]) {
+    for (const [stop, text] of [['breakOff', /cannot be reached/], ['end', /did not arrive completely/]]) {
         const answer = await ask();
         await sendTo(page, answer, 0.5);
         answer[stop]();

@@ -282,7 +282,7 @@ test('what a rival has undone is not undone again, and that is said', async (t) 
         await route.continue();
     }, { times: 1 });
     await page.getByRole('button', { name: 'Undo' }).click();
-    await expectToast(page, /another client did this: undo of face_poke/);
+    await expectToast(page, /another client made these changes.*: undo of face_poke/);
     await waitForFrame(page, { revision: 3 });
     assert.ok(await page.getByRole('button', { name: 'Undo', exact: true }).isDisabled());
     assert.ok(await page.getByRole('button', { name: 'Redo' }).isEnabled());

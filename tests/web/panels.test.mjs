@@ -87,7 +87,7 @@ test('a field that is left empty is left out, whatever its type', async (t) => {
     await fillVector(page, 'point', [0, 0, 0.25]);
     await fillVector(page, 'normal', [0, 0, 1]);
     const tolerance = page.locator('#param-tolerance');
-    assert.equal(await tolerance.getAttribute('placeholder'), 'left out');
+    assert.equal(await tolerance.getAttribute('placeholder'), 'default');
     assert.deepEqual(await apply(page), {
         op: 'plane_split',
         point: [0, 0, 0.25],
@@ -146,7 +146,7 @@ test('more numbers than a field takes, and what only looks like one, are said', 
     const { daemon, mesh, page } = await openMesh(t, CUBE);
     await page.locator('#operation').selectOption('edge_split');
     for (const [text, words] of [
-        ['1 2', /edge is one number/],
+        ['1 2', /edge must be one number/],
         ['0x10', /0x10.*not a number/],
         ['Infinity', /not a number/],
         ['1e999', /not a number/],

@@ -418,7 +418,7 @@ test('an edit meant for an older revision is refused, and the page catches up', 
         await route.continue();
     }, { times: 1 });
     await page.getByRole('button', { name: 'Split' }).click();
-    await expectToast(page, /revision.*another client did this: face_poke/);
+    await expectToast(page, /revision.*another client made these changes.*: face_poke/);
     await waitForFrame(page, { mesh, revision: 2 });
     assert.equal((await checkStatistics(context)).counts.faces, 9);
     await page.getByRole('button', { name: 'Undo' }).click();

@@ -218,14 +218,14 @@ async function readArrays(path, onProgress, signal) {
         rest = take(rest);
         if (rest.length > 0) {
             reader.cancel();
-            const detail = 'The geometry of the mesh is longer than it says.';
+            const detail = 'The geometry of the mesh is longer than its header says.';
             throw new Problem({ title: 'Answer too long', detail });
         }
         onProgress(at / whole.length);
     }
     if (at < HEADER_BYTES || at !== whole.length) {
-        const detail = 'The geometry of the mesh broke off.';
-        throw new Problem({ title: 'Answer cut short', detail });
+        const detail = 'The geometry of the mesh did not arrive completely.';
+        throw new Problem({ title: 'Answer incomplete', detail });
     }
     return whole.buffer;
 }

@@ -4,13 +4,13 @@ import { byId, enable } from './dom.js';
 
 const SPLIT_TITLES = {
     edge_split: 'Split the edge and the faces beside it',
-    face_poke: 'Split the face from its middle to its corners',
+    face_poke: 'Divide the face into triangles around a new vertex',
     face_split: 'Split the face between the two vertices',
 };
 
 const CONNECTIONS = {
-    lost: 'Connection lost, trying again. What others do meanwhile is not shown.',
-    gone: 'This mesh was deleted. What you see is what it was last.',
+    lost: 'Connection lost, reconnecting. Changes by other clients are not shown meanwhile.',
+    gone: 'This mesh was deleted; you are looking at its last state.',
 };
 
 export function showName({ mesh, summary }) {

@@ -164,7 +164,7 @@ export class Ids {
             throw slip(
                 this.#name,
                 'One number',
-                `${this.#name} is one number, not \u201c${text}\u201d.`,
+                `${this.#name} must be one number, not \u201c${text}\u201d.`,
             );
         }
         return this.#isList ? ids : ids[0];
@@ -202,7 +202,7 @@ export class Numeral {
             throw slip(
                 this.#name,
                 'Not a number',
-                `${this.#name}: what stands there is not a number.`,
+                `${this.#name}: this is not a number.`,
             );
         }
         return this.node.value === '' ? undefined : Number(this.node.value);
@@ -261,7 +261,7 @@ export class Vector {
         return this.#fields.map((field, i) => {
             const value = field.read() ?? this.#usual;
             if (value === undefined) {
-                const missing = `${this.#name} lacks its ${AXES[i]}.`;
+                const missing = `${this.#name} needs its ${AXES[i]}.`;
                 throw slip(this.#name, 'Three numbers', missing);
             }
             return value;
@@ -375,7 +375,7 @@ export function vectors(name) {
     const vector = new Vector(name, { onMore });
     const control = new WithText(vector, {
         name,
-        placeholder: 'x y z, a line each',
+        placeholder: 'x y z, one point in each line',
         write: () => vector.text,
         parse,
         labels: ['A list, one for each', 'One for all'],

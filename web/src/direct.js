@@ -7,7 +7,7 @@ import { enable } from './dom.js';
 const CLICK_PIXELS = 4;
 
 const HINTS = {
-    move: 'Drag to move what is selected.',
+    move: 'Drag to move the selection.',
     extrude: 'Drag to extrude, or click.',
     inset: 'Drag to inset, or click.',
 };
@@ -51,7 +51,7 @@ export class Direct {
         }
         [this.#tool, this.#gesture] = [tool, gesture];
         const { note, hint, amount, buttons } = this.#elements;
-        hint.textContent = `${HINTS[tool]} Esc gives up.`;
+        hint.textContent = `${HINTS[tool]} Press Esc to cancel.`;
         amount.textContent = '';
         note.hidden = false;
         buttons[tool].setAttribute('aria-pressed', 'true');

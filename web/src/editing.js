@@ -147,7 +147,7 @@ export class Editing {
             return null;
         }
         if (isDear) {
-            return 'Not tried first: it may take long on a mesh as large as this.';
+            return 'No preview: it may take long on a mesh of this size.';
         }
         try {
             return wordsOf(await api.tryEdit(mesh, operation, signal));
@@ -268,8 +268,8 @@ export class Editing {
         if (this.#tools.has(name)) {
             this.#tools.open(name);
         } else {
-            const detail = `This server has no operation ${name}.`;
-            this.#toasts.show({ title: 'Not here', detail });
+            const detail = `This server does not have the operation ${name}.`;
+            this.#toasts.show({ title: 'Unknown operation', detail });
         }
     }
 

@@ -62,7 +62,7 @@ export function controlFor(param, meshes, pickable) {
 
 // The placeholder of an empty field. The server chooses the value of a number that is left out.
 function hintFor({ default: usual, required }) {
-    return usual === undefined ? (required ? 'number' : 'left out') : `${usual}`;
+    return usual === undefined ? (required ? 'number' : 'default') : `${usual}`;
 }
 
 // Returns notes on a parameter: type, range, whether it is required.

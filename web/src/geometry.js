@@ -37,7 +37,7 @@ export function headerOf(buffer) {
     const view = new DataView(buffer);
     const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
     if (text !== 'HEDG' || view.getUint32(4, true) !== VERSION) {
-        throw new RangeError('The server sent no geometry this page can read.');
+        throw new RangeError('This page cannot read the geometry that the server sent.');
     }
     const [revision, base, vertexBytes, triangleBytes, layout] = [8, 16, 24, 32, 80].map((at) =>
         Number(view.getBigUint64(at, true)),
@@ -54,7 +54,7 @@ export function unpack(buffer) {
     const { revision, base, layout, vertexCount, triangleCount, length } = headerOf(buffer);
     const trianglesAt = HEADER_BYTES + 16 * vertexCount;
     if (base !== 0 || ![length, trianglesAt + 16 * triangleCount].every(isLengthOf(buffer))) {
-        throw new RangeError('The geometry of the mesh was cut short.');
+        throw new RangeError('The geometry of the mesh did not arrive completely.');
     }
     const view = new DataView(buffer);
     const vertices = wholeRows(new Float32Array(buffer, HEADER_BYTES, 4 * vertexCount));

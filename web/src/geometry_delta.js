@@ -28,7 +28,7 @@ export function applyDelta(geometry, buffer, rowTexels = 2048) {
         return null;
     }
     if (header.base !== geometry.revision || header.layout !== geometry.layout) {
-        throw new RangeError('The changes are of other arrays.');
+        throw new RangeError('The changes belong to another geometry.');
     }
     const view = new DataView(buffer);
     const [vertexRows, triangleRows] = [88, 92].map((at) => view.getUint32(at, true));
@@ -60,7 +60,7 @@ function partAt(buffer, at, count, Row) {
     const rowsAt = at + Math.ceil(count / 4) * ROW_BYTES;
     const end = rowsAt + count * ROW_BYTES;
     if (end > buffer.byteLength) {
-        throw new RangeError('The changes of the geometry were cut short.');
+        throw new RangeError('The changes of the geometry did not arrive completely.');
     }
     return {
         places: new Uint32Array(buffer, at, count),

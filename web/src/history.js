@@ -60,7 +60,7 @@ export class History {
         const first = entries.findLast((entry) => entry.undoable);
         this.#beginning = first === undefined ? this.#beginning : first.revision - 1;
         if (next === null && undo > 0) {
-            const words = [make('span', { className: 'ops' }, 'the beginning')];
+            const words = [make('span', { className: 'ops' }, 'original')];
             rows.push(this.#goBack(this.#beginning, words));
         }
         this.#list.append(...rows);

@@ -15,15 +15,15 @@ const KEYS = [
     ['F', 'f', 'Frame the selection, or the whole mesh', 'frame'],
     ['+', '+', 'Nearer', 'zoomIn'],
     ['-', '-', 'Further', 'zoomOut'],
-    ['G', 'g', 'Move what is selected by a drag', 'move'],
-    ['E', 'e', 'Extrude faces or boundary edges by a drag', 'extrude'],
-    ['I', 'i', 'Inset faces by a drag', 'inset'],
+    ['G', 'g', 'Move the selection by dragging', 'move'],
+    ['E', 'e', 'Extrude faces or boundary edges by dragging', 'extrude'],
+    ['I', 'i', 'Inset faces by dragging', 'inset'],
     ['S', 's', 'Split an edge, a face, or the face between two vertices', 'split'],
     ['X', 'x', 'Collapse an edge, delete a face or a vertex', 'remove'],
     ['Ctrl Z', 'ctrl+z', 'Undo', 'undo'],
     ['Ctrl Shift Z', 'ctrl+shift+z', 'Redo', 'redo'],
-    ['?', '?', 'This list', 'help'],
-    ['Esc', 'escape', 'Give up levels, a drag or a field that waits, else select nothing', 'clear'],
+    ['?', '?', 'Show this list', 'help'],
+    ['Esc', 'escape', 'Cancel, or clear the selection', 'clear'],
 ];
 
 // `acts` has a function for each act.

@@ -93,7 +93,7 @@ function colorOf([red, green, blue, opacity]) {
 // Returns notes on the properties that a swatch does not show.
 function notesOf(look) {
     if (look === null) {
-        return ['no colour known'];
+        return ['unknown colour'];
     }
     const notes = [];
     if (look.base_color[3] < 1) {

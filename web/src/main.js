@@ -245,7 +245,7 @@ function endLevels() {
 }
 
 function tellStale() {
-    toasts.tell('Back to the mesh', 'It has changed, and its levels with it.');
+    toasts.tell('Back to the mesh', 'It was changed, so these levels are out of date.');
 }
 
 // Shows the empty state if there is no mesh.

@@ -20,7 +20,7 @@ class Steps {
 
     // `pickable(name, control)` returns a control's node with a button that lets a click fill it.
     constructor(pickable) {
-        const all = [...STEPS, ['about', 'About the point', 0]];
+        const all = [...STEPS, ['about', 'Around the point', 0]];
         this.#vectors = Object.fromEntries(
             all.map(([member, , usual]) => [member, new Vector(member, { usual })]),
         );

@@ -63,14 +63,14 @@ export class ProgressiveReader {
         this.#bytes.copyWithin(0, at, this.#held);
         this.#held -= at;
         if (this.#part > SPLITS && this.#held > 0) {
-            throw new RangeError('The levels of the mesh are longer than they say.');
+            throw new RangeError('The levels of the mesh are longer than their header says.');
         }
     }
 
     // Ends the input. Throws a RangeError if bytes are missing.
     end() {
         if (this.#part <= SPLITS) {
-            throw new RangeError('The levels of the mesh broke off.');
+            throw new RangeError('The levels of the mesh did not arrive completely.');
         }
     }
 
@@ -154,5 +154,5 @@ export class ProgressiveReader {
 
 // Returns the error for invalid bytes, also for faults that the receiver of the rows finds.
 export function unreadable() {
-    return new RangeError('The server sent no levels of a mesh this page can read.');
+    return new RangeError('This page cannot read the levels that the server sent.');
 }

@@ -15,8 +15,8 @@ const LONGEST = 0.5;
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
 
 const HINTS = {
-    waiting: 'The server makes the levels.',
-    shown: 'Picking and editing are off meanwhile.',
+    waiting: 'The server is computing the levels.',
+    shown: 'You cannot pick or edit meanwhile.',
 };
 
 export class Refining {

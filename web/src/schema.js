@@ -36,7 +36,7 @@ function arrayOf({ items, minItems = 0, maxItems }) {
     if (minItems === maxItems) {
         return [`${minItems} of `, ...typeOf(items)];
     }
-    return [minItems > 0 ? 'array, not empty, of ' : 'array of ', ...typeOf(items)];
+    return [minItems > 0 ? 'non-empty array of ' : 'array of ', ...typeOf(items)];
 }
 
 function basic(schema) {
@@ -65,5 +65,5 @@ export function typeOf(schema) {
             : basic(schema);
     return schema.default === undefined
         ? parts
-        : [...parts, `; ${JSON.stringify(schema.default)} when not given`];
+        : [...parts, `; ${JSON.stringify(schema.default)} if not given`];
 }

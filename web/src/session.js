@@ -336,7 +336,7 @@ export class Session {
         );
         return words.length === 0
             ? ''
-            : ` Meanwhile another client did this: ${words.join('; ')}. It is shown now.`;
+            : ` Meanwhile another client made these changes, which are shown now: ${words.join('; ')}.`;
     }
 
     #setLoading(part) {

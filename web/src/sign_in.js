@@ -4,7 +4,7 @@ import * as api from './api.js';
 import { byId } from './dom.js';
 import { askBy, forgetToken } from './token.js';
 
-const ROLES = { read: 'may look', write: 'may edit', admin: 'may do everything' };
+const ROLES = { read: 'may view', write: 'may edit', admin: 'may do everything' };
 
 export class SignIn {
     mayEdit = true; // until the server says otherwise
@@ -27,7 +27,7 @@ export class SignIn {
         who.hidden = name === null;
         who.textContent = `${name} (${role})`;
         const meshes = prefixes.length > 0 ? `; meshes ${prefixes.join(', ')}\u2026` : '';
-        who.title = `${ROLES[role] ?? role}${meshes}. Press to use another token`;
+        who.title = `${ROLES[role] ?? role}${meshes}. Click to use another token`;
         document.body.classList.toggle('looks-only', !this.mayEdit);
         this.onChange();
     }

@@ -42,7 +42,7 @@ export class Trial {
     }
 
     #sayRefused(error) {
-        this.#say(`Would be refused: ${error.detail || error.message}`, true);
+        this.#say(`Not possible: ${error.detail || error.message}`, true);
     }
 
     clear() {
@@ -97,7 +97,7 @@ function changesOf(answer) {
     if (replaced) {
         return answer.results.some(({ op }) => op === 'compact')
             ? 'Would change the ids of all elements.'
-            : 'Would make the mesh anew.';
+            : 'Would replace the whole mesh.';
     }
     return changed.length > 0 ? `Would change: ${changed.join(' ')}` : 'Would change nothing.';
 }
