@@ -147,9 +147,24 @@ static void write_bytes_schema(api_out *out, const char *type)
     api_out_object_end(out);
 }
 
-/* Writes the media types of a body. The schema of a line or of an event, `item`, is an extension,
- * since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example` returns an example
- * body for `route`. */
+/* A text that stands for a list of events, each with its data as JSON. */
+static void write_events_schema(api_out *out, const char *event)
+{
+    api_out_key(out, "schema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "string");
+    api_out_key_string(out, "contentMediaType", EVENT_STREAM);
+    api_out_key(out, "contentSchema");
+    api_out_object_begin(out);
+    api_out_key_string(out, "type", "array");
+    api_schema_ref_key(out, "items", event);
+    api_out_object_end(out);
+    api_out_object_end(out);
+}
+
+/* Writes the media types of a body. `item` is the schema of an event or of a line; the latter is an
+ * extension, since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example` returns an
+ * example body for `route`. */
 static void write_content(api_out *out, const char *const *types, const char *schema,
                           const char *item,
                           const char *(*example)(const char *route, const char *media),
@@ -167,6 +182,8 @@ static void write_content(api_out *out, const char *const *types, const char *sc
             api_schema_ref_key(out, "schema", schema);
         } else if (lines && item != NULL) {
             write_line_schema(out, item);
+        } else if (strcmp(*types, EVENT_STREAM) == 0) {
+            write_events_schema(out, item);
         } else if (strcmp(*types, API_MULTIPART) == 0) {
             write_files_schema(out);
         } else if (json) {
@@ -174,9 +191,6 @@ static void write_content(api_out *out, const char *const *types, const char *sc
             api_out_raw(out, "{}", 2);
         } else {
             write_bytes_schema(out, *types);
-            if (item != NULL && strcmp(*types, EVENT_STREAM) == 0) {
-                api_schema_ref_key(out, "x-item-schema", item);
-            }
         }
         const char *body = example(route, *types);
         if (body != NULL && json) {

@@ -82,7 +82,8 @@ static const struct {
      "\"paths\",\"components\"],\"properties\":{\"openapi\":{\"type\":\"string\","
      "\"const\":\"3.1.0\"},\"info\":{\"$ref\":\"#/components/schemas/any_members\"},"
      "\"servers\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},"
-     "\"minItems\":1},\"security\":{\"type\":\"array\",\"maxItems\":0},"
+     "\"minItems\":1},\"security\":{\"type\":\"array\",\"items\":{\"type\":\"object\"},"
+     "\"maxItems\":0},"
      "\"tags\":{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/any_members\"},"
      "\"minItems\":1},\"paths\":{\"$ref\":\"#/components/schemas/any_members\"},"
      "\"components\":{\"$ref\":\"#/components/schemas/any_members\"}}}"},
@@ -168,10 +169,11 @@ static const struct {
      "{\"type\":\"string\",\"enum\":[\"replaced\",\"gap\",\"lost\",\"busy\",\"incarnation\","
      "\"future\"]}"},
     {"bye_reason", "{\"type\":\"string\",\"enum\":[\"deleted\",\"ended\",\"stopping\",\"token\"]}"},
-    {"vertex_row", "{\"type\":\"array\",\"prefixItems\":[{\"$ref\":\"#/components/schemas/id\"},"
-                   "{\"type\":\"number\"},{\"type\":\"number\"},{\"type\":\"number\"},"
-                   "{\"$ref\":\"#/components/schemas/id_or_null\"}],\"items\":false,\"minItems\":5,"
-                   "\"maxItems\":5,\"description\":\"Id, x, y, z, half-edge.\"}"},
+    {"vertex_row",
+     "{\"type\":\"array\",\"items\":{\"oneOf\":[{\"type\":\"number\"},{\"type\":\"null\"}]},"
+     "\"minItems\":5,\"maxItems\":5,\"description\":\"Id, x, y, z, half-edge; the half-edge is "
+     "null "
+     "if the vertex is isolated.\"}"},
     {"halfedge_row",
      "{\"type\":\"array\",\"items\":{\"$ref\":\"#/components/schemas/id_or_null\"},"
      "\"minItems\":5,\"maxItems\":5,\"description\":\"Id, next, prev, origin, face; the face is "

@@ -309,7 +309,7 @@ export class Contract {
                 return besides(value, status, response, headers);
             });
         } else if (media === 'text/event-stream' && plain) {
-            this.checkEvents(item, bytes, wrong);
+            this.checkEvents(schema.contentSchema.items, bytes, wrong);
         } else if (item !== undefined && plain) {
             this.checkLines(item, bytes, whole, wrong);
         }

@@ -82,22 +82,22 @@ function schemaNodes(schema) {
     return nodes;
 }
 
-function itemWord(media) {
-    return media === 'text/event-stream' ? 'event' : 'line';
-}
-
 function contentNodes(content = {}) {
     return Object.entries(content).flatMap(
-        ([media, { schema, 'x-item-schema': item, example: body }]) => [
-            make(
-                'p',
-                {},
-                code(media),
-                ...(schema ? [': ', ...typeNodes(schema)] : []),
-                ...(item ? [`, each ${itemWord(media)}: `, ...typeNodes(item)] : []),
-            ),
-            ...(body === undefined ? [] : [example(body)]),
-        ],
+        ([media, { schema, 'x-item-schema': line, example: body }]) => {
+            const event = schema?.contentSchema?.items;
+            return [
+                make(
+                    'p',
+                    {},
+                    code(media),
+                    ...(schema ? [': ', ...typeNodes(schema)] : []),
+                    ...(line ? [', each line: ', ...typeNodes(line)] : []),
+                    ...(event ? [', each event: ', ...typeNodes(event)] : []),
+                ),
+                ...(body === undefined ? [] : [example(body)]),
+            ];
+        },
     );
 }
 
