@@ -172,8 +172,7 @@ void api_operations_write(api_out *out)
 /* --- schemas of operations --- */
 
 /* Members that an operation may have besides its parameters: "as" in a list of operations, the
- * others where it is
- * alone. */
+ * others where it is alone. */
 static const struct {
     const char *name, *json;
 } beside[] = {
