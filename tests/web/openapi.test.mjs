@@ -83,5 +83,5 @@ test('the first paths that one tries lead somewhere', async (t) => {
     assert.equal(manual.url, `${url}/docs`);
     assert.match(await manual.text(), /<title>hedge/);
     const refused = await (await fetch(`${url}/v1/mesh`)).json();
-    assert.match(refused.detail, /is none of meshes, jobs/);
+    assert.match(refused.detail, /is not one of meshes, jobs/);
 });

@@ -280,7 +280,7 @@ test('what is no stream of levels is refused', async (t) => {
         [splits + 32, 0xfffffff0], // a face
         [splits + 96, 0xfffffff0], // a face that moves
     ]) {
-        assert.throws(changed(at, value), /can read/, `byte ${at}`);
+        assert.throws(changed(at, value), /cannot read/, `byte ${at}`);
     }
     assert.throws(changed(28, 0xffffffff), RangeError);
 });

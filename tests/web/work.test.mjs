@@ -35,7 +35,7 @@ test('the history says what was done, and a click goes back to a revision', asyn
         [4, 'vertex_move', false, true],
         [3, 'edge_split', true, false],
         [2, 'face_poke', true, false],
-        [1, 'the beginning', true, false],
+        [1, 'original', true, false],
     ]);
     const poke = page.locator('#history li[data-revision="2"]');
     assert.match(await poke.textContent(), /\+8$/);
