@@ -148,7 +148,7 @@ static void a_position_that_no_float_holds_is_named(void **state)
     bench_reply_free(&r);
     r = bench_expect(422, bench_send(b, "GET", "/v1/meshes/m/content?format=glb", NULL, NULL));
     assert_string_equal(cJSON_GetObjectItem(r.json, "code")->valuestring, "beyond_float");
-    assert_non_null(strstr(r.body, "vertex 1 has a coordinate beyond the floats"));
+    assert_non_null(strstr(r.body, "vertex 1 has a coordinate too large for the floats"));
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -474,8 +474,9 @@ static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
         r = bench_send_bytes(b, "PUT", "/v1/meshes/part", headers, obj, sizeof obj - 1);
         r = bench_expect(i == 3 ? 200 : 415, r);
         if (i < 3) {
-            assert_non_null(
-                strstr(r.body, "say ?format=, one of obj, off, ply, stl, glb, gltf, json"));
+            assert_non_null(strstr(
+                r.body,
+                "name the format with ?format=, one of obj, off, ply, stl, glb, gltf, json"));
             assert_non_null(strstr(r.body, "\"supported\":[\"application/json\",\"model/obj\""));
         }
         bench_reply_free(&r);

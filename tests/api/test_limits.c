@@ -275,7 +275,8 @@ static void a_token_s_jobs_are_counted_while_they_wait_or_run(void **state)
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));
     bench_reply r = bench_expect(429, bench_send(b, "GET", check, async, NULL));
     assert_string_equal(bench_header(&r, "Retry-After"), "1");
-    expect_code(r, 429, "too_many_jobs_of_token", "2 jobs of the token may wait or run");
+    expect_code(r, 429, "too_many_jobs_of_token",
+                "the token is limited to 2 jobs that wait or run");
     bench_done(bench_expect(200, bench_get(b, check))); /* only jobs are limited */
     bench_use_token(b, "prueba");
     bench_done(bench_expect(202, bench_send(b, "GET", check, async, NULL)));

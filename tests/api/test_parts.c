@@ -145,8 +145,8 @@ static void a_buffer_that_did_not_come_is_named(void **state)
     (void)state;
     api_bench *b = bench_new();
     expect_refused(422, "unsupported",
-                   "buffers/0/uri: no file 'a.bin' came for the buffer; what "
-                   "came is b.bin, c.bin",
+                   "buffers/0/uri: the file 'a.bin' of a buffer was not sent; the files sent are "
+                   "b.bin, c.bin",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0},
                                                  {"b.bin", NULL, BIN},
@@ -156,7 +156,7 @@ static void a_buffer_that_did_not_come_is_named(void **state)
         send_files(b, "/v1/meshes", (file[MOST_FILES]){{"a.gltf", NULL, GLTF("a.bin"), 0}}));
     /* Two files have the name that the glTF refers to, in different folders: the request is refused
      * because neither is the right one for certain. */
-    expect_refused(422, "unsupported", "no file 'x/a.bin' came",
+    expect_refused(422, "unsupported", "the file 'x/a.bin' of a buffer was not sent",
                    send_files(b, "/v1/meshes",
                               (file[MOST_FILES]){{"a.gltf", NULL, GLTF("x/a.bin"), 0},
                                                  {"y/a.bin", NULL, BIN},
@@ -203,7 +203,8 @@ static void one_file_is_the_mesh(void **state)
     static const file json[MOST_FILES] = {
         {"mesh.json", NULL, "{\"name\":\"tile\",\"vertices\":[[0,0,0]],\"faces\":[]}", 0}};
     api_bench *b = bench_new();
-    expect_refused(422, "unclear_parts", "could be the mesh: a.obj, a.gltf; send one, or say",
+    expect_refused(422, "unclear_parts",
+                   "could be the mesh: a.obj, a.gltf; send only one of them, or choose with",
                    send_files(b, "/v1/meshes", two));
     bench_reply r = expect_triangle("gltf", send_files(b, "/v1/meshes?format=gltf", two));
     assert_non_null(strstr(r.body, "file 'a.obj'"));
@@ -267,7 +268,7 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     several packed = pack_as(BOUNDARY, files);
     api_bench *b = bench_new();
     const char *const plain[] = {"Content-Type", "multipart/form-data", NULL};
-    expect_refused(400, "bad_header", "needs one parameter boundary",
+    expect_refused(400, "bad_header", "needs one boundary of 1 to 70 characters",
                    bench_send_bytes(b, "POST", "/v1/meshes", plain, packed.bytes, packed.length));
     const char *const mixed[] = {"Content-Type", "multipart/mixed; boundary=xyz", NULL};
     expect_refused(415, "unsupported_media_type", "multipart/mixed",

@@ -205,10 +205,11 @@ static void try_query(api_bench *b, const pg_mesh *pg)
 {
     page body = {.used = 0}, wanted = {.used = 0};
     say(&body, "{\"queries\":[{\"walk\":\"none\"}");
-    say(&wanted, "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
-                 "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"none\\\" is "
-                 "none of path, loop, rings, breadth_first, shortest_path, edge_loop, edge_ring\","
-                 "\"code\":\"bad_value\",\"pointer\":\"/queries/0/walk\"}");
+    say(&wanted,
+        "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
+        "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"none\\\" is "
+        "not one of path, loop, rings, breadth_first, shortest_path, edge_loop, edge_ring\","
+        "\"code\":\"bad_value\",\"pointer\":\"/queries/0/walk\"}");
     for (int kind = 0; kind < KINDS; kind++) {
         for (unsigned id = 0; id < count_of(pg, kind); id += 2) {
             const char *what = kinds[kind].relations[id % 2];
@@ -253,7 +254,7 @@ static void try_finds(api_bench *b, const pg_mesh *pg)
     say(&body, "{\"queries\":[{\"find\":\"loop\",\"vertices\":[0,0]}");
     say(&wanted, "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
                  "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"loop\\\" is "
-                 "none of halfedge, edge, faces\","
+                 "not one of halfedge, edge, faces\","
                  "\"code\":\"bad_value\",\"pointer\":\"/queries/0/find\"}");
     for (unsigned i = 0; i < pg->vertices; i++) {
         pg_list about_i, about_j;

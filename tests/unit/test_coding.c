@@ -364,9 +364,10 @@ static void what_follows_the_coding_is_refused_at_its_byte(void **state)
     bytes plain = text_of(3000);
     for (size_t c = 0; c < 2; c++) {
         bytes coded = pack_bytes(both[c], &plain);
-        char place[40];
-        snprintf(place, sizeof place, "byte %zu of the %s body: no ", coded.length,
-                 api_coding_name(both[c]));
+        char place[80];
+        const char *name = api_coding_name(both[c]);
+        snprintf(place, sizeof place, "byte %zu of the %s body: the bytes are not in %s format",
+                 coded.length, name, name);
         add(&coded, "garbage", 7);
         for (size_t step = 1; step < 12; step++) {
             expect_refused(both[c], &coded, step, API_BAD_ENCODING, place);
@@ -566,7 +567,8 @@ static void a_frame_has_the_length_it_says(void **state)
     for (size_t step = 1; step <= sizeof frame; step++) {
         coded.data[5] = 5;
         expect_refused(API_ZSTD, &coded, step, API_BAD_ENCODING,
-                       "byte 15 of the zstd body: the frame has another length than its header");
+                       "byte 15 of the zstd body: the length of the frame differs from the one in "
+                       "its header");
         coded.data[5] = 3;
         expect_unfolded(API_ZSTD, &coded, step, &plain);
     }

@@ -27,20 +27,20 @@ static void containers(void **state)
         const char *words;
     } rows[] = {
         {0, 0x46546C68, HE_SYNTAX, 0, "not a GLB file"},
-        {4, 1, HE_UNSUPPORTED, 4, "version 1, not 2"},
-        {4, 3, HE_UNSUPPORTED, 4, "version 3, not 2"},
-        {8, 19, HE_SYNTAX, 8, "holds no chunk"},
-        {8, (uint32_t)good.length + 4, HE_SYNTAX, good.length, "ends before"},
-        {8, (uint32_t)good.length - 4, HE_SYNTAX, at, "a chunk of 96 bytes"},
-        {8, 0xFFFFFFFF, HE_SYNTAX, good.length, "ends before the 4294967295"},
-        {12, 0xFFFFFFF0, HE_SYNTAX, 12, "a chunk of 4294967280 bytes"},
-        {12, (uint32_t)json + 2, HE_SYNTAX, at + 4, "a chunk of 5130562 bytes"},
+        {4, 1, HE_UNSUPPORTED, 4, "the version of the GLB file is 1, not 2"},
+        {4, 3, HE_UNSUPPORTED, 4, "the version of the GLB file is 3, not 2"},
+        {8, 19, HE_SYNTAX, 8, "a GLB file of 19 bytes cannot hold a chunk"},
+        {8, (uint32_t)good.length + 4, HE_SYNTAX, good.length, "the file is shorter than the"},
+        {8, (uint32_t)good.length - 4, HE_SYNTAX, at, "a chunk declares 96 bytes"},
+        {8, 0xFFFFFFFF, HE_SYNTAX, good.length, "shorter than the 4294967295 bytes"},
+        {12, 0xFFFFFFF0, HE_SYNTAX, 12, "a chunk declares 4294967280 bytes"},
+        {12, (uint32_t)json + 2, HE_SYNTAX, at + 4, "a chunk declares 5130562 bytes"},
         {16, 0x004E4942, HE_SYNTAX, 16, "the first chunk is not \"JSON\""},
         {at + 4, 0x4E4F534A, HE_SYNTAX, at + 4, "there is a second JSON chunk"},
-        {at, 0xFFFFFFF0, HE_SYNTAX, at, "a chunk of 4294967280 bytes"},
-        {at, 97, HE_SYNTAX, at, "a chunk of 97 bytes"},
-        {at, 94, HE_BAD_VALUE, 58, "of which 94 are there"},
-        {at, 91, HE_SYNTAX, good.length - 5, "5 bytes behind the last chunk"},
+        {at, 0xFFFFFFF0, HE_SYNTAX, at, "a chunk declares 4294967280 bytes"},
+        {at, 97, HE_SYNTAX, at, "a chunk declares 97 bytes"},
+        {at, 94, HE_BAD_VALUE, 58, "only 94 were sent"},
+        {at, 91, HE_SYNTAX, good.length - 5, "5 bytes follow the last chunk"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         glb_file f = good;
@@ -51,11 +51,13 @@ static void containers(void **state)
     }
     glb_file f = good;
     glb_word(&f, 0);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "goes on after");
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length,
+                           "the file is longer than the");
     /* the header of a chunk is invalid */
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length, "are no chunk");
+    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length,
+                           "4 bytes follow the last chunk and are too few");
     /* there is a third chunk, and it is of the binary kind */
     f = good;
     glb_word(&f, 0);
@@ -63,7 +65,7 @@ static void containers(void **state)
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
     expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length + 4,
-                           "not the second one");
+                           "a BIN chunk must be the second chunk");
     /* the binary chunk is missing, or empty */
     glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
     he_import import = {0};
@@ -122,10 +124,12 @@ static void json_to_the_letter(void **state)
         {"3", HE_SYNTAX, 0, "not a glTF asset"},
         {"{\"asset\":{}}", HE_SYNTAX, 9, "not a glTF asset"},
         {"{\"asset\":{\"version\":2}}", HE_SYNTAX, 9, "not a glTF asset"},
-        {"{\"asset\":{\"version\":\"1.0\"}}", HE_UNSUPPORTED, 20, "asset/version: glTF of a"},
-        {"{\"asset\":{\"version\":\"20\"}}", HE_UNSUPPORTED, 20, "asset/version: glTF of a"},
+        {"{\"asset\":{\"version\":\"1.0\"}}", HE_UNSUPPORTED, 20,
+         "asset/version: the version of glTF"},
+        {"{\"asset\":{\"version\":\"20\"}}", HE_UNSUPPORTED, 20,
+         "asset/version: the version of glTF"},
         {"{\"asset\":{\"version\":\"2.0\",\"minVersion\":\"2.1\"}}", HE_UNSUPPORTED, 39,
-         "asset/minVersion"},
+         "asset/minVersion: the file needs a reader of a later version"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         expect_refused_at_byte("gltf", rows[i].text, strlen(rows[i].text), rows[i].status,
@@ -208,7 +212,7 @@ static void references_and_numbers(void **state)
         {WITH_ACCESSOR("{'componentType':5126,'count':9007199254740993000,'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0/count"},
         {WITH_ACCESSOR("{'componentType':5126,'count':2000000000,'type':'VEC3'}"), HE_LIMIT,
-         "meshes/0/primitives/0: the scene makes more than"},
+         "meshes/0/primitives/0: the scene unfolds to more than"},
         {WITH_ACCESSOR("{'bufferView':0,'byteOffset':4,'componentType':5126,'count':4,"
                        "'type':'VEC3'}"),
          HE_BAD_VALUE, "accessors/0: 4 elements of 12 bytes from byte 4"},
@@ -228,9 +232,9 @@ static void references_and_numbers(void **state)
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC5'}"),
          HE_BAD_VALUE, "accessors/0: 'type' is not"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5126,'count':4,'type':'VEC2'}"),
-         HE_BAD_VALUE, "accessors/0: positions are VEC3"},
+         HE_BAD_VALUE, "accessors/0: positions must be VEC3"},
         {WITH_ACCESSOR("{'bufferView':0,'componentType':5125,'count':4,'type':'VEC3'}"),
-         HE_BAD_VALUE, "accessors/0: positions are VEC3"},
+         HE_BAD_VALUE, "accessors/0: positions must be VEC3"},
         {WITH_ACCESSOR("{'bufferView':7,'componentType':5126,'count':4,'type':'VEC3'}"),
          HE_BAD_INDEX, "accessors/0/bufferView: there is no buffer view 7; the file has 5"},
         {WITH_ACCESSOR("3"), HE_BAD_VALUE, "accessors/0: this is not an object"},
@@ -239,9 +243,10 @@ static void references_and_numbers(void **state)
         {WITH_VIEW("{'buffer':1,'byteLength':48}"), HE_BAD_INDEX,
          "there is no buffer 1; the file has 1"},
         {WITH_VIEW("{'buffer':0}"), HE_BAD_VALUE, "'byteLength' is missing"},
-        {WITH_VIEW("{'buffer':0,'byteLength':97}"), HE_BAD_VALUE, "bytes 0 to 97 of a buffer"},
+        {WITH_VIEW("{'buffer':0,'byteLength':97}"), HE_BAD_VALUE,
+         "bytes 0 to 97 do not fit in a buffer of 96"},
         {WITH_VIEW("{'buffer':0,'byteOffset':49,'byteLength':48}"), HE_BAD_VALUE,
-         "bufferViews/0: bytes 49 to 97 are outside a buffer of 96"},
+         "bufferViews/0: bytes 49 to 97 do not fit in a buffer of 96"},
         {WITH_VIEW("{'buffer':0,'byteOffset':9007199254740991,'byteLength':9007199254740991}"),
          HE_BAD_VALUE, "bufferViews/0: bytes"},
         {WITH_VIEW("{'buffer':0,'byteOffset':-4,'byteLength':48}"), HE_BAD_VALUE,
@@ -256,7 +261,7 @@ static void references_and_numbers(void **state)
          "should have 97 bytes, and only 96"},
         {"{" ASSET ",'buffers':[{}]}", HE_BAD_VALUE, "buffers/0: 'byteLength' is missing"},
         {"{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':4}]}", HE_BAD_VALUE,
-         "buffers/1: the buffer has no bytes"},
+         "buffers/1: the buffer has no URI, and the file has no binary chunk"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'data.bin'}]}", HE_UNSUPPORTED,
          "buffers/0/uri: the buffer is in another file, 'data.bin'"},
         {"{" ASSET ",'buffers':[{'byteLength':96,'uri':'http://169.254.169.254/'}]}",
@@ -289,11 +294,11 @@ static void references_and_numbers(void **state)
         /* mistakes in primitives */
         {WITH_PRIMITIVE("{'indices':1}"), HE_BAD_VALUE, "'attributes' is missing"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':9}}"), HE_BAD_INDEX,
-         "meshes/0/primitives/0/attributes/POSITION: there is no accessor 9 of 5"},
+         "meshes/0/primitives/0/attributes/POSITION: there is no accessor 9; the file has 5"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':4294967296}"), HE_BAD_INDEX,
          "meshes/0/primitives/0/indices: there is no accessor 4294967296"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':0}"), HE_BAD_VALUE,
-         "accessors/0: indices are SCALAR"},
+         "accessors/0: indices must be SCALAR"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':1,'mode':7}"), HE_BAD_VALUE,
          "meshes/0/primitives/0/mode: 7 is not a whole number from 0 to 6"},
         {WITH_PRIMITIVE("{'attributes':{'POSITION':0},'indices':2}"), HE_BAD_VALUE,
@@ -305,8 +310,9 @@ static void references_and_numbers(void **state)
         {"{" DATA ",'meshes':[{'primitives':[1]}]}", HE_BAD_VALUE, "this is not an object"},
         {"{" DATA ",'meshes':[{}]}", HE_BAD_VALUE, "meshes/0: 'primitives' is missing"},
         /* mistakes in nodes */
-        {WITH_NODES("{'mesh':1}"), HE_BAD_INDEX, "nodes/0/mesh: there is no mesh 1 of 1"},
-        {WITH_NODES("{'children':[1]}"), HE_BAD_INDEX, "there is no node 1 of 1"},
+        {WITH_NODES("{'mesh':1}"), HE_BAD_INDEX,
+         "nodes/0/mesh: there is no mesh 1; the file has 1"},
+        {WITH_NODES("{'children':[1]}"), HE_BAD_INDEX, "there is no node 1; the file has 1"},
         {WITH_NODES("{'children':[0]}"), HE_BAD_VALUE,
          "nodes/0/children/0: node 0 is reached twice"},
         {WITH_NODES("{'children':[1]},{'children':[0]}"), HE_BAD_VALUE, "node 0 is reached twice"},
@@ -333,11 +339,12 @@ static void references_and_numbers(void **state)
         {WITH_NODES("{'scale':[1,2,null]}"), HE_BAD_VALUE, "nodes/0/scale/2: this is not a number"},
         {WITH_NODES("{'rotation':5}"), HE_BAD_VALUE, "nodes/0/rotation: 4 numbers"},
         {WITH_NODES("{'rotation':[0,-0,0,0]}"), HE_BAD_VALUE,
-         "nodes/0/rotation: a quaternion of length 0"},
+         "nodes/0/rotation: a rotation cannot be a quaternion of length 0"},
         {WITH_NODES("{'mesh':0,'scale':[1e308,1e308,1]},{}"), HE_OK, ""},
         {WITH_NODES("{'mesh':0,'scale':[1e308,1,1],'translation':[1e308,0,0]}"), HE_NOT_FINITE,
          "not finite"},
-        {"{" DATA ",'scene':2,'scenes':[{}]}", HE_BAD_INDEX, "scene: there is no scene 2 of 1"},
+        {"{" DATA ",'scene':2,'scenes':[{}]}", HE_BAD_INDEX,
+         "scene: there is no scene 2; the file has 1"},
         /* mistakes in sparse accessors */
         {WITH_SPARSE("{'count':2}"), HE_BAD_VALUE, "'indices' and 'values' are needed"},
         {WITH_SPARSE("{'count':5,'indices':{'bufferView':1,'componentType':5123},'values':"
@@ -345,10 +352,10 @@ static void references_and_numbers(void **state)
          HE_BAD_VALUE, "accessors/0/sparse/count: 5 is not a whole number from 1 to 4"},
         {WITH_SPARSE("{'count':3,'indices':{'bufferView':1,'byteOffset':4,'componentType':5123},"
                      "'values':{'bufferView':0}}"),
-         HE_BAD_INDEX, "accessors/0/sparse: index 0, number 1"},
+         HE_BAD_INDEX, "accessors/0/sparse: sparse index 0 (number 1)"},
         {WITH_SPARSE("{'count':4,'indices':{'bufferView':1,'componentType':5126},'values':"
                      "{'bufferView':0}}"),
-         HE_BAD_VALUE, "indices are of componentType"},
+         HE_BAD_VALUE, "sparse indices must have componentType"},
         {WITH_SPARSE("{'count':4,'indices':{'bufferView':2,'componentType':5123},'values':"
                      "{'bufferView':0}}"),
          HE_BAD_VALUE, "sparse/indices: 4 elements of 2 bytes"},
@@ -484,7 +491,7 @@ static void bombs(void **state)
     snprintf(part, sizeof part, zeros, 3000000);
     put(&w, part);
     put(&w, ",'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
-    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene makes more than 32 MiB");
+    expect_bomb(&w, HE_LIMIT, "meshes/0/primitives/0: the scene unfolds to more than 32 MiB");
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);
@@ -493,7 +500,7 @@ static void bombs(void **state)
         put(&w, ",{'mesh':0}");
     }
     put(&w, "]}");
-    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    expect_bomb(&w, HE_LIMIT, "the scene unfolds to more than");
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
     put(&w, part);
@@ -502,7 +509,7 @@ static void bombs(void **state)
         put(&w, ",{'attributes':{'POSITION':0}}");
     }
     put(&w, "]}]}");
-    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    expect_bomb(&w, HE_LIMIT, "the scene unfolds to more than");
     /* attributes that use one accessor under ever new names */
     put(&w, "{'asset':{'version':'2.0'},");
     snprintf(part, sizeof part, zeros, 30000);
@@ -525,7 +532,7 @@ static void bombs(void **state)
         put(&w, ",{'mesh':0}");
     }
     put(&w, "]}");
-    expect_bomb(&w, HE_LIMIT, "the scene makes more than");
+    expect_bomb(&w, HE_LIMIT, "the scene unfolds to more than");
     /* a long chain of nodes must be followed without recursion, and its length must be limited */
     for (int many = 0; many < 2; many++) {
         int depth = many ? 70000 : 60000;
@@ -584,7 +591,7 @@ static void bombs_in_extras(void **state)
             put(&w, part);
         }
         put(&w, "]}}}]}]}");
-        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene makes more than" : "");
+        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene unfolds to more than" : "");
     }
     /* one long name is used by many nodes */
     for (int many = 0; many < 2; many++) {
@@ -604,7 +611,7 @@ static void bombs_in_extras(void **state)
             put(&w, ",{'mesh':0}");
         }
         put(&w, "]}");
-        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene makes more than" : "");
+        expect_bomb(&w, many ? HE_LIMIT : HE_OK, many ? "the scene unfolds to more than" : "");
     }
 }
 

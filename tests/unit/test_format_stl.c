@@ -137,8 +137,8 @@ static void wrong_bytes_name_their_place(void **state)
         {0, HE_SYNTAX, HEADER, "more than the 0 facets"},
         {5, HE_SYNTAX, HEADER + 4 * FACET, "after 4 of the 5 facets"},
         {85899346, HE_SYNTAX, HEADER + 4 * FACET, "after 4 of the 85899346 facets"},
-        {2147483647, HE_BAD_VALUE, 80, "count its facets is 2147483647"},
-        {4294967295, HE_BAD_VALUE, 80, "count its facets is 4294967295"},
+        {2147483647, HE_BAD_VALUE, 80, "it would have 2147483647 facets"},
+        {4294967295, HE_BAD_VALUE, 80, "it would have 4294967295 facets"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         size_t length = f.length;
@@ -257,7 +257,8 @@ static void wrong_text_names_its_line(void **state)
         {"solid state physics\nis fun\n", HE_SYNTAX, 2, "not an STL file"},
         {"solid\nvertex 0 0 0\n", HE_SYNTAX, 2, "'vertex' is outside a facet"},
         {"solid\n" ONE "endfacet\n", HE_SYNTAX, 9, "'endfacet' is outside a facet"},
-        {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", HE_SYNTAX, 5, "with 2 corners"},
+        {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", HE_SYNTAX, 5,
+         "a facet has 2 corners"},
         {"solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nvertex 3 0 0\n", HE_SYNTAX, 6,
          "is a fourth vertex in one facet"},
         {"solid\nfacet\nvertex 0 0 a\n", HE_SYNTAX, 3, "'a' is not a number"},

@@ -216,12 +216,13 @@ static void headers_that_are_none_are_refused(void **state)
 {
     (void)state;
     expect_refused("--AbC" LINE LINE "x" LAST, "byte 7 of the body: a part has no name");
-    expect_refused("--AbC" LINE "Content-Type: text/plain" LINE LINE LAST, "without a name");
+    expect_refused("--AbC" LINE "Content-Type: text/plain" LINE LINE LAST, "a part has no name");
     expect_refused("--AbC" LINE "Content-Disposition: attachment; name=a" LINE LINE LAST,
-                   "other than form-data");
-    expect_refused("--AbC" LINE "Content-Disposition" LINE LINE LAST, "byte 7 of the body: a line");
-    expect_refused("--AbC" LINE ": x" LINE LINE LAST, "no header");
-    expect_refused("--AbC" LINE HEAD("a") " name=b" LINE LINE LAST, "no header");
+                   "a Content-Disposition is not form-data");
+    expect_refused("--AbC" LINE "Content-Disposition" LINE LINE LAST,
+                   "byte 7 of the body: a line is not a header");
+    expect_refused("--AbC" LINE ": x" LINE LINE LAST, "a line is not a header");
+    expect_refused("--AbC" LINE HEAD("a") " name=b" LINE LINE LAST, "a line is not a header");
     expect_refused("--AbC" LINE HEAD("a") HEAD("a") LINE LAST, "a header is given twice");
     expect_refused("--AbC" LINE HEAD("a") "Content-Type: a/b" LINE
                                           "content-type: a/b" LINE LINE LAST,
@@ -243,10 +244,10 @@ static void a_body_that_ends_too_early_is_refused(void **state)
         expect_refused_of(TYPE, whole, length, API_BAD_MULTIPART, "ends before its last delimiter");
     }
     expect_refused("no delimiter at all", "ends before its last delimiter");
-    expect_refused(PART("a") "x" LINE "--AbC- ", "a delimiter goes on");
-    expect_refused(PART("a") "x" LINE "--AbC -", "a delimiter goes on");
-    expect_refused(PART("a") "x" LINE "--AbCd" LINE, "a delimiter goes on");
-    expect_refused(PART("a") "x" LINE "--AbC\r\r", "a delimiter goes on");
+    expect_refused(PART("a") "x" LINE "--AbC- ", "a delimiter is followed by neither");
+    expect_refused(PART("a") "x" LINE "--AbC -", "a delimiter is followed by neither");
+    expect_refused(PART("a") "x" LINE "--AbCd" LINE, "a delimiter is followed by neither");
+    expect_refused(PART("a") "x" LINE "--AbC\r\r", "a delimiter is followed by neither");
 }
 
 /* Returns a block with `text` repeated `count` times between `before` and `behind`. */

@@ -34,7 +34,7 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
     const he_gltf_buffer *b = &asset->buffers[buffer];
     if (start + length > b->length) {
         return he_json_fail(json, object, err, HE_BAD_VALUE,
-                            "bytes %llu to %llu are outside a buffer of %llu bytes",
+                            "bytes %llu to %llu do not fit in a buffer of %llu bytes",
                             (unsigned long long)start, (unsigned long long)(start + length),
                             (unsigned long long)b->length);
     }

@@ -427,7 +427,7 @@ static he_status read_face(off *o, const he_line *line, const char **p, he_error
         return status;
     }
     if (!o->open) {
-        status = read_count(line, p, "corners", soup->limits.corners, &o->missing, err);
+        status = read_count(line, p, "corners in one face", soup->limits.corners, &o->missing, err);
         if (status == HE_OK) {
             status = he_places_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);
         }

@@ -205,7 +205,7 @@ static he_status read_property(he_ply_header *h, const he_line *line, const char
     }
     if (h->property_count == HE_PLY_PROPERTIES) {
         return he_line_fail(err, HE_LIMIT, line, line->begin,
-                            "an element has more than %d properties", HE_PLY_PROPERTIES);
+                            "the header declares more than %d properties", HE_PLY_PROPERTIES);
     }
     if (h->property_count == h->property_capacity) {
         size_t capacity = he_mem_grown(h->property_capacity, h->property_count + 1);

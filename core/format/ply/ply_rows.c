@@ -376,12 +376,12 @@ he_status he_ply_rows_list(he_ply_rows *rows, size_t property, int64_t count, he
     case HE_PLY_CORNERS:
         if (count > HE_MAX_ROWS) {
             return he_fail_at(err, HE_BAD_VALUE, rows->unit, rows->at,
-                              "the file has %lld corners, more than a mesh can have",
+                              "a face has %lld corners, more than a mesh can have",
                               (long long)count);
         }
         if (limit != 0 && (uint64_t)count > limit) {
             return he_fail_at(err, HE_LIMIT, rows->unit, rows->at,
-                              "the file has %lld corners, more than the limit of %llu",
+                              "a face has %lld corners, more than the limit of %llu",
                               (long long)count, (unsigned long long)limit);
         }
         return at_place(rows, begin_face(rows, err), err);
