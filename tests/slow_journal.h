@@ -1,7 +1,7 @@
 /* slow_journal.h - a journal in which a record becomes durable, or is lost, only when the test says
  * so. It stores nothing, so no mesh can be loaded from it. slow_journal_open_keeping makes one to
- * which the store gives encoded bodies and staged contents, as to a journal on a disk; the newest
- * of them can be examined. */
+ * which the store writes edits and whole meshes as bytes, as it does to a journal on a disk; a test
+ * can examine the bytes written last. */
 #ifndef TESTS_SLOW_JOURNAL_H
 #define TESTS_SLOW_JOURNAL_H
 

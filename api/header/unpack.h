@@ -58,7 +58,8 @@ typedef struct api_unpack_room {
 } api_unpack_room;
 
 /* Makes a decoder. `coding` must not be identity. `take` receives the decompressed pieces and
- * returns false to stop. `room` must outlive the decoder. Returns NULL with the problem filled. */
+ * returns false to stop. `room` limits the memory of all decoders of a service together, and must
+ * outlive the decoder. Returns NULL with the problem filled. */
 api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
                            bool (*take)(void *context, const char *bytes, size_t length),
                            void *context, api_problem *problem);

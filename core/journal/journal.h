@@ -218,7 +218,8 @@ typedef struct st_journal {
     /* Sets the one listener, and calls it at once if the journal is beyond position 0. NULL removes
      * it; when the call returns, no call of the listener is under way. */
     void (*listen)(void *self, const st_journal_listener *listener);
-    /* Commits what is queued and closes the journal. No room or reader may be left. */
+    /* Commits what is queued and closes the journal. The caller must have appended or given back
+     * each room (memory reserved for records, above) and ended each reader. */
     void (*close)(void *self);
 } st_journal;
 

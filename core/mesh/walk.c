@@ -60,8 +60,9 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     return false;
 }
 
-/* The number of steps around the first vertex that are made before the second vertex's ring is
- * searched, too. The second ring is as far away in memory, and seldom needed. */
+/* The number of steps around the first vertex that are made before the ring of the second vertex is
+ * searched, too. Most rings are shorter than that, so the second ring is seldom read, which would
+ * cost another cache miss. */
 enum { ALONE = 8 };
 
 static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b, uint64_t *steps)

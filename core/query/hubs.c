@@ -76,8 +76,8 @@ static he_status list_candidates(const search *s, candidate **out, size_t *count
     he_status status = HE_OK;
     size_t most = 0;
     if (sums == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to find where %u vertices meet",
-                             vertices);
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory to find which of %u vertices share a position", vertices);
     }
     for (uint32_t v = 0; v < vertices && status == HE_OK; v++) {
         if (s->corners[v] > 0) {
@@ -141,7 +141,8 @@ static uint32_t number_hubs(const search *s, const candidate *list, size_t count
     return hubs;
 }
 
-/* Finds the hubs at which a triangle has corners, each only once. Returns how many there are. */
+/* Writes the hubs (positions at which very many triangles meet) at which this triangle has corners,
+ * each only once. Returns how many there are. */
 static int hubs_at(const search *s, uint32_t triangle, uint32_t out[3])
 {
     const uint32_t *t = triangle_of(s, triangle);
@@ -163,7 +164,8 @@ static he_status list_spokes(const search *s, he_hubs *hubs, he_error *err)
 {
     hubs->first = he_mem_zero((size_t)hubs->count + 1, sizeof *hubs->first);
     if (hubs->first == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u hubs", hubs->count);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %u positions of many triangles",
+                             hubs->count);
     }
     uint64_t total = 0;
     uint32_t at[3];
@@ -245,7 +247,8 @@ he_status he_hubs_find(const he_mesh *m, const uint32_t *triangles, size_t strid
     search s = {m, triangles, stride, count, NULL, budget};
     s.corners = he_mem_zero((size_t)m->c.vertices.issued + 1, sizeof *s.corners);
     if (s.corners == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory to find where %u vertices meet",
+        return he_fail_plain(err, HE_NO_MEMORY,
+                             "no memory to find which of %u vertices share a position",
                              m->c.vertices.issued);
     }
     *out = (he_hubs){0};

@@ -25,8 +25,9 @@ typedef struct st_cursor st_cursor;
 typedef struct st_cursor_step {
     uint64_t revision;
     st_action action;
-    /* The delta that led to the revision. Its words may be read by he_changes_find; its objects
-     * belong to another state. */
+    /* The delta that led to the revision. The caller may pass it to he_changes_find, which reads
+     * the ids and numbers in it. It must not follow the pointers in it to names and columns: they
+     * belong to the mesh as it is at another revision. */
     const he_delta *delta;
     bool undone; /* the delta was applied backwards */
     const he_mesh *content;

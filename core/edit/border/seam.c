@@ -56,8 +56,8 @@ static bool keeps_id(he_halfedge h)
     return h.i % 2 == 0;
 }
 
-/* Checks the locks of a part of a fan that gets a new vertex, from half-edge `first` to `end`, a
- * cut edge or the border of the fan. */
+/* Refuses if a face or edge is locked in a part of a fan that gets a new vertex. The part runs from
+ * half-edge `first` to half-edge `end`, which is on the next cut edge or on the boundary. */
 static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, he_halfedge end,
                             he_error *err)
 {

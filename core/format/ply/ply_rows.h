@@ -93,9 +93,9 @@ HE_NODISCARD he_status he_ply_rows_item(he_ply_rows *rows, size_t property, int6
  * allowed. Returns the errors of he_ply_rows_item. */
 HE_NODISCARD he_status he_ply_rows_fraction(he_ply_rows *rows, size_t property, double value,
                                             he_error *err);
-/* Adds a whole row that consists only of a list of corners, which are `vertices` of this file.
- * Returns false, and does nothing, if a limit is reached: adding the row value by value then finds
- * out which one. Otherwise *status is HE_OK or HE_NO_MEMORY. */
+/* Adds a row that consists only of a list of corners: `vertices` holds the `count` numbers of their
+ * vertices. Returns false, and does nothing, if a limit is reached: the caller then adds the row
+ * value by value, and the refusal names the limit. Otherwise *status is HE_OK or HE_NO_MEMORY. */
 bool he_ply_rows_face(he_ply_rows *rows, const uint32_t *vertices, size_t count, he_status *status,
                       he_error *err);
 /* Ends a row.
