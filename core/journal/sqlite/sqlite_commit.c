@@ -304,22 +304,12 @@ static void note_refusal(st_sqlite *self, st_sql outcome)
     }
 }
 
-/* If there was no memory to roll the last transaction back, that is done first. */
-static st_sql begin_writing(st_sqlite *self)
-{
-    st_sql outcome = ST_SQL_DONE;
-    if (sqlite3_get_autocommit(self->db.handle) == 0) {
-        outcome = st_db_do(&self->db, ST_SQL_ROLLBACK, "");
-    }
-    return outcome == ST_SQL_DONE ? st_db_do(&self->db, ST_SQL_BEGIN, "") : outcome;
-}
-
 static st_sql transact(st_sqlite *self, group *g, st_progress *progress)
 {
     *progress = (st_progress){self->progress.commits + 1, g->position,
                               self->progress.meshes + g->made - g->removed};
     const uint64_t keys = self->keys;
-    st_sql outcome = begin_writing(self);
+    st_sql outcome = st_db_begin(&self->db, ST_SQL_BEGIN, ST_SQL_ROLLBACK);
     for (st_item *item = g->first; item != NULL && outcome == ST_SQL_DONE; item = item->next) {
         outcome = apply(self, item);
     }

@@ -274,6 +274,15 @@ st_sql st_db_do(st_db *db, unsigned which, const char *format, ...)
     return outcome == ST_SQL_ROW ? ST_SQL_DONE : outcome;
 }
 
+st_sql st_db_begin(st_db *db, unsigned begin, unsigned end)
+{
+    st_sql outcome = ST_SQL_DONE;
+    if (sqlite3_get_autocommit(db->handle) == 0) {
+        outcome = st_db_do(db, end, "");
+    }
+    return outcome == ST_SQL_DONE ? st_db_do(db, begin, "") : outcome;
+}
+
 st_sql st_db_step(st_db *db, sqlite3_stmt *statement)
 {
     int code = sqlite3_step(statement);

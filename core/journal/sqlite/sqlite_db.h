@@ -66,6 +66,9 @@ st_sql st_db_step(st_db *db, sqlite3_stmt *statement);
 void st_db_reset(sqlite3_stmt *statement); /* takes NULL */
 /* Runs a statement that returns no rows. Its parameters are those of st_db_find. */
 st_sql st_db_do(st_db *db, unsigned which, const char *format, ...);
+/* Begins a transaction with statement `begin`. If there was no memory to end the last one,
+ * statement `end` ends it first. */
+st_sql st_db_begin(st_db *db, unsigned begin, unsigned end);
 /* Turns a result code of SQLite into ST_SQL_DONE or a failure. */
 st_sql st_db_outcome(const st_db *db, int code);
 

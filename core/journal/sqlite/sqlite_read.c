@@ -67,22 +67,12 @@ static st_sql open_one(st_db *db, const char *path)
     return outcome == ST_SQL_DONE ? st_db_run(db, "PRAGMA cell_size_check = ON") : outcome;
 }
 
-/* A transaction of loads. If there was no memory to end the last one, it is ended first. */
-static st_sql begin_reading(st_db *db)
-{
-    st_sql outcome = ST_SQL_DONE;
-    if (sqlite3_get_autocommit(db->handle) == 0) {
-        outcome = st_db_do(db, COMMIT, "");
-    }
-    return outcome == ST_SQL_DONE ? st_db_do(db, BEGIN, "") : outcome;
-}
-
 /* Prepares both statements, so that the end of a load takes no memory. */
 static st_sql open_loader(st_db *db, const char *path)
 {
     st_sql outcome = open_one(db, path);
     if (outcome == ST_SQL_DONE) {
-        outcome = begin_reading(db);
+        outcome = st_db_begin(db, BEGIN, COMMIT);
     }
     return outcome == ST_SQL_DONE ? st_db_do(db, COMMIT, "") : outcome;
 }
@@ -307,7 +297,7 @@ static st_status begin_load(st_sqlite *self, const char *id, st_mesh_row *row, s
     }
     reader->journal = self;
     reader->slot = take_slot(self);
-    st_sql outcome = begin_reading(&reader->slot->db);
+    st_sql outcome = st_db_begin(&reader->slot->db, BEGIN, COMMIT);
     st_status status =
         outcome == ST_SQL_DONE ? find_card(self, &reader->slot->db, id, row) : status_of(outcome);
     if (status != ST_OK) {
