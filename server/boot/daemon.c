@@ -84,7 +84,7 @@ int srv_daemon_run(const srv_started *started)
     srv_parts parts = {.started = started, .config = started->config};
     sigset_t signals;
     srv_signals_begin(&signals);
-    srv_choose_budget(started->config);
+    const st_memory_limit limit = srv_choose_budget(started->config);
     parts.log = srv_log_new(STDERR_FILENO, srv_log_capacity(st_memory_budget()), &settings);
     if (parts.log == NULL) {
         srv_line_write(STDERR_FILENO, settings.json, SRV_LEVEL_ERROR,
@@ -92,7 +92,7 @@ int srv_daemon_run(const srv_started *started)
         return 1;
     }
     srv_start_tell(parts.log, started->config, started->environment);
-    srv_tell_budget(parts.log, started->config);
+    srv_tell_budget(parts.log, started->config, &limit);
 
     bool open = srv_open_tokens(&parts) && srv_open_certificates(&parts) &&
                 srv_open_store(&parts) && srv_open_service(&parts) && srv_open_http(&parts);

@@ -1,7 +1,6 @@
 #include "server/boot/resources.h"
 
 #include "system/memory.h"
-#include "system/memory_limit.h"
 #include "system/resident.h"
 
 #include <inttypes.h>
@@ -59,23 +58,18 @@ void srv_choose_connections(const srv_config *config, srv_http_options *options)
     options->workers = config->workers == 0 ? srv_cores() : (size_t)config->workers;
 }
 
-static st_memory_limit find_limit(void)
+st_memory_limit srv_choose_budget(const srv_config *config)
 {
-    return st_memory_limit_find("", st_memory_limit_machine());
-}
-
-void srv_choose_budget(const srv_config *config)
-{
-    const uint64_t limit = find_limit().bytes;
-    const uint64_t chosen = limit == UINT64_MAX ? 0 : limit / 4 * 3;
+    const st_memory_limit limit = st_memory_limit_find("", st_memory_limit_machine());
+    const uint64_t chosen = limit.bytes == UINT64_MAX ? 0 : limit.bytes / 4 * 3;
     st_memory_set_budget(config->memory_budget == 0 ? chosen : config->memory_budget);
     st_resident_watch();
+    return limit;
 }
 
-void srv_tell_budget(srv_log *log, const srv_config *config)
+void srv_tell_budget(srv_log *log, const srv_config *config, const st_memory_limit *limit)
 {
     const uint64_t mib = UINT64_C(1) << 20, budget = st_memory_budget();
-    const st_memory_limit limit = find_limit();
     if (budget == 0) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "no memory budget: the system does not say what the machine has");
@@ -83,12 +77,12 @@ void srv_tell_budget(srv_log *log, const srv_config *config)
         srv_log_tell(log, SRV_LEVEL_INFO,
                      "memory budget %" PRIu64 " MiB, three quarters of the %" PRIu64
                      " MiB that %s allows",
-                     budget / mib, limit.bytes / mib, limit.source);
-    } else if (budget > limit.bytes) {
+                     budget / mib, limit->bytes / mib, limit->source);
+    } else if (budget > limit->bytes) {
         srv_log_tell(log, SRV_LEVEL_WARNING,
                      "memory budget %" PRIu64 " MiB as told, more than the %" PRIu64
                      " MiB that %s allows: the kernel may end the daemon before it is used up",
-                     budget / mib, limit.bytes / mib, limit.source);
+                     budget / mib, limit->bytes / mib, limit->source);
     } else {
         srv_log_tell(log, SRV_LEVEL_INFO, "memory budget %" PRIu64 " MiB as told", budget / mib);
     }
