@@ -2,6 +2,7 @@
  * acknowledged records must be there, others must be reported as lost, and nothing else may
  * change. */
 #include "tests/disk.h"
+#include "tests/failing_memory.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -11,7 +12,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <sched.h>
-#include <stdatomic.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -535,30 +535,6 @@ static void one_connection_writes(void **state)
 
 /* --- memory is out --- */
 
-static _Atomic long calls, fails_at;
-
-static void *failing_resize(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
-}
-
-static void fail_memory_at(long n)
-{
-    static const he_mem_hook hook = {failing_resize, NULL};
-    static bool installed;
-    atomic_store(&calls, 0);
-    atomic_store(&fails_at, n);
-    if (!installed) {
-        he_mem_set_hook(&hook);
-        installed = true;
-    }
-}
-
 /* Makes each kind of change once; the caller checks which of them were done. */
 static void use_all(told_journal *told, kept_mesh *mesh, unsigned *acknowledged)
 {
@@ -602,14 +578,15 @@ static void without_memory_nothing_is_lost(void **state)
         told_journal told;
         kept_mesh mesh = new_mesh();
         unsigned acknowledged = 0, records = 0;
-        fail_memory_at(n);
+        failing_memory_begin();
+        failing_memory_at(n);
         if (try_open(&told, 0)) {
             use_all(&told, &mesh, &acknowledged);
             assert_int_equal(told_losses(&told), 0);
             told_end(&told);
         }
-        failed = atomic_load(&calls) >= n;
-        fail_memory_at(0);
+        failed = failing_memory_calls() >= n;
+        failing_memory_end();
         open_store(&told, 0);
         st_status status = count_records(&told.journal, "a", &records);
         assert_int_equal(status, acknowledged == 0 ? ST_ABSENT : ST_OK);

@@ -1,6 +1,7 @@
 /* A store on a disk, with the N-th allocation failing, of the store and of SQLite, in whatever
  * thread it is: each request is done completely or not at all, and the mesh in memory, the mesh
  * that is loaded again and the mesh after a restart are what the requests that succeeded made. */
+#include "tests/failing_memory.h"
 #include "tests/store_folder.h"
 #include "tests/unit/dense.h"
 #include "tests/writing.h"
@@ -11,32 +12,10 @@
 #include "stored/stored.h"
 
 #include <sched.h>
-#include <stdatomic.h>
 
 static char folder[FOLDER_PATH];
 static st_store *store;
 static he_mesh *large; /* a content that is staged */
-
-/* --- the N-th allocation --- */
-
-static _Atomic long calls, fails_at;
-
-static void *failing_resize(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return atomic_fetch_add(&calls, 1) + 1 == atomic_load(&fails_at) ? NULL : realloc(memory, size);
-}
-
-/* 0: none fails. The hook itself is set while the journal's thread is not running. */
-static void fail_memory_at(long n)
-{
-    atomic_store(&calls, 0);
-    atomic_store(&fails_at, n);
-}
 
 /* --- the store --- */
 
@@ -73,8 +52,8 @@ typedef struct expected {
 static bool was_done(st_status status)
 {
     if (status != ST_OK && status != ST_NO_MEMORY) {
-        long at = atomic_load(&fails_at);
-        fail_memory_at(0);
+        long at = failing_memory_chosen();
+        failing_memory_at(0);
         fail_msg("status %d: allocation %ld had failed", status, at);
     }
     return status == ST_OK;
@@ -304,7 +283,6 @@ static void make_m(void)
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {failing_resize, NULL};
     const char *text = getenv("ROUNDS");
     const long every = text == NULL ? 0 : strtol(text, NULL, 10);
     unsigned runs = 0, all = 0;
@@ -313,14 +291,13 @@ static void without_memory_each_request_is_whole_or_not_at_all(void **state)
         expected e = {.revision = 1, .vertices = 4};
         he_mesh *content = dense_copy(large);
         make_m();
-        fail_memory_at(0);
-        he_mem_set_hook(&hook);
+        failing_memory_begin();
         open_store();
-        fail_memory_at(n);
+        failing_memory_at(n);
         use_all(content, &e);
         close_store();
-        fired = atomic_load(&calls) >= n;
-        he_mem_set_hook(NULL);
+        fired = failing_memory_calls() >= n;
+        failing_memory_end();
         expect_after_restart(&e);
         all += e.made && e.renamed && e.revision == 10;
         folder_remove(folder);
@@ -344,7 +321,7 @@ static int begin(void **state)
 static int end(void **state)
 {
     (void)state;
-    he_mem_set_hook(NULL);
+    failing_memory_end();
     he_mesh_free(large);
     folder_remove(folder);
     return 0;
