@@ -9,6 +9,10 @@
 #include "store/publish/durability_wait.h"
 #include "tests/seed.h"
 
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
 enum { MANY = 1000 };
 
 static slow_journal slow;
@@ -184,6 +188,44 @@ static void a_stop_ends_what_is_not_known(void **state)
 
 /* All changes that one request makes must be one group of records, so that a crash leaves all of
  * them or none. */
+static _Atomic bool stop_ended;
+static bool ended_early;
+
+static void *stop_waits(void *context)
+{
+    (void)context;
+    st_waits_stop(waits);
+    atomic_store(&stop_ended, true);
+    return NULL;
+}
+
+/* Gives the thread that stops the waits time to return too early. */
+static void resume_slowly(st_wait *wait)
+{
+    pthread_t stops;
+    (void)wait;
+    assert_int_equal(pthread_create(&stops, NULL, stop_waits, NULL), 0);
+    for (int i = 0; i < 20000 && !atomic_load(&stop_ended); i++) {
+        sched_yield();
+    }
+    ended_early = atomic_load(&stop_ended);
+    assert_int_equal(pthread_detach(stops), 0);
+}
+
+/* The owner of a wait may be freed after the stop, as the table of jobs is. */
+static void a_stop_waits_for_what_is_being_resumed(void **state)
+{
+    (void)state;
+    st_wait wait = {.shown = {5, 4, 7}, .resume = resume_slowly};
+    atomic_store(&stop_ended, false);
+    assert_true(st_waits_add(waits, &wait));
+    slow_journal_advance(&slow, 5);
+    while (!atomic_load(&stop_ended)) {
+        sched_yield();
+    }
+    assert_false(ended_early);
+}
+
 static void a_request_is_one_group_of_records(void **state)
 {
     (void)state;
@@ -228,6 +270,7 @@ int main(void)
         TEST(a_list_of_nothing_new_is_not_lost),
         TEST(a_loss_without_memory_takes_too_much_rather_than_too_little),
         TEST(a_stop_ends_what_is_not_known),
+        TEST(a_stop_waits_for_what_is_being_resumed),
         cmocka_unit_test(a_request_is_one_group_of_records),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,6 +10,7 @@ struct st_waits {
     _Atomic uint64_t newest, durable;
     pthread_mutex_t lock;
     st_wait *top;          /* top of the heap */
+    size_t resuming;       /* threads that have taken waits off the heap and call their resume */
     pthread_cond_t caught; /* `durable` was raised, or the waits are stopped; for st_waits_block */
     st_loss *losses;
     size_t loss_count, loss_capacity;
@@ -159,12 +160,20 @@ static void resume_those_over(st_waits *waits)
         end = &wait->beside;
     }
     *end = NULL;
+    waits->resuming += first != NULL;
     pthread_mutex_unlock(&waits->lock);
+    if (first == NULL) {
+        return;
+    }
     while (first != NULL) {
         st_wait *next = first->beside;
         first->resume(first);
         first = next;
     }
+    pthread_mutex_lock(&waits->lock);
+    waits->resuming--;
+    pthread_cond_broadcast(&waits->caught);
+    pthread_mutex_unlock(&waits->lock);
 }
 
 void st_waits_moved(st_waits *waits, uint64_t position)
@@ -258,4 +267,9 @@ void st_waits_stop(st_waits *waits)
     waits->stopped = true;
     pthread_mutex_unlock(&waits->lock);
     resume_those_over(waits);
+    pthread_mutex_lock(&waits->lock);
+    while (waits->resuming > 0) {
+        pthread_cond_wait(&waits->caught, &waits->lock);
+    }
+    pthread_mutex_unlock(&waits->lock);
 }

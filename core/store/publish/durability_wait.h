@@ -69,7 +69,9 @@ bool st_waits_block(st_waits *waits, uint64_t position, uint64_t until);
 /* Adds a wait. Returns false if it is over already: `end` is then filled in, and resume is not
  * called. */
 bool st_waits_add(st_waits *waits, st_wait *wait);
-/* Ends all waits as stopped, and every wait that is added later. */
+/* Ends all waits as stopped, and every wait that is added later. When the call returns, no wait is
+ * being resumed by another thread, so the caller may free what the waits belong to. It must not be
+ * called by a resume function. */
 void st_waits_stop(st_waits *waits);
 
 #endif
