@@ -180,6 +180,17 @@ reply client_get(client *c, const char *path)
     return client_send(c, "GET", path, NULL, 0, NULL);
 }
 
+void client_await_running(client *c, const char *job)
+{
+    bool running = false;
+    while (!running) {
+        reply r = reply_expect(200, client_get(c, job));
+        running = strcmp(reply_string(&r, "state"), "running") == 0;
+        assert_true(running || strcmp(reply_string(&r, "state"), "queued") == 0);
+        reply_free(&r);
+    }
+}
+
 reply client_post(client *c, const char *path, const char *json)
 {
     return client_send(c, "POST", path, json, json == NULL ? 0 : strlen(json), NULL);

@@ -42,6 +42,9 @@ reply client_send(client *c, const char *method, const char *path, const void *b
                   const char *const *headers);
 /* Send a GET, and a POST with a JSON body. */
 reply client_get(client *c, const char *path);
+/* Waits until the job at this path runs; it must not have ended before. Among jobs that wait, a
+ * short one may be run before a long one that came first. */
+void client_await_running(client *c, const char *job);
 reply client_post(client *c, const char *path, const char *json);
 
 /* Opens a connection outside of libcurl, which the caller must close; over TLS it is one end of a

@@ -398,6 +398,7 @@ static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
                              ARGUMENTS("Prefer: respond-async", "Content-Type: application/json")));
         reply_header(&r, "Location", first, sizeof first);
         reply_free(&r);
+        client_await_running(c, first);
         for (int k = 0; k < 2; k++) {
             r = expect(202, client_send(c, "PUT", ids[k], packed, length,
                                         ARGUMENTS("Prefer: respond-async",

@@ -202,6 +202,7 @@ static void jobs_that_had_not_ended_were_interrupted(void **state)
     (void)reply_header(&r, "ETag", tag, sizeof tag);
     reply_free(&r);
     submit("PUT", "/v1/meshes/long", LONG, NULL, running);
+    client_await_running(http, running);
     submit("POST", "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}", "Idempotency-Key: k",
            waiting);
     end_and_begin();
