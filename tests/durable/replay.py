@@ -145,10 +145,14 @@ class Replay:
                 return False
         return True
 
-    def make_all_of(self, mesh, changes):
-        """Makes a mesh from these changes alone. Raises Wrong."""
-        if not self.make_all(mesh, changes, True):
-            raise Wrong(f'{mesh}: a change leads elsewhere when it is made again')
+    def make_from(self, mesh, done, flying, version, theirs):
+        """Makes a mesh from these changes alone, so that it is what the store has: `version` and
+        the state `theirs`, or None. Raises Wrong."""
+        known = self.known[mesh] = Known()
+        if theirs is None:
+            return
+        known.incarnation, names, revision = version
+        self.fit(mesh, (0, 0), done, flying, (names, revision), theirs, True)
 
     def position(self, mesh):
         names = revision = 0

@@ -48,7 +48,7 @@ class Traffic:
     def __init__(self, daemon, chance):
         self.daemon, self.chance = daemon, chance
         self.lock, self.number = threading.Lock(), 0
-        self.seen, self.marks, self.removals = {}, {}, []
+        self.seen, self.marks, self.removals, self.creations = {}, {}, [], []
         self.ending = threading.Event()
 
     def ask(self, client, kind, method, path, body=None, headers=None):
@@ -90,8 +90,11 @@ class Traffic:
                     continue
             if answer.status == 404:
                 mark = f'made-{x}'.encode()
-                _, seen, answer = self.ask(client, 'create', 'PUT', f'{mesh}?name={mark.decode()}',
-                                           {'shape': 'cube'}, {'If-None-Match': '*'})
+                name, seen, answer = self.ask(client, 'create', 'PUT',
+                                              f'{mesh}?name={mark.decode()}', {'shape': 'cube'},
+                                              {'If-None-Match': '*'})
+                if answer.status == 201:
+                    self.creations.append((name, mesh))
             if answer.status in (200, 201):
                 seen.mark = mark
                 with self.lock:
@@ -259,16 +262,29 @@ class Verdict:
                 incarnation, names = self.named[item]
                 self.compare(seen.kind, sent, self.until(incarnation, names, revision),
                              f'{name} {item} r{revision}')
-        removed = [self.trace.came.get(n) for n, mesh in traffic.removals
-                   if n == name or mesh == seen.gone]
-        for came in removed:
-            # A 404 is explained by the latest removal before it; the mesh may have been created
-            # again since.
-            if came is not None and came < sent and seen.kind in ('delete', '404') and came == max(
-                    r for r in removed if r is not None and r < sent):
-                written = next((at for at, _ in self.trace.written if at > came), None)
-                self.compare(seen.kind, sent, written and self.trace.covered(written, self.later),
-                             name)
+        if seen.kind == 'delete' and any(name == n for n, _ in traffic.removals):
+            self.compare(seen.kind, sent, self.removed_at(name), name)
+        elif seen.gone:
+            # The mesh may be removed again before this answer is sent, so one removal that was
+            # covered in time is enough.
+            covered = [self.removed_at(n) for n in self.explain(name, seen, traffic)]
+            self.compare(seen.kind, sent, min(filter(None, covered), default=None), name)
+
+    def removed_at(self, name):
+        """Returns when the removal was covered that this request made."""
+        came = self.trace.came.get(name)
+        written = next((at for at, _ in self.trace.written if came is not None and at > came), None)
+        return written and self.trace.covered(written, self.later)
+
+    def explain(self, name, seen, traffic):
+        """Returns the removals that may be why this request found no mesh: they came before its
+        answer, and no creation lies completely between them and the request."""
+        came, sent = self.trace.came, self.trace.sent
+        created = [n for n, mesh in traffic.creations
+                   if mesh == seen.gone and n in sent and sent[n] < came.get(name, 0)]
+        return [n for n, mesh in traffic.removals
+                if mesh == seen.gone and n in sent and came.get(n, sent[name]) < sent[name]
+                and not any(came.get(c, 0) > sent[n] for c in created)]
 
 
 @contextlib.contextmanager
