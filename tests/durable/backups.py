@@ -16,7 +16,7 @@ import threading
 import time
 
 from daemon import ETAG, Daemon, Refused
-from replay import Replay, Wrong, difference, state
+from replay import Replay, Wrong, state
 from writers import Draw, write_for
 
 MESHES = ['a', 'b', 'c']

@@ -186,8 +186,6 @@ static void a_stop_ends_what_is_not_known(void **state)
     assert_int_equal(all[0].end, ST_WAIT_DURABLE);
 }
 
-/* All changes that one request makes must be one group of records, so that a crash leaves all of
- * them or none. */
 static _Atomic bool stop_ended;
 static bool ended_early;
 
@@ -226,6 +224,8 @@ static void a_stop_waits_for_what_is_being_resumed(void **state)
     assert_false(ended_early);
 }
 
+/* All changes that one request makes must be one group of records, so that a crash leaves all of
+ * them or none. */
 static void a_request_is_one_group_of_records(void **state)
 {
     (void)state;

@@ -11,7 +11,7 @@ struct st_waits {
     pthread_mutex_t lock;
     st_wait *top;          /* top of the heap */
     size_t resuming;       /* threads that have taken waits off the heap and call their resume */
-    pthread_cond_t caught; /* `durable` was raised, or the waits are stopped; for st_waits_block */
+    pthread_cond_t caught; /* `durable` was raised, the waits are stopped, or `resuming` fell */
     st_loss *losses;
     size_t loss_count, loss_capacity;
     _Atomic bool has_losses;
