@@ -5,7 +5,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <limits.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,15 +12,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { PATH_SIZE = 160, ETAG_SIZE = 24, HASH_LENGTH = 8 };
+enum { PATH_SIZE = 160, HASH_LENGTH = 8 };
 
 typedef struct asset {
     char path[PATH_SIZE];
-    char etag[ETAG_SIZE];
-    const char *type;
-    char *bytes;
-    size_t length;
-    bool immutable;
+    api_asset served;
 } asset;
 
 struct srv_assets {
@@ -64,17 +59,6 @@ static const char *media_type(const char *name)
     return "application/octet-stream";
 }
 
-/* Hashes the content of a file by FNV-1a (Fowler, Noll, Vo) for its tag, which need not resist
- * attackers. */
-static uint64_t hash(const char *bytes, size_t length)
-{
-    uint64_t value = UINT64_C(0xcbf29ce484222325);
-    for (size_t i = 0; i < length; i++) {
-        value = (value ^ (unsigned char)bytes[i]) * UINT64_C(0x100000001b3);
-    }
-    return value;
-}
-
 /* Returns true if a name ends in -HASH.suffix, as bundlers write it: eight or more letters and
  * digits, with only capitals or hexadecimal digits. */
 static bool carries_hash(const char *name)
@@ -89,17 +73,21 @@ static bool carries_hash(const char *name)
            strspn(dash + 1, "abcdef0123456789") >= length;
 }
 
-/* Takes `bytes`. */
-static void add(srv_assets *assets, const char *path, const char *name, char *bytes, size_t length)
+/* Adds a file. Returns false when memory is out. */
+static bool add(srv_assets *assets, const char *path, const char *name, const char *bytes,
+                size_t length)
 {
-    asset *item = &assets->items[assets->count++];
+    asset *item = &assets->items[assets->count];
+    item->served = (api_asset){.type = media_type(name),
+                               .immutable = carries_hash(name),
+                               .body = api_kept_new(bytes, length)};
+    if (item->served.body == NULL) {
+        return false;
+    }
     snprintf(item->path, sizeof item->path, "%s", path);
-    snprintf(item->etag, sizeof item->etag, "\"%016" PRIx64 "\"", hash(bytes, length));
-    item->type = media_type(name);
-    item->bytes = bytes;
-    item->length = length;
-    item->immutable = carries_hash(name);
+    assets->count++;
     assets->bytes += length;
+    return true;
 }
 
 static char *read_all(int fd, size_t length)
@@ -140,12 +128,12 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
                length > (size_t)SRV_ASSET_BYTES - assets->bytes) {
         snprintf(message, size, "the page has more than %d files or %d bytes", SRV_ASSET_COUNT,
                  SRV_ASSET_BYTES);
-    } else if ((bytes = read_all(fd, length)) == NULL) {
-        snprintf(message, size, "the page's file %s cannot be read", name);
+    } else if ((bytes = read_all(fd, length)) == NULL || !add(assets, path, name, bytes, length)) {
+        snprintf(message, size, "the page's file %s cannot be read into memory", name);
     } else {
-        add(assets, path, name, bytes, length);
         ok = true;
     }
+    he_mem_free(bytes);
     close(fd);
     return ok;
 }
@@ -195,7 +183,7 @@ static bool load(srv_assets *assets, const char *folder, char *message, size_t s
 static void clear(srv_assets *assets)
 {
     for (size_t i = 0; i < assets->count; i++) {
-        he_mem_free(assets->items[i].bytes);
+        api_kept_free(assets->items[i].served.body);
     }
     assets->count = 0;
     assets->bytes = 0;
@@ -212,14 +200,10 @@ srv_assets *srv_assets_load(const char *folder, char *message, size_t size)
         return assets;
     }
     clear(assets);
-    char *copy = he_mem_alloc(sizeof notice - 1);
-    if (copy == NULL) {
+    if (!add(assets, "/", "notice.html", notice, sizeof notice - 1)) {
         he_mem_free(assets);
         return NULL;
     }
-    memcpy(copy, notice, sizeof notice - 1);
-    add(assets, "/", ".html", copy, sizeof notice - 1);
-    assets->items[0].type = "text/html; charset=utf-8";
     return assets;
 }
 
@@ -231,22 +215,15 @@ void srv_assets_free(srv_assets *assets)
     }
 }
 
-bool srv_assets_find(void *context, const char *path, const char **bytes, size_t *length,
-                     const char **type, const char **etag, bool *immutable)
+const api_asset *srv_assets_find(void *context, const char *path)
 {
     const srv_assets *assets = context;
     for (size_t i = 0; i < assets->count; i++) {
-        const asset *item = &assets->items[i];
-        if (strcmp(item->path, path) == 0) {
-            *bytes = item->bytes;
-            *length = item->length;
-            *type = item->type;
-            *etag = item->etag;
-            *immutable = item->immutable;
-            return true;
+        if (strcmp(assets->items[i].path, path) == 0) {
+            return &assets->items[i].served;
         }
     }
-    return false;
+    return NULL;
 }
 
 static bool is_folder(const char *path)

@@ -7,6 +7,8 @@
 #ifndef HE_SERVER_ASSETS_H
 #define HE_SERVER_ASSETS_H
 
+#include "api/request/api.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -18,9 +20,8 @@ enum { SRV_ASSET_COUNT = 512, SRV_ASSET_BYTES = 64 << 20 };
  * `message` says why; otherwise it is "". */
 srv_assets *srv_assets_load(const char *folder, char *message, size_t size);
 void srv_assets_free(srv_assets *assets);
-/* Finds a file for a request, as the `asset` of api_options; `context` is the srv_assets. */
-bool srv_assets_find(void *context, const char *path, const char **bytes, size_t *length,
-                     const char **type, const char **etag, bool *immutable);
+/* Finds the file of a path, as the `asset` of api_options; `context` is the srv_assets. */
+const api_asset *srv_assets_find(void *context, const char *path);
 
 /* Finds the folder of the page: `configured`, or web beside the executable, or ../share/hedge/web
  * from there. Returns false if there is none. */

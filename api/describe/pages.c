@@ -2,7 +2,7 @@
 #include "api/describe/operations.h"
 #include "api/request/handlers.h"
 
-#include <stdio.h>
+#include <stdatomic.h>
 #include <string.h>
 
 /* The Content-Security-Policy of the viewer page, which may run its own scripts and connect to its
@@ -73,25 +73,21 @@ void api_index_get(api_exchange *x)
 void api_page_get(api_exchange *x)
 {
     const api_options *options = &x->service->options;
-    const char *bytes, *type, *etag = NULL;
-    size_t length;
-    bool immutable = false;
     /* The raw path is used, because names of assets need no escapes and are looked up in a
      * table. */
-    if (options->asset == NULL || !options->asset(options->asset_context, x->request.path, &bytes,
-                                                  &length, &type, &etag, &immutable)) {
+    const api_asset *asset =
+        options->asset == NULL ? NULL : options->asset(options->asset_context, x->request.path);
+    if (asset == NULL) {
         api_fail(x, API_NO_SUCH_ROUTE, "the server has no path \"%.150s\"", x->request.path);
         return;
     }
     api_answer_header(x, "Cache-Control",
-                      immutable ? "public, max-age=31536000, immutable" : "no-cache");
-    if (strncmp(type, "text/html", 9) == 0) {
+                      asset->immutable ? "public, max-age=31536000, immutable" : "no-cache");
+    if (strncmp(asset->type, "text/html", 9) == 0) {
         api_answer_header(x, "Content-Security-Policy", viewer_policy);
         api_answer_header(x, "Referrer-Policy", "no-referrer");
     }
-    if (etag == NULL || !api_not_modified_since(x, etag)) {
-        api_answer_bytes(x, 200, type, bytes, length);
-    }
+    api_answer_kept(x, asset->type, asset->body);
 }
 
 void api_problem_get(api_exchange *x)
@@ -106,14 +102,48 @@ void api_problem_get(api_exchange *x)
     api_answer_text(x, 200, "text/html; charset=utf-8");
 }
 
+/* Answers with the document in `place`, into which `write` writes it first if this is the first
+ * request for it. */
+static void answer_document(api_exchange *x, _Atomic(api_kept *) *place,
+                            void (*write)(api_out *out, const api_options *options))
+{
+    api_kept *found = atomic_load(place);
+    if (found == NULL) {
+        write(&x->out, &x->service->options);
+        api_kept *made = x->text.failed ? NULL : api_kept_new(x->text.bytes, x->text.length);
+        api_text_clear(&x->text);
+        if (made == NULL) {
+            api_fail_memory(x);
+            return;
+        }
+        /* If another thread was faster, its document is in `found` and is used. */
+        if (atomic_compare_exchange_strong(place, &found, made)) {
+            found = made;
+        } else {
+            api_kept_free(made);
+        }
+    }
+    api_answer_header(x, "Cache-Control", "no-cache");
+    api_answer_kept(x, "application/json", found);
+}
+
+static void write_operations(api_out *out, const api_options *options)
+{
+    (void)options;
+    api_operations_write(out);
+}
+
 void api_operations_get(api_exchange *x)
 {
-    api_operations_write(&x->out);
-    api_answer_json(x, 200);
+    answer_document(x, &x->service->operations, write_operations);
+}
+
+static void write_openapi(api_out *out, const api_options *options)
+{
+    api_openapi_write(out, options->version, options->public_url);
 }
 
 void api_openapi_get(api_exchange *x)
 {
-    api_openapi_write(&x->out, x->service->options.version, x->service->options.public_url);
-    api_answer_json(x, 200);
+    answer_document(x, &x->service->openapi, write_openapi);
 }

@@ -24,6 +24,7 @@
 #ifndef HE_API_REQUEST_API_H
 #define HE_API_REQUEST_API_H
 
+#include "api/header/kept.h"
 #include "api/header/request_header.h"
 #include "api/job/job_table.h"
 #include "api/live.h"
@@ -91,16 +92,21 @@ typedef struct api_answer {
     const char *route; /* path template for logs and metrics; "-" when no route matched */
 } api_answer;
 
+/* A file of the web page. */
+typedef struct api_asset {
+    const char *type; /* media type */
+    bool immutable;   /* its path contains a hash of its content */
+    api_kept *body;
+} api_asset;
+
 /* Settings of the server; 0 selects the default in limits.h. */
 typedef struct api_options {
     uint64_t max_upload; /* bytes of a mesh document or file */
     const char *version; /* such as "0.1.0" */
     const char *public_url;
-    /* Serves the web page: finds the content of a path ("/", "/assets/...") or returns false. The
-     * bytes live as long as the service. Sets `type`, `etag`, and `immutable` for names that
-     * contain a hash. */
-    bool (*asset)(void *context, const char *path, const char **bytes, size_t *length,
-                  const char **type, const char **etag, bool *immutable);
+    /* Serves the web page: finds the file of a path ("/", "/assets/..."), which lives as long as
+     * the service, or returns NULL. */
+    const api_asset *(*asset)(void *context, const char *path);
     void *asset_context;
     bool (*ready)(void *context); /* for /readyz; NULL: always ready */
     /* Returns true if memory is short and no mesh can leave it, for /readyz; NULL: never short. */

@@ -119,12 +119,29 @@ static void code_whole(api_exchange *x, size_t length)
     }
 }
 
+/* Replaces a kept body by its compressed form, if that is shorter or the only one allowed. */
+static void code_kept(api_exchange *x)
+{
+    api_answer *a = &x->answer;
+    const char *bytes;
+    size_t length;
+    if (api_kept_coded(x->kept, x->codings.best, &bytes, &length) &&
+        ((int64_t)length < a->length || !x->codings.allowed[API_IDENTITY]) && name_coding(x)) {
+        a->bytes = bytes;
+        a->length = (int64_t)length;
+    }
+}
+
 void api_coded_answer(api_exchange *x)
 {
     api_answer *a = &x->answer;
     const char *bytes;
     size_t length;
     if (!is_worth_it(x) || a->header_count == API_ANSWER_HEADERS) {
+        return;
+    }
+    if (x->kept != NULL) {
+        code_kept(x);
         return;
     }
     api_plain plain = {.bytes = a->bytes, .read = a->read, .context = a->context};

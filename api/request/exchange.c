@@ -519,6 +519,17 @@ bool api_not_modified_since(api_exchange *x, const char *etag)
     return true;
 }
 
+void api_answer_kept(api_exchange *x, const char *type, api_kept *kept)
+{
+    const char *bytes;
+    size_t length;
+    if (!api_not_modified_since(x, api_kept_etag(kept))) {
+        api_kept_bytes(kept, &bytes, &length);
+        api_answer_bytes(x, 200, type, bytes, length);
+        x->kept = kept;
+    }
+}
+
 bool api_not_modified(api_exchange *x, const char *representation)
 {
     char etag[API_ETAG];

@@ -41,6 +41,8 @@
 
 struct api_service {
     st_store *store;
+    /* Documents about the API, which depend on nothing but the options. NULL: not written yet. */
+    _Atomic(api_kept *) operations, openapi;
     api_route_table table;
     api_route_tree *routes; /* of `table` */
     api_options options;
@@ -143,6 +145,7 @@ struct api_exchange {
     api_source live;
     api_pack *pack; /* compresses the answer, or owns all of it; NULL: neither */
     char *coded;    /* the whole compressed answer */
+    api_kept *kept; /* the answer's body, if it never changes; NULL: it is another */
     api_blob blob;  /* the answer; freed with the exchange unless it is borrowed */
     uint64_t blob_at;
 };
@@ -214,6 +217,9 @@ void api_answer_text(api_exchange *x, int status, const char *type);
 /* Answers with bytes that must stay valid as long as the service or the exchange. */
 void api_answer_bytes(api_exchange *x, int status, const char *type, const char *bytes,
                       size_t length);
+/* Answers 200 with a body that never changes and outlives the exchange, or 304 if the client has it
+ * (If-None-Match). */
+void api_answer_kept(api_exchange *x, const char *type, api_kept *kept);
 void api_answer_empty(api_exchange *x, int status); /* without a body: 204 and others */
 /* If the client prefers return=minimal, answers 204 and returns true. */
 bool api_answer_minimal(api_exchange *x);

@@ -62,6 +62,8 @@ api_service *api_service_new(st_store *store, api_route_table routes, const api_
 void api_service_free(api_service *service)
 {
     if (service != NULL) {
+        api_kept_free(service->operations);
+        api_kept_free(service->openapi);
         api_route_tree_free(service->routes);
         api_tickets_free(service->tickets);
         api_rates_free(service->token_rates);
@@ -119,6 +121,7 @@ static void drop_answer(api_exchange *x)
     free_blob(x);
     x->answer = (api_answer){.route = x->answer.route, .close = x->answer.close};
     x->answered = false;
+    x->kept = NULL;
 }
 
 static void answer_problem(api_exchange *x)

@@ -10,20 +10,15 @@
 
 #include <cjson/cJSON.h>
 
-static bool find_asset(void *context, const char *path, const char **bytes, size_t *length,
-                       const char **type, const char **etag, bool *immutable)
+static api_kept *page_file, *script_file;
+
+static const api_asset *find_asset(void *context, const char *path)
 {
+    static api_asset page, script;
     (void)context;
-    bool page = strcmp(path, "/") == 0;
-    if (!page && strcmp(path, "/assets/a.js") != 0) {
-        return false;
-    }
-    *bytes = page ? "<p>" : "x()";
-    *length = 3;
-    *type = page ? "text/html; charset=utf-8" : "text/javascript";
-    *etag = "\"e\"";
-    *immutable = !page;
-    return true;
+    page = (api_asset){"text/html; charset=utf-8", false, page_file};
+    script = (api_asset){"text/javascript", true, script_file};
+    return strcmp(path, "/") == 0 ? &page : strcmp(path, "/assets/a.js") == 0 ? &script : NULL;
 }
 
 static bool not_ready(void *context)
@@ -56,6 +51,9 @@ static int set_up(void **state)
         .undo_budget = 1 << 20, .max_meshes = 10, .journal = st_journal_memory()});
     assert_non_null(store);
     assert_int_equal(st_create(store, "m", "", fixture_mesh("012"), NULL, &only), ST_OK);
+    page_file = api_kept_new("<p>", 3);
+    script_file = api_kept_new("x()", 3);
+    assert_true(page_file != NULL && script_file != NULL);
     service = api_service_new(store, api_routes(), &options);
     return service == NULL;
 }
@@ -66,6 +64,8 @@ static int tear_down(void **state)
     api_service_free(service);
     st_release(only);
     st_store_free(store);
+    api_kept_free(page_file);
+    api_kept_free(script_file);
     return 0;
 }
 
@@ -159,7 +159,7 @@ static const struct {
     {{"GET /version", NULL, NULL}, 200, NULL},
     {{"HEAD /version", NULL, NULL}, 200, NULL},
     {{"GET /", NULL, NULL}, 200, NULL},
-    {{"GET /", "If-None-Match: \"e\"", NULL}, 304, NULL},
+    {{"GET /", "If-None-Match: \"6fde8c182feba3fd\"", NULL}, 304, NULL},
     {{"GET /assets/a.js", NULL, NULL}, 200, NULL},
     {{"GET /assets/b.js", NULL, NULL}, 404, "no_such_route"},
     {{"GET /assets/../a.js", NULL, NULL}, 404, "no_such_route"},
@@ -713,10 +713,33 @@ static void every_failed_allocation_is_answered(void **state)
     }
 }
 
+static void documents_are_written_and_compressed_once(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {"GET /v1/operations", "GET /v1/openapi.json",
+                                        "GET /assets/a.js"};
+    static const char *const accepted[] = {NULL, "Accept-Encoding: gzip", "Accept-Encoding: zstd"};
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        for (size_t k = 0; k < sizeof accepted / sizeof *accepted; k++) {
+            const sent request = {lines[i], accepted[k], NULL};
+            header_list headers;
+            api_exchange *first = send_line(&request, &headers);
+            api_exchange *second = send_line(&request, &headers);
+            assert_int_equal(api_answer_of(first)->status, 200);
+            assert_ptr_equal(api_answer_of(first)->bytes, api_answer_of(second)->bytes);
+            const char *coding = answer_header(api_answer_of(first), "Content-Encoding");
+            assert_true((coding == NULL) == (k == 0 || i == 2)); /* a.js is too short */
+            api_free(first);
+            api_free(second);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(requests_are_answered),
+        cmocka_unit_test(documents_are_written_and_compressed_once),
         cmocka_unit_test(pages_of_a_configured_origin_may_ask_for_everything),
         cmocka_unit_test(unknown_names_are_answered_with_those_that_exist),
         cmocka_unit_test(a_slash_too_many_at_the_end_leads_to_the_path_without_it),
