@@ -4,46 +4,61 @@
 #include "edit/border/seam.h"
 #include "edit/local/erase.h"
 
+enum { EDGE_DELETE_EDGES, EDGE_DELETE_KEEP_ISOLATED };
+
 static he_status run_edge_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     (void)out;
-    return he_edge_delete(m, args[0].ids, args[0].count,
-                          args[1].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
+    return he_edge_delete(
+        m, args[EDGE_DELETE_EDGES].ids, args[EDGE_DELETE_EDGES].count,
+        args[EDGE_DELETE_KEEP_ISOLATED].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
 }
+
+enum { EDGE_CUT_EDGES };
+enum { EDGE_CUT_OUT_VERTICES, EDGE_CUT_OUT_EDGES };
 
 static he_status run_edge_cut(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_seam seam;
-    he_status status = he_edge_cut(m, args[0].ids, args[0].count, &seam, err);
+    he_status status =
+        he_edge_cut(m, args[EDGE_CUT_EDGES].ids, args[EDGE_CUT_EDGES].count, &seam, err);
     if (status == HE_OK) {
-        he_give_list(out, 0, &seam.vertices);
-        he_give_list(out, 1, &seam.edges);
+        he_give_list(out, EDGE_CUT_OUT_VERTICES, &seam.vertices);
+        he_give_list(out, EDGE_CUT_OUT_EDGES, &seam.edges);
         he_seam_clear(&seam);
     }
     return status;
 }
 
+enum { EDGE_WELD_A, EDGE_WELD_B, EDGE_WELD_KEEP };
+enum { EDGE_WELD_OUT_EDGE, EDGE_WELD_OUT_MOVED };
+
 static he_status run_edge_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     uint64_t moved = 0;
-    he_status status = he_edge_weld(m, (he_edge){args[0].id}, (he_edge){args[1].id},
-                                    (he_keep)args[2].choice, &moved, err);
+    he_status status =
+        he_edge_weld(m, (he_edge){args[EDGE_WELD_A].id}, (he_edge){args[EDGE_WELD_B].id},
+                     (he_keep)args[EDGE_WELD_KEEP].choice, &moved, err);
     if (status == HE_OK) {
-        he_give(out, 0, args[0].id);
-        he_give_number(out, 1, (double)moved);
+        he_give(out, EDGE_WELD_OUT_EDGE, args[EDGE_WELD_A].id);
+        he_give_number(out, EDGE_WELD_OUT_MOVED, (double)moved);
     }
     return status;
 }
+
+enum { EDGE_EXTRUDE_EDGES, EDGE_EXTRUDE_BY };
+enum { EDGE_EXTRUDE_OUT_VERTICES, EDGE_EXTRUDE_OUT_EDGES, EDGE_EXTRUDE_OUT_FACES };
 
 static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_walls walls;
     he_status status =
-        he_edge_extrude(m, args[0].ids, args[0].count, args[1].points[0], &walls, err);
+        he_edge_extrude(m, args[EDGE_EXTRUDE_EDGES].ids, args[EDGE_EXTRUDE_EDGES].count,
+                        args[EDGE_EXTRUDE_BY].points[0], &walls, err);
     if (status == HE_OK) {
-        he_give_list(out, 0, &walls.vertices);
-        he_give_list(out, 1, &walls.edges);
-        he_give_list(out, 2, &walls.faces);
+        he_give_list(out, EDGE_EXTRUDE_OUT_VERTICES, &walls.vertices);
+        he_give_list(out, EDGE_EXTRUDE_OUT_EDGES, &walls.edges);
+        he_give_list(out, EDGE_EXTRUDE_OUT_FACES, &walls.faces);
         he_walls_clear(&walls);
     }
     return status;
@@ -57,15 +72,16 @@ const he_op he_border_rows[] = {
         .name = "edge_delete",
         .doc = "Delete edges and the faces beside them, and then the edges and vertices that have "
                "no face left.",
-        .params = {{.name = "edge",
-                    .plural = "edges",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED,
-                    .doc = "The edges to delete."},
-                   {.name = "keep_isolated",
-                    .type = HE_PARAM_FLAG,
-                    .doc = "Keep vertices that lose their last face."}},
+        .params = {[EDGE_DELETE_EDGES] = {.name = "edge",
+                                          .plural = "edges",
+                                          .type = HE_PARAM_ELEMENTS,
+                                          .kind = HE_EDGE,
+                                          .flags = HE_REQUIRED,
+                                          .doc = "The edges to delete."},
+                   [EDGE_DELETE_KEEP_ISOLATED] = {.name = "keep_isolated",
+                                                  .type = HE_PARAM_FLAG,
+                                                  .doc =
+                                                      "Keep vertices that lose their last face."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -75,17 +91,22 @@ const he_op he_border_rows[] = {
     {
         .name = "edge_cut",
         .doc = "Cut the mesh open along edges. Each becomes two boundary edges.",
-        .params = {{.name = "edge",
-                    .plural = "edges",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED | HE_WALKS,
-                    .doc =
-                        "The edges to cut. Each keeps its id on the side of its first half-edge."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices, in the same places as those that they were split from."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges on the other side, in ascending order of the cut edges."}},
+        .params =
+            {[EDGE_CUT_EDGES] =
+                 {.name = "edge",
+                  .plural = "edges",
+                  .type = HE_PARAM_ELEMENTS,
+                  .kind = HE_EDGE,
+                  .flags = HE_REQUIRED | HE_WALKS,
+                  .doc =
+                      "The edges to cut. Each keeps its id on the side of its first half-edge."}},
+        .results =
+            {[EDGE_CUT_OUT_VERTICES] =
+                 {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                  "The new vertices, in the same places as those that they were split from."},
+             [EDGE_CUT_OUT_EDGES] =
+                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                  "The new edges on the other side, in ascending order of the cut edges."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BOUNDARY_EDGE,
                      HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, 0},
@@ -95,26 +116,28 @@ const he_op he_border_rows[] = {
     {
         .name = "edge_weld",
         .doc = "Merge two boundary edges. The inverse of edge_cut.",
-        .params =
-            {{.name = "a",
-              .type = HE_PARAM_ELEMENT,
-              .kind = HE_EDGE,
-              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-              .doc = "The edge that stays, with its two vertices."},
-             {.name = "b",
-              .type = HE_PARAM_ELEMENT,
-              .kind = HE_EDGE,
-              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-              .doc = "The edge that is merged into it, with its two vertices."},
-             {.name = "keep",
-              .type = HE_PARAM_CHOICE,
-              .choices = keeps,
-              .doc =
-                  "Where the merged vertices are placed: midway, or where those of a or b were."}},
-        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The edge that stays."},
-                    {"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices became values of corners, because merged "
-                     "vertices had different ones."}},
+        .params = {[EDGE_WELD_A] = {.name = "a",
+                                    .type = HE_PARAM_ELEMENT,
+                                    .kind = HE_EDGE,
+                                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                                    .doc = "The edge that stays, with its two vertices."},
+                   [EDGE_WELD_B] = {.name = "b",
+                                    .type = HE_PARAM_ELEMENT,
+                                    .kind = HE_EDGE,
+                                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                                    .doc =
+                                        "The edge that is merged into it, with its two vertices."},
+                   [EDGE_WELD_KEEP] = {.name = "keep",
+                                       .type = HE_PARAM_CHOICE,
+                                       .choices = keeps,
+                                       .doc = "Where the merged vertices are placed: midway, or "
+                                              "where those of a or b were."}},
+        .results = {[EDGE_WELD_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE,
+                                            "The edge that stays."},
+                    [EDGE_WELD_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many values of vertices became values of corners, because merged "
+                         "vertices had different ones."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_REPEATED_CORNER, HE_DOUBLED_EDGE, HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, -1, 0},
@@ -123,21 +146,25 @@ const he_op he_border_rows[] = {
     {
         .name = "edge_extrude",
         .doc = "Extrude boundary edges into quads.",
-        .params = {{.name = "edge",
-                    .plural = "edges",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED,
-                    .doc = "The edges to extrude. Edges that follow each other share corners."},
-                   {.name = "by",
-                    .type = HE_PARAM_POINT,
-                    .flags = HE_REQUIRED,
-                    .doc = "The vector from the edges to their copies."}},
+        .params = {[EDGE_EXTRUDE_EDGES] =
+                       {.name = "edge",
+                        .plural = "edges",
+                        .type = HE_PARAM_ELEMENTS,
+                        .kind = HE_EDGE,
+                        .flags = HE_REQUIRED,
+                        .doc = "The edges to extrude. Edges that follow each other share corners."},
+                   [EDGE_EXTRUDE_BY] = {.name = "by",
+                                        .type = HE_PARAM_POINT,
+                                        .flags = HE_REQUIRED,
+                                        .doc = "The vector from the edges to their copies."}},
         .results =
-            {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-              "The new vertices, in ascending order of the vertices that they are copies of."},
-             {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The copies of the edges, in the same order."},
-             {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The quads, in the same order."}},
+            {[EDGE_EXTRUDE_OUT_VERTICES] =
+                 {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                  "The new vertices, in ascending order of the vertices that they are copies of."},
+             [EDGE_EXTRUDE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                         "The copies of the edges, in the same order."},
+             [EDGE_EXTRUDE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                         "The quads, in the same order."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_NOT_BOUNDARY,
                      HE_BRANCHING_CHAIN, HE_CLOSED_FAN, HE_NOT_FINITE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

@@ -7,21 +7,28 @@
 #include "edit/local/poke.h"
 #include "edit/whole/triangulate.h"
 
+enum { FACE_ADD_VERTICES };
+enum { FACE_ADD_OUT_FACE, FACE_ADD_OUT_EDGES };
+
 static he_status run_face_add(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_face f;
-    he_status status = he_face_add(m, args[0].ids, args[0].count, &f, &out->list[1], err);
+    he_status status = he_face_add(m, args[FACE_ADD_VERTICES].ids, args[FACE_ADD_VERTICES].count,
+                                   &f, &out->list[FACE_ADD_OUT_EDGES], err);
     if (status == HE_OK) {
-        he_give(out, 0, f.i);
+        he_give(out, FACE_ADD_OUT_FACE, f.i);
     }
     return status;
 }
 
+enum { FACE_DELETE_FACES, FACE_DELETE_KEEP_ISOLATED };
+
 static he_status run_face_delete(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     (void)out;
-    return he_face_delete(m, args[0].ids, args[0].count,
-                          args[1].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
+    return he_face_delete(
+        m, args[FACE_DELETE_FACES].ids, args[FACE_DELETE_FACES].count,
+        args[FACE_DELETE_KEEP_ISOLATED].flag ? HE_KEEP_ISOLATED : HE_DROP_ISOLATED, err);
 }
 
 /* Finds the half-edge that leaves a corner of face f, which the client gave as a vertex or as that
@@ -46,65 +53,91 @@ static he_status find_corner(const he_mesh *m, he_face f, const he_arg *vertex,
     return HE_OK;
 }
 
+enum {
+    FACE_SPLIT_FACE,
+    FACE_SPLIT_FROM,
+    FACE_SPLIT_FROM_HALFEDGE,
+    FACE_SPLIT_TO,
+    FACE_SPLIT_TO_HALFEDGE
+};
+enum { FACE_SPLIT_OUT_EDGE, FACE_SPLIT_OUT_FACE };
+
 static he_status run_face_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    he_face f = {args[0].id}, made;
+    he_face f = {args[FACE_SPLIT_FACE].id}, made;
     he_halfedge from, to;
     he_edge e;
     he_status status = he_mesh_require(m, HE_FACE, f.i, err);
     if (status == HE_OK) {
-        status = find_corner(m, f, &args[1], &args[2], &from, err);
+        status =
+            find_corner(m, f, &args[FACE_SPLIT_FROM], &args[FACE_SPLIT_FROM_HALFEDGE], &from, err);
     }
     if (status == HE_OK) {
-        status = find_corner(m, f, &args[3], &args[4], &to, err);
+        status = find_corner(m, f, &args[FACE_SPLIT_TO], &args[FACE_SPLIT_TO_HALFEDGE], &to, err);
     }
     if (status == HE_OK) {
         status = he_face_split(m, f, from, to, &e, &made, err);
     }
     if (status == HE_OK) {
-        he_give(out, 0, e.i);
-        he_give(out, 1, made.i);
+        he_give(out, FACE_SPLIT_OUT_EDGE, e.i);
+        he_give(out, FACE_SPLIT_OUT_FACE, made.i);
     }
     return status;
 }
+
+enum { FACE_JOIN_EDGE };
+enum { FACE_JOIN_OUT_FACE };
 
 static he_status run_face_join(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_face f;
-    he_status status = he_face_join(m, (he_edge){args[0].id}, &f, err);
+    he_status status = he_face_join(m, (he_edge){args[FACE_JOIN_EDGE].id}, &f, err);
     if (status == HE_OK) {
-        he_give(out, 0, f.i);
+        he_give(out, FACE_JOIN_OUT_FACE, f.i);
     }
     return status;
 }
+
+enum { FACE_POKE_FACE, FACE_POKE_POSITION };
+enum { FACE_POKE_OUT_VERTEX, FACE_POKE_OUT_EDGES, FACE_POKE_OUT_FACES };
 
 static he_status run_face_poke(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_vertex v;
-    he_status status = he_face_poke(m, (he_face){args[0].id}, args[1].given ? args[1].points : NULL,
-                                    &v, &out->list[1], &out->list[2], err);
+    he_status status =
+        he_face_poke(m, (he_face){args[FACE_POKE_FACE].id},
+                     args[FACE_POKE_POSITION].given ? args[FACE_POKE_POSITION].points : NULL, &v,
+                     &out->list[FACE_POKE_OUT_EDGES], &out->list[FACE_POKE_OUT_FACES], err);
     if (status == HE_OK) {
-        he_give(out, 0, v.i);
+        he_give(out, FACE_POKE_OUT_VERTEX, v.i);
     }
     return status;
 }
 
+enum { FACE_TRIANGULATE_FACES };
+enum { FACE_TRIANGULATE_OUT_EDGES, FACE_TRIANGULATE_OUT_FACES, FACE_TRIANGULATE_OUT_DEGENERATE };
+
 static he_status run_face_triangulate(he_mesh *m, const he_arg *args, he_results *out,
                                       he_error *err)
 {
-    return he_face_triangulate(m, args[0].ids, args[0].count, &out->list[0], &out->list[1],
-                               &out->list[2], err);
+    return he_face_triangulate(
+        m, args[FACE_TRIANGULATE_FACES].ids, args[FACE_TRIANGULATE_FACES].count,
+        &out->list[FACE_TRIANGULATE_OUT_EDGES], &out->list[FACE_TRIANGULATE_OUT_FACES],
+        &out->list[FACE_TRIANGULATE_OUT_DEGENERATE], err);
 }
+
+enum { HOLE_FILL_HALFEDGE, HOLE_FILL_METHOD };
+enum { HOLE_FILL_OUT_VERTEX, HOLE_FILL_OUT_EDGES, HOLE_FILL_OUT_FACES };
 
 static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_filled filled;
-    he_status status =
-        he_hole_fill(m, (he_halfedge){args[0].id}, (he_fill)args[1].choice, &filled, err);
+    he_status status = he_hole_fill(m, (he_halfedge){args[HOLE_FILL_HALFEDGE].id},
+                                    (he_fill)args[HOLE_FILL_METHOD].choice, &filled, err);
     if (status == HE_OK) {
-        he_give(out, 0, filled.vertex.i);
-        he_give_list(out, 1, &filled.edges);
-        he_give_list(out, 2, &filled.faces);
+        he_give(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
+        he_give_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
+        he_give_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
         he_filled_clear(&filled);
     }
     return status;
@@ -117,14 +150,14 @@ const he_op he_face_rows[] = {
     {
         .name = "face_add",
         .doc = "Add a face between existing vertices, and the edges that are missing.",
-        .params = {{.name = "vertices",
-                    .type = HE_PARAM_CYCLE,
-                    .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED | HE_WALKS,
-                    .doc = "The corners, counter-clockwise."}},
-        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges, in the order of its sides."}},
+        .params = {[FACE_ADD_VERTICES] = {.name = "vertices",
+                                          .type = HE_PARAM_CYCLE,
+                                          .kind = HE_VERTEX,
+                                          .flags = HE_REQUIRED | HE_WALKS,
+                                          .doc = "The corners, counter-clockwise."}},
+        .results = {[FACE_ADD_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face."},
+                    [FACE_ADD_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                            "The new edges, in the order of its sides."}},
         .refusals = {HE_TOO_FEW_CORNERS, HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_CORNER,
                      HE_INTERIOR_VERTEX, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN},
         .change = {0, HE_VARIES, 1},
@@ -133,15 +166,16 @@ const he_op he_face_rows[] = {
     {
         .name = "face_delete",
         .doc = "Delete faces, and then the edges and vertices that have no face left.",
-        .params = {{.name = "face",
-                    .plural = "faces",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_FACE,
-                    .flags = HE_REQUIRED,
-                    .doc = "The faces to delete."},
-                   {.name = "keep_isolated",
-                    .type = HE_PARAM_FLAG,
-                    .doc = "Keep vertices that are left without a face."}},
+        .params =
+            {[FACE_DELETE_FACES] = {.name = "face",
+                                    .plural = "faces",
+                                    .type = HE_PARAM_ELEMENTS,
+                                    .kind = HE_FACE,
+                                    .flags = HE_REQUIRED,
+                                    .doc = "The faces to delete."},
+             [FACE_DELETE_KEEP_ISOLATED] = {.name = "keep_isolated",
+                                            .type = HE_PARAM_FLAG,
+                                            .doc = "Keep vertices that are left without a face."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -151,37 +185,43 @@ const he_op he_face_rows[] = {
     {
         .name = "face_split",
         .doc = "Cut a face in two along a diagonal between two of its corners.",
-        .params = {{.name = "face",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_FACE,
-                    .flags = HE_REQUIRED | HE_WALKS,
-                    .doc = "The face to cut. The part left of the diagonal keeps the id."},
-                   {.name = "from",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED,
-                    .group = 'f',
-                    .doc = "The corner where the diagonal begins."},
-                   {.name = "from_halfedge",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_HALFEDGE,
-                    .flags = HE_REQUIRED,
-                    .group = 'f',
-                    .doc = "The same corner, given as the half-edge of the face that leaves it."},
-                   {.name = "to",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED,
-                    .group = 't',
-                    .doc = "The corner where the diagonal ends."},
-                   {.name = "to_halfedge",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_HALFEDGE,
-                    .flags = HE_REQUIRED,
-                    .group = 't',
-                    .doc = "The same corner, given as the half-edge of the face that leaves it."}},
-        .results = {{"edge", HE_RESULT_ELEMENT, HE_EDGE, "The diagonal."},
-                    {"face", HE_RESULT_ELEMENT, HE_FACE, "The new face, right of the diagonal."}},
+        .params = {[FACE_SPLIT_FACE] =
+                       {.name = "face",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_FACE,
+                        .flags = HE_REQUIRED | HE_WALKS,
+                        .doc = "The face to cut. The part left of the diagonal keeps the id."},
+                   [FACE_SPLIT_FROM] = {.name = "from",
+                                        .type = HE_PARAM_ELEMENT,
+                                        .kind = HE_VERTEX,
+                                        .flags = HE_REQUIRED,
+                                        .group = 'f',
+                                        .doc = "The corner where the diagonal begins."},
+                   [FACE_SPLIT_FROM_HALFEDGE] =
+                       {.name = "from_halfedge",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_HALFEDGE,
+                        .flags = HE_REQUIRED,
+                        .group = 'f',
+                        .doc =
+                            "The same corner, given as the half-edge of the face that leaves it."},
+                   [FACE_SPLIT_TO] = {.name = "to",
+                                      .type = HE_PARAM_ELEMENT,
+                                      .kind = HE_VERTEX,
+                                      .flags = HE_REQUIRED,
+                                      .group = 't',
+                                      .doc = "The corner where the diagonal ends."},
+                   [FACE_SPLIT_TO_HALFEDGE] =
+                       {.name = "to_halfedge",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_HALFEDGE,
+                        .flags = HE_REQUIRED,
+                        .group = 't',
+                        .doc =
+                            "The same corner, given as the half-edge of the face that leaves it."}},
+        .results = {[FACE_SPLIT_OUT_EDGE] = {"edge", HE_RESULT_ELEMENT, HE_EDGE, "The diagonal."},
+                    [FACE_SPLIT_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE,
+                                             "The new face, right of the diagonal."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_A_CORNER, HE_SAME_CORNER,
                      HE_ADJACENT_CORNERS, HE_DOUBLED_EDGE},
         .change = {0, 1, 1},
@@ -190,12 +230,14 @@ const he_op he_face_rows[] = {
     {
         .name = "face_join",
         .doc = "Delete an edge and merge its two faces. The inverse of face_split.",
-        .params = {{.name = "edge",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_EDGE,
-                    .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-                    .doc = "The edge to delete. The face of its first half-edge stays."}},
-        .results = {{"face", HE_RESULT_ELEMENT, HE_FACE, "The face that stays."}},
+        .params = {[FACE_JOIN_EDGE] =
+                       {.name = "edge",
+                        .type = HE_PARAM_ELEMENT,
+                        .kind = HE_EDGE,
+                        .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                        .doc = "The edge to delete. The face of its first half-edge stays."}},
+        .results = {[FACE_JOIN_OUT_FACE] = {"face", HE_RESULT_ELEMENT, HE_FACE,
+                                            "The face that stays."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_BOUNDARY_EDGE, HE_SHARED_BOUNDARY,
                      HE_LOCKED_ELEMENT},
         .change = {0, -1, -1},
@@ -204,19 +246,25 @@ const he_op he_face_rows[] = {
     {
         .name = "face_poke",
         .doc = "Divide a face into triangles around a new vertex.",
-        .params = {{.name = "face",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_FACE,
-                    .flags = HE_REQUIRED,
-                    .doc =
-                        "The face to divide. The triangle at its stored half-edge keeps the id."},
-                   {.name = "position",
-                    .type = HE_PARAM_POINT,
-                    .doc = "Where the vertex is placed. Default: the mean of the corners."}},
-        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges, beginning at the corner of the stored half-edge."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces, in the same order."}},
+        .params =
+            {[FACE_POKE_FACE] =
+                 {.name = "face",
+                  .type = HE_PARAM_ELEMENT,
+                  .kind = HE_FACE,
+                  .flags =
+                      HE_REQUIRED,
+                  .doc = "The face to divide. The triangle at its stored half-edge keeps the id."},
+             [FACE_POKE_POSITION] =
+                 {.name = "position",
+                  .type = HE_PARAM_POINT,
+                  .doc = "Where the vertex is placed. Default: the mean of the corners."}},
+        .results =
+            {[FACE_POKE_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX, "The new vertex."},
+             [FACE_POKE_OUT_EDGES] =
+                 {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                  "The new edges, beginning at the corner of the stored half-edge."},
+             [FACE_POKE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                      "The new faces, in the same order."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT},
         .change = {1, HE_VARIES, HE_VARIES},
         .run = run_face_poke,
@@ -224,19 +272,22 @@ const he_op he_face_rows[] = {
     {
         .name = "face_triangulate",
         .doc = "Cut faces into triangles by diagonals.",
-        .params =
-            {{.name = "face",
-              .plural = "faces",
-              .type = HE_PARAM_ELEMENTS,
-              .kind = HE_FACE,
-              .flags = HE_REQUIRED,
-              .doc =
-                  "The faces to cut. In each, the triangle at its stored half-edge keeps the id."}},
-        .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
-                    {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
-                     "Faces in which a triangle has no area or is turned over, as seen in the "
-                     "plane of the face."}},
+        .params = {[FACE_TRIANGULATE_FACES] = {.name = "face",
+                                               .plural = "faces",
+                                               .type = HE_PARAM_ELEMENTS,
+                                               .kind = HE_FACE,
+                                               .flags = HE_REQUIRED,
+                                               .doc = "The faces to cut. In each, the triangle at "
+                                                      "its stored half-edge keeps the id."}},
+        .results =
+            {[FACE_TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                             "The diagonals."},
+             [FACE_TRIANGULATE_OUT_FACES] = {"faces",
+                                             HE_RESULT_ELEMENTS, HE_FACE, "The new faces."},
+             [FACE_TRIANGULATE_OUT_DEGENERATE] =
+                 {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                  "Faces in which a triangle has no area or is turned over, as seen in the "
+                  "plane of the face."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 40,
@@ -245,20 +296,23 @@ const he_op he_face_rows[] = {
     {
         .name = "hole_fill",
         .doc = "Fill a hole.",
-        .params = {{.name = "halfedge",
-                    .type = HE_PARAM_ELEMENT,
-                    .kind = HE_HALFEDGE,
-                    .flags = HE_REQUIRED,
-                    .doc = "A boundary half-edge of the hole."},
-                   {.name = "method",
-                    .type = HE_PARAM_CHOICE,
-                    .choices = fill_methods,
-                    .doc = "Fill it with one face, with triangles around a new vertex, or with "
-                           "triangles between its corners."}},
-        .results = {{"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
-                     "The new vertex, or null if there is none."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The new edges."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new faces."}},
+        .params = {[HOLE_FILL_HALFEDGE] = {.name = "halfedge",
+                                           .type = HE_PARAM_ELEMENT,
+                                           .kind = HE_HALFEDGE,
+                                           .flags = HE_REQUIRED,
+                                           .doc = "A boundary half-edge of the hole."},
+                   [HOLE_FILL_METHOD] =
+                       {.name = "method",
+                        .type = HE_PARAM_CHOICE,
+                        .choices = fill_methods,
+                        .doc = "Fill it with one face, with triangles around a new vertex, or with "
+                               "triangles between its corners."}},
+        .results = {[HOLE_FILL_OUT_VERTEX] = {"vertex", HE_RESULT_ELEMENT, HE_VERTEX,
+                                              "The new vertex, or null if there is none."},
+                    [HOLE_FILL_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                             "The new edges."},
+                    [HOLE_FILL_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                             "The new faces."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_NOT_BOUNDARY, HE_REPEATED_CORNER,
                      HE_DOUBLED_EDGE},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},

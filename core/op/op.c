@@ -233,31 +233,31 @@ he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARA
     return status;
 }
 
-void he_give(he_results *out, size_t i, uint32_t id)
+void he_give(he_results *out, size_t slot, uint32_t id)
 {
-    out->id[i] = id;
+    out->id[slot] = id;
 }
 
-void he_give_number(he_results *out, size_t i, double number)
+void he_give_number(he_results *out, size_t slot, double number)
 {
-    out->number[i] = number;
+    out->number[slot] = number;
 }
 
-he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err)
+he_status he_give_room(he_results *out, size_t slot, size_t count, he_error *err)
 {
-    return he_ids_reserve(&out->list[i], count, err);
+    return he_ids_reserve(&out->list[slot], count, err);
 }
 
-void he_give_add(he_results *out, size_t i, uint32_t id)
+void he_give_add(he_results *out, size_t slot, uint32_t id)
 {
-    he_ids *list = &out->list[i];
+    he_ids *list = &out->list[slot];
     assert(list->count < list->capacity);
     list->ids[list->count++] = id;
 }
 
-void he_give_list(he_results *out, size_t i, he_ids *takes)
+void he_give_list(he_results *out, size_t slot, he_ids *takes)
 {
-    he_ids_clear(&out->list[i]);
-    out->list[i] = *takes;
+    he_ids_clear(&out->list[slot]);
+    out->list[slot] = *takes;
     *takes = (he_ids){0};
 }

@@ -4,21 +4,25 @@
 
 #include <math.h>
 
+enum { SUBDIVIDE_SCHEME, SUBDIVIDE_STEPS };
+enum { SUBDIVIDE_OUT_VERTICES, SUBDIVIDE_OUT_EDGES, SUBDIVIDE_OUT_FACES };
+
 static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_subdivide_counts counts[HE_SUBDIVIDE_STEPS];
-    unsigned steps = (unsigned)args[1].number;
-    for (size_t i = 0; i < 3; i++) {
+    unsigned steps = (unsigned)args[SUBDIVIDE_STEPS].number;
+    for (size_t i = SUBDIVIDE_OUT_VERTICES; i <= SUBDIVIDE_OUT_FACES; i++) {
         he_status status = he_give_room(out, i, steps, err);
         if (status != HE_OK) {
             return status;
         }
     }
-    he_status status = he_subdivide(m, (he_scheme)args[0].choice, steps, counts, err);
+    he_status status =
+        he_subdivide(m, (he_scheme)args[SUBDIVIDE_SCHEME].choice, steps, counts, err);
     for (unsigned i = 0; i < steps && status == HE_OK; i++) {
-        he_give_add(out, 0, counts[i].vertices);
-        he_give_add(out, 1, counts[i].edges);
-        he_give_add(out, 2, counts[i].faces);
+        he_give_add(out, SUBDIVIDE_OUT_VERTICES, counts[i].vertices);
+        he_give_add(out, SUBDIVIDE_OUT_EDGES, counts[i].edges);
+        he_give_add(out, SUBDIVIDE_OUT_FACES, counts[i].faces);
     }
     return status;
 }
@@ -27,12 +31,13 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
  * or three. */
 static double subdivide_growth(const he_arg *args)
 {
-    return pow(args[0].choice == HE_SQRT3 ? 3 : 4, args[1].number);
+    return pow(args[SUBDIVIDE_SCHEME].choice == HE_SQRT3 ? 3 : 4, args[SUBDIVIDE_STEPS].number);
 }
 
 static he_status foresee_subdivide(const he_mesh *m, const he_arg *args, he_error *err)
 {
-    return he_subdivide_fits(m, (he_scheme)args[0].choice, (unsigned)args[1].number, err);
+    return he_subdivide_fits(m, (he_scheme)args[SUBDIVIDE_SCHEME].choice,
+                             (unsigned)args[SUBDIVIDE_STEPS].number, err);
 }
 
 /* The names of the values of he_scheme, in their order. */
@@ -44,26 +49,30 @@ const he_op he_refine_rows[] = {
         .doc = "Refine the whole mesh by a subdivision scheme: finer faces and, except with "
                "linear, a smoother surface.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "scheme",
-                    .type = HE_PARAM_CHOICE,
-                    .fallback = HE_CATMULL_CLARK,
-                    .choices = schemes,
-                    .doc = "loop: each triangle becomes 4. catmull_clark: each face becomes quads. "
-                           "linear: each triangle becomes 4, each other face becomes quads, and no "
-                           "vertex moves. sqrt3: each triangle becomes 3. Boundaries, and edges "
-                           "whose bool attribute `feature` is true, are smoothed as curves; "
-                           "vertices whose `locked` is true do not move."},
-                   {.name = "steps",
-                    .type = HE_PARAM_NUMBER,
-                    .flags = HE_RANGE | HE_WHOLE,
-                    .min = 1,
-                    .max = HE_SUBDIVIDE_STEPS,
-                    .fallback = 1,
-                    .doc = "How many steps."}},
-        .results = {{"vertices", HE_RESULT_COUNTS, HE_VERTEX,
-                     "The number of vertices after each step."},
-                    {"edges", HE_RESULT_COUNTS, HE_EDGE, "The number of edges after each step."},
-                    {"faces", HE_RESULT_COUNTS, HE_FACE, "The number of faces after each step."}},
+        .params =
+            {[SUBDIVIDE_SCHEME] =
+                 {.name = "scheme",
+                  .type = HE_PARAM_CHOICE,
+                  .fallback = HE_CATMULL_CLARK,
+                  .choices = schemes,
+                  .doc = "loop: each triangle becomes 4. catmull_clark: each face becomes quads. "
+                         "linear: each triangle becomes 4, each other face becomes quads, and no "
+                         "vertex moves. sqrt3: each triangle becomes 3. Boundaries, and edges "
+                         "whose bool attribute `feature` is true, are smoothed as curves; "
+                         "vertices whose `locked` is true do not move."},
+             [SUBDIVIDE_STEPS] = {.name = "steps",
+                                  .type = HE_PARAM_NUMBER,
+                                  .flags = HE_RANGE | HE_WHOLE,
+                                  .min = 1,
+                                  .max = HE_SUBDIVIDE_STEPS,
+                                  .fallback = 1,
+                                  .doc = "How many steps."}},
+        .results = {[SUBDIVIDE_OUT_VERTICES] = {"vertices", HE_RESULT_COUNTS, HE_VERTEX,
+                                                "The number of vertices after each step."},
+                    [SUBDIVIDE_OUT_EDGES] = {"edges", HE_RESULT_COUNTS, HE_EDGE,
+                                             "The number of edges after each step."},
+                    [SUBDIVIDE_OUT_FACES] = {"faces", HE_RESULT_COUNTS, HE_FACE,
+                                             "The number of faces after each step."}},
         .refusals = {HE_LIMIT, HE_NOT_TRIANGLE, HE_DOUBLED_EDGE, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .growth = subdivide_growth,

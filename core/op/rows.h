@@ -24,16 +24,26 @@ const he_op *he_table_row(size_t i);
 /* Returns the number of a row of the table. */
 size_t he_table_number(const he_op *op);
 
-/* Sets result i of an operation to one element, which may be HE_NONE, or to one choice. */
-void he_give(he_results *out, size_t i, uint32_t id);
-void he_give_number(he_results *out, size_t i, double number);
-/* Makes room for result i, a list of at most `count` ids. It must be called before the edit,
- * because nothing may fail after it.
+/* An adapter, run_NAME, reads the arguments of the operation NAME and gives its results by slots:
+ *
+ *     enum { EDGE_BISECT_EDGE, EDGE_BISECT_T };                    indices of args
+ *     enum { EDGE_BISECT_OUT_VERTEX, EDGE_BISECT_OUT_EDGE };       indices of results
+ *
+ * The row places each parameter and result with its slot, `[EDGE_BISECT_T] = {.name = "t", ...}`,
+ * so that an adapter and its row cannot mean different ones. A slot is named after the operation
+ * and the parameter (its plural if there is one) or, behind OUT, the result: .ci/lint-slots
+ * compares the names. */
+
+/* Sets the result in a slot to one element, which may be HE_NONE, or to one choice. */
+void he_give(he_results *out, size_t slot, uint32_t id);
+void he_give_number(he_results *out, size_t slot, double number);
+/* Makes room for the result in a slot, a list of at most `count` ids. It must be called before the
+ * edit, because nothing may fail after it.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_give_room(he_results *out, size_t i, size_t count, he_error *err);
-/* Appends to list i. */
-void he_give_add(he_results *out, size_t i, uint32_t id);
-/* Makes `takes` the whole list of result i; `takes` is empty afterwards. */
-void he_give_list(he_results *out, size_t i, he_ids *takes);
+HE_NODISCARD he_status he_give_room(he_results *out, size_t slot, size_t count, he_error *err);
+/* Appends to the list in a slot. */
+void he_give_add(he_results *out, size_t slot, uint32_t id);
+/* Makes `takes` the whole list in a slot; `takes` is empty afterwards. */
+void he_give_list(he_results *out, size_t slot, he_ids *takes);
 
 #endif

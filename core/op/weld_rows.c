@@ -6,53 +6,71 @@
 
 static const char *const positions[] = {"mean", "lowest", NULL};
 
-static he_status weld_near(he_mesh *m, double tolerance, he_merge_place place, he_results *out,
-                           he_error *err)
+/* Merges the vertices that the client names, and lists the vertex that stays if others were merged
+ * into it. */
+static he_status weld_named(he_mesh *m, const he_arg *named, he_merge_place place, he_ids *kept,
+                            uint64_t *moved, he_error *err)
 {
-    uint64_t moved = 0;
-    he_status status = he_weld_near(m, tolerance, place, &out->list[0], &moved, err);
+    he_vertex into;
+    he_status status = he_ids_reserve(kept, 1, err);
     if (status == HE_OK) {
-        he_give_number(out, 1, (double)moved);
+        status = he_vertex_weld(m, named->ids, named->count, place, &into, moved, err);
+    }
+    if (status == HE_OK && named->count > 1) {
+        kept->ids[kept->count++] = into.i;
     }
     return status;
 }
+
+enum { VERTEX_WELD_VERTICES, VERTEX_WELD_TOLERANCE, VERTEX_WELD_POSITION };
+enum { VERTEX_WELD_OUT_VERTICES, VERTEX_WELD_OUT_MOVED };
 
 static he_status run_vertex_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    he_merge_place place = args[2].choice == 0 ? HE_MERGE_MEAN : HE_MERGE_INTO;
+    he_merge_place place = args[VERTEX_WELD_POSITION].choice == 0 ? HE_MERGE_MEAN : HE_MERGE_INTO;
+    he_ids *kept = &out->list[VERTEX_WELD_OUT_VERTICES];
     uint64_t moved = 0;
-    if (!args[0].given) {
-        return weld_near(m, args[1].number, place, out, err);
-    }
-    he_vertex into;
-    he_status status = he_give_room(out, 0, 1, err);
+    he_status status =
+        args[VERTEX_WELD_VERTICES].given
+            ? weld_named(m, &args[VERTEX_WELD_VERTICES], place, kept, &moved, err)
+            : he_weld_near(m, args[VERTEX_WELD_TOLERANCE].number, place, kept, &moved, err);
     if (status == HE_OK) {
-        status = he_vertex_weld(m, args[0].ids, args[0].count, place, &into, &moved, err);
-    }
-    if (status == HE_OK && args[0].count > 1) {
-        he_give_add(out, 0, into.i);
-    }
-    if (status == HE_OK) {
-        he_give_number(out, 1, (double)moved);
+        he_give_number(out, VERTEX_WELD_OUT_MOVED, (double)moved);
     }
     return status;
 }
 
+enum { WELD_TOLERANCE };
+enum { WELD_OUT_VERTICES, WELD_OUT_MOVED };
+
 static he_status run_weld(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    return weld_near(m, args[0].number, HE_MERGE_MEAN, out, err);
+    uint64_t moved = 0;
+    he_status status = he_weld_near(m, args[WELD_TOLERANCE].number, HE_MERGE_MEAN,
+                                    &out->list[WELD_OUT_VERTICES], &moved, err);
+    if (status == HE_OK) {
+        he_give_number(out, WELD_OUT_MOVED, (double)moved);
+    }
+    return status;
 }
+
+enum { VERTEX_SEPARATE_VERTICES };
+enum { VERTEX_SEPARATE_OUT_VERTICES };
 
 static he_status run_vertex_separate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
-    return he_vertex_separate(m, args[0].ids, args[0].count, &out->list[0], err);
+    return he_vertex_separate(m, args[VERTEX_SEPARATE_VERTICES].ids,
+                              args[VERTEX_SEPARATE_VERTICES].count,
+                              &out->list[VERTEX_SEPARATE_OUT_VERTICES], err);
 }
+
+enum { SEPARATE_BOWTIES_OUT_VERTICES };
 
 static he_status run_separate_bowties(he_mesh *m, const he_arg *args, he_results *out,
                                       he_error *err)
 {
     (void)args;
-    return he_separate_bowties(m, &out->list[0], err);
+    return he_separate_bowties(m, &out->list[SEPARATE_BOWTIES_OUT_VERTICES], err);
 }
 
 static he_status run_delete_isolated(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -68,29 +86,32 @@ const he_op he_weld_rows[] = {
         .doc = "Merge vertices, and the boundary edges that then coincide. Faces left with fewer "
                "than three corners are deleted, and all but the first of faces that become equal.",
         .params =
-            {{.name = "vertex",
-              .plural = "vertices",
-              .type = HE_PARAM_ELEMENTS,
-              .kind = HE_VERTEX,
-              .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
-              .group = 'w',
-              .doc = "The vertices to merge. The lowest id stays."},
-             {.name = "tolerance",
-              .type = HE_PARAM_NUMBER,
-              .flags = HE_REQUIRED | HE_COSTS_MESH,
-              .group = 'w',
-              .doc = "Each vertex is merged into the lowest one within this distance that was not "
-                     "itself merged."},
-             {.name = "position",
-              .type = HE_PARAM_CHOICE,
-              .choices = positions,
-              .doc =
-                  "Where the merged vertex is placed: at the mean, or where the lowest one was."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The vertices that others were merged into."},
-                    {"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices became values of corners, because merged "
-                     "vertices had different ones."}},
+            {[VERTEX_WELD_VERTICES] = {.name = "vertex",
+                                       .plural = "vertices",
+                                       .type = HE_PARAM_ELEMENTS,
+                                       .kind = HE_VERTEX,
+                                       .flags = HE_REQUIRED | HE_REACHES | HE_WALKS,
+                                       .group = 'w',
+                                       .doc = "The vertices to merge. The lowest id stays."},
+             [VERTEX_WELD_TOLERANCE] =
+                 {.name = "tolerance",
+                  .type = HE_PARAM_NUMBER,
+                  .flags = HE_REQUIRED | HE_COSTS_MESH,
+                  .group = 'w',
+                  .doc =
+                      "Each vertex is merged into the lowest one within this distance that was not "
+                      "itself merged."},
+             [VERTEX_WELD_POSITION] = {.name = "position",
+                                       .type = HE_PARAM_CHOICE,
+                                       .choices = positions,
+                                       .doc = "Where the merged vertex is placed: at the mean, or "
+                                              "where the lowest one was."}},
+        .results = {[VERTEX_WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                                  "The vertices that others were merged into."},
+                    [VERTEX_WELD_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many values of vertices became values of corners, because merged "
+                         "vertices had different ones."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_BAD_VALUE,
                      HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION, HE_CLOSED_FAN,
                      HE_LOCKED_ELEMENT},
@@ -101,14 +122,17 @@ const he_op he_weld_rows[] = {
     {
         .name = "vertex_separate",
         .doc = "Split bow-ties: give each fan of faces a vertex of its own, in the same place.",
-        .params = {{.name = "vertex",
-                    .plural = "vertices",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_VERTEX,
-                    .flags = HE_REQUIRED,
-                    .doc = "The vertices to split. Vertices that are not bow-ties do not change."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices. `parents` tells which vertex each comes from."}},
+        .params =
+            {[VERTEX_SEPARATE_VERTICES] =
+                 {.name = "vertex",
+                  .plural = "vertices",
+                  .type = HE_PARAM_ELEMENTS,
+                  .kind = HE_VERTEX,
+                  .flags = HE_REQUIRED,
+                  .doc = "The vertices to split. Vertices that are not bow-ties do not change."}},
+        .results = {[VERTEX_SEPARATE_OUT_VERTICES] =
+                        {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                         "The new vertices. `parents` tells which vertex each comes from."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT,
                      HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
@@ -120,16 +144,19 @@ const he_op he_weld_rows[] = {
         .doc = "Merge vertices that are close together, and the edges and faces that then "
                "coincide: vertex_weld for the whole mesh.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "tolerance",
-                    .type = HE_PARAM_NUMBER,
-                    .flags = HE_REQUIRED,
-                    .doc = "Each vertex is merged into the lowest one within this distance that "
-                           "was not itself merged; 0 merges equal positions."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The vertices that others were merged into."},
-                    {"moved", HE_RESULT_NUMBER, 0,
-                     "How many values of vertices became values of corners, because merged "
-                     "vertices had different ones."}},
+        .params = {[WELD_TOLERANCE] =
+                       {.name = "tolerance",
+                        .type = HE_PARAM_NUMBER,
+                        .flags = HE_REQUIRED,
+                        .doc =
+                            "Each vertex is merged into the lowest one within this distance that "
+                            "was not itself merged; 0 merges equal positions."}},
+        .results = {[WELD_OUT_VERTICES] = {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                                           "The vertices that others were merged into."},
+                    [WELD_OUT_MOVED] =
+                        {"moved", HE_RESULT_NUMBER, 0,
+                         "How many values of vertices became values of corners, because merged "
+                         "vertices had different ones."}},
         .refusals = {HE_BAD_VALUE, HE_REPEATED_CORNER, HE_NONMANIFOLD_EDGE, HE_ORIENTATION,
                      HE_CLOSED_FAN, HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
@@ -140,8 +167,9 @@ const he_op he_weld_rows[] = {
         .name = "separate_bowties",
         .doc = "Split every bow-tie: give each fan of faces a vertex of its own.",
         .size = HE_OP_WHOLE,
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices. `parents` tells which vertex each comes from."}},
+        .results = {[SEPARATE_BOWTIES_OUT_VERTICES] =
+                        {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                         "The new vertices. `parents` tells which vertex each comes from."}},
         .refusals = {HE_LOCKED_ELEMENT},
         .change = {HE_VARIES, 0, 0},
         .pace = 4,

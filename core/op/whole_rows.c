@@ -5,16 +5,22 @@
 #include "edit/whole/reverse.h"
 #include "edit/whole/triangulate.h"
 
+enum { TRIANGULATE_OUT_EDGES, TRIANGULATE_OUT_FACES, TRIANGULATE_OUT_DEGENERATE };
+
 static he_status run_triangulate(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     (void)args;
-    return he_triangulate(m, &out->list[0], &out->list[1], &out->list[2], err);
+    return he_triangulate(m, &out->list[TRIANGULATE_OUT_EDGES], &out->list[TRIANGULATE_OUT_FACES],
+                          &out->list[TRIANGULATE_OUT_DEGENERATE], err);
 }
+
+enum { REVERSE_FACES };
 
 static he_status run_reverse(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     (void)out;
-    return he_reverse(m, args[0].given ? args[0].ids : NULL, args[0].count, err);
+    return he_reverse(m, args[REVERSE_FACES].given ? args[REVERSE_FACES].ids : NULL,
+                      args[REVERSE_FACES].count, err);
 }
 
 static he_status run_dual(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
@@ -24,14 +30,17 @@ static he_status run_dual(he_mesh *m, const he_arg *args, he_results *out, he_er
     return he_dual(m, err);
 }
 
+enum { APPEND_MESH };
+enum { APPEND_OUT_VERTICES, APPEND_OUT_EDGES, APPEND_OUT_FACES };
+
 static he_status run_append(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_appended appended;
-    he_status status = he_append(m, args[0].mesh, &appended, err);
+    he_status status = he_append(m, args[APPEND_MESH].mesh, &appended, err);
     if (status == HE_OK) {
-        he_give_list(out, 0, &appended.vertices);
-        he_give_list(out, 1, &appended.edges);
-        he_give_list(out, 2, &appended.faces);
+        he_give_list(out, APPEND_OUT_VERTICES, &appended.vertices);
+        he_give_list(out, APPEND_OUT_EDGES, &appended.edges);
+        he_give_list(out, APPEND_OUT_FACES, &appended.faces);
         he_appended_clear(&appended);
     }
     return status;
@@ -42,10 +51,13 @@ const he_op he_whole_rows[] = {
         .name = "triangulate",
         .doc = "Cut all faces into triangles.",
         .size = HE_OP_WHOLE,
-        .results = {{"edges", HE_RESULT_ELEMENTS, HE_EDGE, "The diagonals."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE, "The new triangles."},
-                    {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
-                     "Faces in which a triangle has no area or is turned over."}},
+        .results = {[TRIANGULATE_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                               "The diagonals."},
+                    [TRIANGULATE_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                               "The new triangles."},
+                    [TRIANGULATE_OUT_DEGENERATE] =
+                        {"degenerate", HE_RESULT_ELEMENTS, HE_FACE,
+                         "Faces in which a triangle has no area or is turned over."}},
         .refusals = {HE_DOUBLED_EDGE},
         .change = {0, HE_VARIES, HE_VARIES},
         .pace = 5,
@@ -55,11 +67,13 @@ const he_op he_whole_rows[] = {
         .name = "reverse",
         .doc = "Reverse the orientation of faces, and their attributes `normal`.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "face",
-                    .plural = "faces",
-                    .type = HE_PARAM_ELEMENTS,
-                    .kind = HE_FACE,
-                    .doc = "The faces to reverse, which must be whole components. Default: all."}},
+        .params = {[REVERSE_FACES] =
+                       {.name = "face",
+                        .plural = "faces",
+                        .type = HE_PARAM_ELEMENTS,
+                        .kind = HE_FACE,
+                        .doc =
+                            "The faces to reverse, which must be whole components. Default: all."}},
         .refusals = {HE_NO_SUCH_ELEMENT, HE_DELETED_ELEMENT, HE_REPEATED_ELEMENT, HE_ORIENTATION,
                      HE_BOWTIE},
         .change = {0, 0, 0},
@@ -81,17 +95,20 @@ const he_op he_whole_rows[] = {
         .name = "append",
         .doc = "Add a copy of another mesh, with its attributes and materials.",
         .size = HE_OP_WHOLE,
-        .params = {{.name = "mesh",
-                    .type = HE_PARAM_MESH,
-                    .flags = HE_REQUIRED,
-                    .doc = "The id of the other mesh. It is copied as it was when the request "
-                           "began, and does not change."}},
-        .results = {{"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
-                     "The new vertices, in the order of the ids in the other mesh."},
-                    {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
-                     "The new edges, in the order of the ids in the other mesh."},
-                    {"faces", HE_RESULT_ELEMENTS, HE_FACE,
-                     "The new faces, in the order of the ids in the other mesh."}},
+        .params = {[APPEND_MESH] =
+                       {.name = "mesh",
+                        .type = HE_PARAM_MESH,
+                        .flags = HE_REQUIRED,
+                        .doc = "The id of the other mesh. It is copied as it was when the request "
+                               "began, and does not change."}},
+        .results =
+            {[APPEND_OUT_VERTICES] =
+                 {"vertices", HE_RESULT_ELEMENTS, HE_VERTEX,
+                  "The new vertices, in the order of the ids in the other mesh."},
+             [APPEND_OUT_EDGES] = {"edges", HE_RESULT_ELEMENTS, HE_EDGE,
+                                   "The new edges, in the order of the ids in the other mesh."},
+             [APPEND_OUT_FACES] = {"faces", HE_RESULT_ELEMENTS, HE_FACE,
+                                   "The new faces, in the order of the ids in the other mesh."}},
         .refusals = {HE_ATTRIBUTE_CLASH, HE_LIMIT},
         .change = {HE_VARIES, HE_VARIES, HE_VARIES},
         .pace = 2,
