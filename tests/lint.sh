@@ -46,10 +46,13 @@ includes() { awk -f .ci/lint-includes $(sources); }
 names() { awk -f .ci/lint-names $(sources); }
 # shellcheck disable=SC2046
 structs() { awk -f .ci/lint-structs $(sources); }
+# shellcheck disable=SC2046
+slots() { awk -f .ci/lint-slots $(sources); }
 
 expect 'the rooms are in order as they are' '' includes
 expect 'every name is defined once as it is' '' names
 expect 'every struct of functions is listed as it is' '' structs
+expect 'every slot is named after what it holds as it is' '' slots
 
 mkdir core/attic
 echo 'int nothing;' >core/attic/loose.c
@@ -74,6 +77,31 @@ cp "$OLDPWD/core/repair/fill.c" core/repair/fill.c
 printf '\ntypedef struct api_planted {\n    void (*begin)(void *self);\n    void (*end)(void *self);\n} api_planted;\n' >>api/limits.h
 expect 'a struct of functions that is not listed is found' 'api_planted is a struct' structs
 cp "$OLDPWD/api/limits.h" api/limits.h
+
+# plant_slot NAME WORDS SCRIPT: changes the rows of edges by a script of sed, which must be found
+plant_slot() {
+    sed -i "$3" core/op/edge_rows.c
+    expect "$1" "$2" slots
+    cp "$OLDPWD/core/op/edge_rows.c" core/op/edge_rows.c
+}
+plant_slot 'a bare number for an argument is found' 'a bare number, 0, stands for an argument' \
+    's/args\[EDGE_FLIP_EDGE\]/args[0]/'
+plant_slot 'a bare number for a result is found' 'a bare number, 0, stands for a result' \
+    's/he_give(out, EDGE_FLIP_OUT_EDGE,/he_give(out, 0,/'
+plant_slot 'a bare number for a list of results is found' 'a bare number, 2, stands for a result' \
+    's/he_give_add(out, EDGE_SPLIT_OUT_FACES,/he_give_add(out, 2,/'
+plant_slot "another operation's slot is found" 'EDGE_JOIN_OUT_EDGE is not a slot of the results of run_edge_flip' \
+    's/he_give(out, EDGE_FLIP_OUT_EDGE,/he_give(out, EDGE_JOIN_OUT_EDGE,/'
+plant_slot 'a slot of results among the arguments is found' 'EDGE_FLIP_OUT_EDGE is not a slot of the arguments' \
+    's/args\[EDGE_FLIP_EDGE\]/args[EDGE_FLIP_OUT_EDGE]/'
+plant_slot 'a parameter in the slot of another is found' '"to" is placed in EDGE_COLLAPSE_T,' \
+    's/\[EDGE_COLLAPSE_TO\] =/[EDGE_COLLAPSE_T] =/'
+plant_slot 'a parameter without its slot is found' '"width" is placed without its slot, EDGE_BEVEL_WIDTH' \
+    's/\[EDGE_BEVEL_WIDTH\] =//'
+plant_slot 'a renamed result is found' '"side" is placed in EDGE_BEVEL_OUT_FACE' \
+    's/\(EDGE_BEVEL_OUT_FACE\] = {\)"face"/\1"side"/'
+plant_slot 'a slot that no row places is found' 'no row places EDGE_FLIP_SPARE' \
+    's/enum { EDGE_FLIP_EDGE/&, EDGE_FLIP_SPARE/'
 
 words() { sh .ci/lint-words api/read/elements.c; }
 expect 'a handler that takes its mesh as it is given passes' '' words
