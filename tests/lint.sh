@@ -48,11 +48,13 @@ names() { awk -f .ci/lint-names $(sources); }
 structs() { awk -f .ci/lint-structs $(sources); }
 # shellcheck disable=SC2046
 slots() { awk -f .ci/lint-slots $(sources); }
+parameters() { python3 .ci/lint-parameters $(sources); }
 
 expect 'the rooms are in order as they are' '' includes
 expect 'every name is defined once as it is' '' names
 expect 'every struct of functions is listed as it is' '' structs
 expect 'every slot is named after what it holds as it is' '' slots
+expect 'functions take few parameters, or are listed, as it is' '' parameters
 
 mkdir core/attic
 echo 'int nothing;' >core/attic/loose.c
@@ -102,6 +104,14 @@ plant_slot 'a renamed result is found' '"side" is placed in EDGE_BEVEL_OUT_FACE'
     's/\(EDGE_BEVEL_OUT_FACE\] = {\)"face"/\1"side"/'
 plant_slot 'a slot that no row places is found' 'no row places EDGE_FLIP_SPARE' \
     's/enum { EDGE_FLIP_EDGE/&, EDGE_FLIP_SPARE/'
+printf '\nvoid he_planted(const he_mesh *m, int a, int (*b)(int, int), int c, int d, int e,\n                he_error *err);\n' >>core/mesh/walk.h
+expect 'five parameters beside the mesh and the error pass' '' parameters
+printf '\nvoid he_crowded(const he_mesh *m, int a, int (*b)(int, int), int c, int d,\n                int e, int f, he_error *err);\n' >>core/mesh/walk.h
+expect 'a sixth parameter is found' 'he_crowded takes 6 parameters' parameters
+cp "$OLDPWD/core/mesh/walk.h" core/mesh/walk.h
+echo 'core/mesh he_crowded 6' >>.ci/parameters
+expect 'a function that is listed and has few parameters is found' 'he_crowded takes fewer than 6' parameters
+cp "$OLDPWD/.ci/parameters" .ci/parameters
 
 words() { sh .ci/lint-words api/read/elements.c; }
 expect 'a handler that takes its mesh as it is given passes' '' words
