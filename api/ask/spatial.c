@@ -46,15 +46,14 @@ bool api_ray_ask(api_asker *a, const api_in *question)
     static const char *const members[] = {"ray", NULL};
     static const char *const parts[] = {"origin", "direction", "max", NULL};
     api_in ray, in, along;
-    he_vec3 origin, direction;
-    double max;
+    he_ray cast;
     if (!api_in_only(question, members) || !api_in_need(question, "ray", &ray) ||
         !api_in_only(&ray, parts) || !api_in_need(&ray, "origin", &in) ||
-        !api_in_vec3(&in, &origin) || !api_in_need(&ray, "direction", &along) ||
-        !api_in_vec3(&along, &direction) || !read_max(&ray, &max)) {
+        !api_in_vec3(&in, &cast.origin) || !api_in_need(&ray, "direction", &along) ||
+        !api_in_vec3(&along, &cast.direction) || !read_max(&ray, &cast.max)) {
         return false;
     }
-    if (direction.x == 0 && direction.y == 0 && direction.z == 0) {
+    if (cast.direction.x == 0 && cast.direction.y == 0 && cast.direction.z == 0) {
         return api_in_fail(&along, HE_BAD_VALUE, "the ray's direction must not be zero");
     }
     const he_bvh *tree = api_asker_tree(a, question);
@@ -63,7 +62,7 @@ bool api_ray_ask(api_asker *a, const api_in *question)
     }
     he_hit hit;
     he_error err = {0};
-    if (he_bvh_ray(tree, a->mesh, origin, direction, max, &a->budget, &hit, &err) != HE_OK) {
+    if (he_bvh_ray(tree, a->mesh, &cast, &a->budget, &hit, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }
     write_hit(a->out, "hit", &hit);

@@ -48,12 +48,9 @@ static const he_until untils[] = {HE_UNTIL_START, HE_UNTIL_BOUNDARY};
 
 typedef struct path {
     uint32_t from;
-    const he_step *steps;
-    size_t count;
+    he_path_steps steps;
     bool has_repeat;
-    uint64_t repeat;
     const char *until_name; /* NULL: only the count ends the path */
-    he_until until;
 } path;
 
 static bool read_steps(api_asker *a, const api_in *walk, path *out)
@@ -71,9 +68,9 @@ static bool read_steps(api_asker *a, const api_in *walk, path *out)
         if (!api_in_choice(&child, step_names, &step)) {
             return false;
         }
-        steps[out->count++] = (he_step)step;
+        steps[out->steps.count++] = (he_step)step;
     }
-    out->steps = steps;
+    out->steps.list = steps;
     return true;
 }
 
@@ -83,7 +80,7 @@ static bool read_path(api_asker *a, const api_in *walk, path *out)
     api_in in;
     he_kind kind;
     int choice;
-    *out = (path){.repeat = 1, .until = HE_UNTIL_COUNT};
+    *out = (path){.steps = {.repeat = 1, .until = HE_UNTIL_COUNT}};
     if (!api_in_only(walk, members) ||
         !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &out->from) ||
         !read_steps(a, walk, out)) {
@@ -93,12 +90,12 @@ static bool read_path(api_asker *a, const api_in *walk, path *out)
         if (!api_in_choice(&in, until_names, &choice)) {
             return false;
         }
-        out->until = untils[choice];
+        out->steps.until = untils[choice];
         out->until_name = until_names[choice];
-        out->repeat = UINT64_MAX;
+        out->steps.repeat = UINT64_MAX;
     }
     out->has_repeat = api_in_find(walk, "repeat", &in);
-    return !out->has_repeat || api_in_u64(&in, 0, (uint64_t)1 << 53, &out->repeat);
+    return !out->has_repeat || api_in_u64(&in, 0, (uint64_t)1 << 53, &out->steps.repeat);
 }
 
 static void write_path(api_asker *a, const path *p)
@@ -106,12 +103,12 @@ static void write_path(api_asker *a, const path *p)
     begin_answer(a, "path", HE_HALFEDGE, p->from);
     api_out_key(a->out, "path");
     api_out_array_begin(a->out);
-    for (size_t i = 0; i < p->count; i++) {
-        api_out_string(a->out, step_names[p->steps[i]]);
+    for (size_t i = 0; i < p->steps.count; i++) {
+        api_out_string(a->out, step_names[p->steps.list[i]]);
     }
     api_out_array_end(a->out);
     if (p->has_repeat || p->until_name == NULL) {
-        api_out_key_u64(a->out, "repeat", p->repeat);
+        api_out_key_u64(a->out, "repeat", p->steps.repeat);
     }
     if (p->until_name != NULL) {
         api_out_key_string(a->out, "until", p->until_name);
@@ -132,11 +129,12 @@ static bool ask_path(api_asker *a, const api_in *walk)
         return true;
     }
     uint64_t limit = a->on_worker ? api_asker_left(a) : API_MAX_WALK;
-    if (limit == 0 || (p.until == HE_UNTIL_COUNT && p.repeat > limit / p.count)) {
+    if (limit == 0 || (p.steps.until == HE_UNTIL_COUNT && p.steps.repeat > limit / p.steps.count)) {
         return api_asker_exceed(a, walk);
     }
-    if (he_traverse_path(a->mesh, (he_halfedge){p.from}, p.steps, p.count, p.repeat, p.until, limit,
-                         &a->x->watch, &a->first, &err) != HE_OK) {
+    p.steps.limit = limit;
+    if (he_traverse_path(a->mesh, (he_halfedge){p.from}, &p.steps, &a->x->watch, &a->first, &err) !=
+        HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     api_asker_pay(a, a->first.count);
@@ -191,20 +189,21 @@ static uint64_t most_of_flood(const api_asker *a)
     return most < API_MAX_WALK ? (uint64_t)most : API_MAX_WALK;
 }
 
-/* Walks breadth first: fills a->first with elements and a->second with their depths. `limit` = 0 is
- * no limit. */
-static bool flood(api_asker *a, const api_in *walk, he_kind kind, uint32_t from, uint32_t depth,
-                  size_t limit)
+/* Walks breadth first: fills a->first with elements and a->second with their depths. `question` is
+ * what a refusal names. */
+static bool flood(api_asker *a, const api_in *question, const he_breadth_first *asked)
 {
     he_error err = {0};
     size_t most = 1 + (size_t)most_of_flood(a);
-    bool bounded = limit != 0 && limit < most;
-    if (he_traverse_breadth_first(a->mesh, kind, from, depth, bounded ? limit : most, &a->first,
-                                  &a->second, &err) != HE_OK) {
-        return api_asker_refuse(a, walk, &err);
+    bool bounded = asked->limit != 0 && asked->limit < most;
+    he_breadth_first walk = *asked;
+    walk.limit = bounded ? asked->limit : most;
+    if (he_traverse_breadth_first(a->mesh, &walk, &a->first, &a->second, &err) != HE_OK) {
+        return api_asker_refuse(a, question, &err);
     }
     if (!bounded && a->first.count == most) {
-        return api_asker_waits(a, API_MAX_WALK / API_FLOOD_PER_SECOND) && api_asker_exceed(a, walk);
+        return api_asker_waits(a, API_MAX_WALK / API_FLOOD_PER_SECOND) &&
+               api_asker_exceed(a, question);
     }
     api_asker_pay(a, FLOOD_COST * (uint64_t)a->first.count);
     return true;
@@ -225,7 +224,7 @@ static bool ask_rings(api_asker *a, const api_in *walk)
     if (a->reads_only) {
         return true;
     }
-    if (!flood(a, walk, kind, from, (uint32_t)depth, 0)) {
+    if (!flood(a, walk, &(he_breadth_first){kind, from, (uint32_t)depth, 0})) {
         return false;
     }
     begin_answer(a, "rings", kind, from);
@@ -263,7 +262,7 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
     if (a->reads_only) {
         return true;
     }
-    if (!flood(a, walk, kind, from, (uint32_t)depth, (size_t)limit)) {
+    if (!flood(a, walk, &(he_breadth_first){kind, from, (uint32_t)depth, (size_t)limit})) {
         return false;
     }
     begin_answer(a, "breadth_first", kind, from);

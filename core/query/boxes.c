@@ -281,16 +281,17 @@ static void find_group_boxes(builder *b, uint32_t count, uint32_t groups)
     }
 }
 
-he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *group,
-                        uint32_t groups, he_budget *budget, he_boxes *out, he_error *err)
+he_status he_boxes_make(const he_boxed *things, he_budget *budget, he_boxes *out, he_error *err)
 {
-    builder b = {.boxes = boxes, .group = group, .budget = budget};
+    const uint32_t count = things->count, *group = things->group;
+    builder b = {.boxes = things->boxes, .group = group, .budget = budget};
     /* The first capacity is about the number of nodes of the tree if most leaves are full, and a
      * few more. */
     b.capacity = count / 2 + 4;
     b.tree.nodes = he_mem_array(NULL, b.capacity, sizeof *b.tree.nodes);
     b.tree.order = he_mem_array(NULL, count, sizeof *b.tree.order);
-    b.group_boxes = group == NULL ? NULL : he_mem_array(NULL, groups, sizeof *b.group_boxes);
+    b.group_boxes =
+        group == NULL ? NULL : he_mem_array(NULL, things->groups, sizeof *b.group_boxes);
     he_status status = HE_OK;
     if (b.tree.nodes == NULL || b.tree.order == NULL || (group != NULL && b.group_boxes == NULL)) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u boxes", count);
@@ -299,7 +300,7 @@ he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *
             b.tree.order[i] = i;
         }
         if (group != NULL) {
-            find_group_boxes(&b, count, groups);
+            find_group_boxes(&b, count, things->groups);
         }
         status = build(&b, count, err);
     }

@@ -46,13 +46,18 @@ typedef struct he_boxes {
 he_bounds he_bounds_none(void);
 void he_bounds_include(he_bounds *b, const he_bounds *other);
 
-/* Makes a tree over at least one thing, in O(n log n) time. `group` has a number below `groups` for
- * each thing; things of group 0 belong to no group. It is NULL if there are no groups. The caller
- * clears `out`.
+/* The things that a tree is made over, at least one. */
+typedef struct he_boxed {
+    const he_bounds *boxes; /* of each thing */
+    uint32_t count;
+    const uint32_t *group; /* the group of each thing, 0 for none; NULL if there are no groups */
+    uint32_t groups;       /* greater than the number of each group */
+} he_boxed;
+
+/* Makes a tree in O(n log n) time. The caller clears `out`.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_LIMIT or HE_CANCELLED if the budget ends the work. */
-HE_NODISCARD he_status he_boxes_make(const he_bounds *boxes, uint32_t count, const uint32_t *group,
-                                     uint32_t groups, he_budget *budget, he_boxes *out,
+HE_NODISCARD he_status he_boxes_make(const he_boxed *things, he_budget *budget, he_boxes *out,
                                      he_error *err);
 void he_boxes_clear(he_boxes *tree);
 

@@ -213,7 +213,7 @@ static he_status build(he_bvh *tree, const he_mesh *m, uint32_t count, he_budget
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the boxes of %u triangles", count);
         goto out;
     }
-    status = he_boxes_make(bounds, count, group, groups, budget, &boxes, err);
+    status = he_boxes_make(&(he_boxed){bounds, count, group, groups}, budget, &boxes, err);
     if (status == HE_OK && !arrange(tree, &boxes)) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for a tree of %u triangles", count);
     }

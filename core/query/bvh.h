@@ -67,18 +67,23 @@ typedef struct he_hit {
     double distance; /* at most DBL_MAX */
 } he_hit;
 
-/* Finds the first face that a ray hits, from either side, at a distance from 0 to `max` from its
- * origin. Distances are in the mesh's unit; `max` may be HUGE_VAL. The direction may have any
- * length but zero (HE_BAD_VALUE).
+/* A ray; `max` is the greatest distance from its origin at which it hits, in the mesh's unit. */
+typedef struct he_ray {
+    he_vec3 origin;
+    he_vec3 direction; /* of any length but zero */
+    double max;        /* may be HUGE_VAL */
+} he_ray;
+
+/* Finds the first face that a ray hits, from either side.
+ * Returns HE_BAD_VALUE if the direction is zero.
  *
  * A ray through an edge or a vertex hits at least one of the faces there: there are no cracks (S.
  * Woop, C. Benthin and I. Wald, "Watertight ray/triangle intersection", 2013; boxes are entered as
  * in T. Ize, "Robust BVH ray traversal", 2013). Among faces at one distance the one with the least
  * id is hit, so the result is unique. A face seen exactly from its side, or without area, is not
  * hit. */
-HE_NODISCARD he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin,
-                                  he_vec3 direction, double max, he_budget *budget, he_hit *out,
-                                  he_error *err);
+HE_NODISCARD he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, const he_ray *along,
+                                  he_budget *budget, he_hit *out, he_error *err);
 
 /* Finds the point of the faces that is nearest to `point`, if it is no farther away than `max`.
  * Among faces at one distance the one with the least id is taken. C. Ericson, "Real-Time Collision

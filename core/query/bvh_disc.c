@@ -60,13 +60,29 @@ static void center(he_bvh_disc *disc, const he_box_node *node)
     }
 }
 
-/* Computes the disc around the triangles of a leaf or of a run of leaves. */
-static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, uint32_t begin,
-                  uint32_t end, he_vec3 normal, he_bvh_disc *disc)
+static uint32_t begin_of(const he_bvh *tree, const he_box_node *node)
+{
+    while (node->count == 0) {
+        node = &tree->nodes[node->first];
+    }
+    return node->first;
+}
+
+static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
+{
+    while (node->count == 0) {
+        node = &tree->nodes[node->first + 1];
+    }
+    return node->first + node->count;
+}
+
+/* Computes the disc around all triangles below a node. */
+static void about(const he_bvh *tree, const he_mesh *m, const he_box_node *node, he_vec3 normal,
+                  he_bvh_disc *disc)
 {
     double thick = 0, radius = 0;
     center(disc, node);
-    for (uint32_t i = begin; i < end; i++) {
+    for (uint32_t i = begin_of(tree, node), end = end_of(tree, node); i < end; i++) {
         he_vec3 c[3];
         he_bvh_corners(tree, m, i, c);
         for (int k = 0; k < 3; k++) {
@@ -91,7 +107,7 @@ static void about_leaf(const he_bvh *tree, const he_mesh *m, const he_box_node *
     if (!he_vec3_normalise(sum, &normal)) {
         normal = (he_vec3){0, 0, 1}; /* any direction is valid */
     }
-    about(tree, m, node, node->first, node->first + node->count, normal, disc);
+    about(tree, m, node, normal, disc);
 }
 
 /* Returns the mean of the normals of a node's two children, weighted by the areas of their
@@ -128,22 +144,6 @@ static void about_children(const he_box_node *node, const he_bvh_disc children[2
     set(disc, node, normal, thick, radius);
 }
 
-static uint32_t begin_of(const he_bvh *tree, const he_box_node *node)
-{
-    while (node->count == 0) {
-        node = &tree->nodes[node->first];
-    }
-    return node->first;
-}
-
-static uint32_t end_of(const he_bvh *tree, const he_box_node *node)
-{
-    while (node->count == 0) {
-        node = &tree->nodes[node->first + 1];
-    }
-    return node->first + node->count;
-}
-
 he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, he_error *err)
 {
     he_status status = HE_OK;
@@ -156,10 +156,10 @@ he_status he_bvh_find_discs(he_bvh *tree, const he_mesh *m, he_budget *budget, h
             continue;
         }
         const he_bvh_disc *children = &tree->discs[node->first];
-        uint32_t begin = begin_of(tree, node), end = end_of(tree, node);
-        status = he_budget_take(budget, end - begin <= PATCH ? end - begin : 1, err);
-        if (end - begin <= PATCH) {
-            about(tree, m, node, begin, end, mean_normal(children), disc);
+        uint32_t count = end_of(tree, node) - begin_of(tree, node);
+        status = he_budget_take(budget, count <= PATCH ? count : 1, err);
+        if (count <= PATCH) {
+            about(tree, m, node, mean_normal(children), disc);
         } else {
             about_children(node, children, mean_normal(children), disc);
         }

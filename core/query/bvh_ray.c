@@ -160,11 +160,11 @@ static double approach(ray *r, const he_box_node *root)
     return near;
 }
 
-he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin, he_vec3 direction,
-                     double max, he_budget *budget, he_hit *out, he_error *err)
+he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, const he_ray *along, he_budget *budget,
+                     he_hit *out, he_error *err)
 {
     he_vec3 unit;
-    if (!he_vec3_normalise(direction, &unit)) {
+    if (!he_vec3_normalise(along->direction, &unit)) {
         return he_fail_plain(err, HE_BAD_VALUE, "the ray's direction must not be zero");
     }
     he_hit none = {.face = HE_NONE};
@@ -172,12 +172,13 @@ he_status he_bvh_ray(const he_bvh *tree, const he_mesh *m, he_vec3 origin, he_ve
         *out = none;
         return HE_OK;
     }
+    he_vec3 origin = along->origin;
     he_vec3 from = {ldexp(origin.x, -tree->exponent), ldexp(origin.y, -tree->exponent),
                     ldexp(origin.z, -tree->exponent)};
     from = (he_vec3){he_clamped(from.x), he_clamped(from.y), he_clamped(from.z)};
     ray r = prepare(from, unit);
     double shift = he_vec3_extent(from) < HE_BVH_FAR ? 0 : approach(&r, &tree->nodes[0]);
-    double reach = ldexp(max, -tree->exponent) - shift;
+    double reach = ldexp(along->max, -tree->exponent) - shift;
     he_bvh_found best = {.triangle = HE_NONE, .far = reach};
     if (shift == HUGE_VAL || reach < 0) {
         *out = none;

@@ -144,7 +144,8 @@ he_status he_pairs_at_hub(he_pair_search *search, uint32_t hub, he_error *err)
     he_boxes boxes = {.nodes = NULL};
     he_status status = load(&s, err);
     if (status == HE_OK && s.count > 1) {
-        status = he_boxes_make(s.arcs, s.count, NULL, 0, search->budget, &boxes, err);
+        status = he_boxes_make(&(he_boxed){.boxes = s.arcs, .count = s.count}, search->budget,
+                               &boxes, err);
     }
     if (status == HE_OK && s.count > 1) {
         s.order = boxes.order;

@@ -41,59 +41,57 @@ static uint32_t take(const he_mesh *m, uint32_t h, he_step step)
     return HE_NONE;
 }
 
-static he_status walk_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
-                           uint64_t repeat, he_until until, uint64_t limit, he_watch *watch,
-                           he_ids *out, he_error *err)
+static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_steps *steps,
+                           he_watch *watch, he_ids *out, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
     uint32_t h = from.i;
     uint64_t taken = 0;
     he_status status = he_ids_add(out, h, err);
-    for (uint64_t round = 0; round < repeat && status == HE_OK; round++) {
-        if (until != HE_UNTIL_COUNT && round == end) {
+    for (uint64_t round = 0; round < steps->repeat && status == HE_OK; round++) {
+        if (steps->until != HE_UNTIL_COUNT && round == end) {
             return corrupt(HE_HALFEDGE, from.i, err);
         }
-        for (size_t i = 0; i < count && status == HE_OK; i++) {
+        for (size_t i = 0; i < steps->count && status == HE_OK; i++) {
             /* The length of the path is not known, so there is no progress to report; the watch is
              * only asked whether to go on. */
             status = he_watch_at(watch, taken, UINT64_MAX, err);
             if (status != HE_OK) {
                 return status;
             }
-            if (taken++ == limit && limit != 0) {
+            if (taken++ == steps->limit && steps->limit != 0) {
                 return he_fail_plain(err, HE_LIMIT, "the path is longer than %llu steps",
-                                     (unsigned long long)limit);
+                                     (unsigned long long)steps->limit);
             }
-            h = take(m, h, steps[i]);
+            h = take(m, h, steps->list[i]);
             if (h >= end) {
                 return corrupt(HE_HALFEDGE, from.i, err);
             }
             status = he_ids_add(out, h, err);
-            if ((until == HE_UNTIL_START && h == from.i) ||
-                (until == HE_UNTIL_BOUNDARY && m->c.face[h] == HE_NONE)) {
+            if ((steps->until == HE_UNTIL_START && h == from.i) ||
+                (steps->until == HE_UNTIL_BOUNDARY && m->c.face[h] == HE_NONE)) {
                 return status;
             }
         }
-        if (until == HE_UNTIL_BOUNDARY && h == from.i) {
+        if (steps->until == HE_UNTIL_BOUNDARY && h == from.i) {
             return status;
         }
     }
     return status;
 }
 
-he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps, size_t count,
-                           uint64_t repeat, he_until until, uint64_t limit, he_watch *watch,
-                           he_ids *out, he_error *err)
+he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_path_steps *steps,
+                           he_watch *watch, he_ids *out, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_HALFEDGE, from.i, err);
     if (status != HE_OK) {
         return status;
     }
-    if (count == 0) {
+    if (steps->count == 0) {
         return he_fail_plain(err, HE_BAD_VALUE, "a path needs at least one step");
     }
     size_t before = out->count;
-    status = walk_path(m, from, steps, count, repeat, until, limit, watch, out, err);
+    status = walk_path(m, from, steps, watch, out, err);
     if (status != HE_OK) {
         out->count = before;
     }
@@ -150,15 +148,16 @@ static he_status meet(flood *f, uint32_t id, uint32_t depth, he_error *err)
 
 /* Visits elements breadth first from `from`. All steps together visit each half-edge at most once,
  * which bounds the walk even if links are broken. */
-static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
-                            size_t limit, flood *f, he_error *err)
+static he_status flood_from(const he_mesh *m, const he_breadth_first *walk, flood *f, he_error *err)
 {
+    const he_kind kind = walk->kind;
+    const size_t limit = walk->limit;
     const uint32_t end = halfedge_end(m);
     uint32_t steps = 0;
-    he_status status = meet(f, from, 0, err);
+    he_status status = meet(f, walk->from, 0, err);
     for (size_t i = 0; i < f->met.ids.count && status == HE_OK; i++) {
         uint32_t id = f->met.ids.ids[i], at = f->depths.ids[i];
-        if (at >= depth || (limit != 0 && f->met.ids.count >= limit)) {
+        if (at >= walk->depth || (limit != 0 && f->met.ids.count >= limit)) {
             break;
         }
         uint32_t first = kind == HE_VERTEX ? m->c.vertex_halfedge[id] : m->c.face_halfedge[id];
@@ -168,14 +167,14 @@ static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint3
         uint32_t h = first;
         do {
             if (h >= end || steps++ == end) {
-                return corrupt(kind, from, err);
+                return corrupt(kind, walk->from, err);
             }
             uint32_t beside = kind == HE_VERTEX ? m->c.origin[h ^ 1u] : m->c.face[h ^ 1u];
             uint32_t issued = kind == HE_VERTEX ? m->c.vertices.issued : m->c.faces.issued;
             if (beside < issued) {
                 status = meet(f, beside, at + 1, err);
             } else if (kind == HE_VERTEX || beside != HE_NONE) {
-                return corrupt(kind, from, err);
+                return corrupt(kind, walk->from, err);
             }
             h = kind == HE_VERTEX ? m->c.prev[h] ^ 1u : m->c.next[h];
         } while (status == HE_OK && h != first && (limit == 0 || f->met.ids.count < limit));
@@ -183,20 +182,20 @@ static he_status flood_from(const he_mesh *m, he_kind kind, uint32_t from, uint3
     return status;
 }
 
-he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t from, uint32_t depth,
-                                    size_t limit, he_ids *ids, he_ids *depths, he_error *err)
+he_status he_traverse_breadth_first(const he_mesh *m, const he_breadth_first *walk, he_ids *ids,
+                                    he_ids *depths, he_error *err)
 {
-    if (kind != HE_VERTEX && kind != HE_FACE) {
+    if (walk->kind != HE_VERTEX && walk->kind != HE_FACE) {
         return he_fail_plain(err, HE_BAD_VALUE,
                              "a breadth-first walk begins at a vertex or a face");
     }
-    he_status status = he_mesh_require(m, kind, from, err);
+    he_status status = he_mesh_require(m, walk->kind, walk->from, err);
     if (status != HE_OK) {
         return status;
     }
     flood f = {0};
     size_t ids_before = ids->count, depths_before = depths->count;
-    status = flood_from(m, kind, from, depth, limit, &f, err);
+    status = flood_from(m, walk, &f, err);
     if (status == HE_OK) {
         status = append(ids, &f.met.ids, err);
     }

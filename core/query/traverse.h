@@ -21,17 +21,23 @@ typedef enum he_until {
     HE_UNTIL_BOUNDARY
 } he_until;
 
+typedef struct he_path_steps {
+    const he_step *list;
+    size_t count;
+    uint64_t repeat; /* 0 takes no step; UINT64_MAX is for paths that end by `until` */
+    he_until until;  /* tested after each step, not before the first */
+    uint64_t limit;  /* the most steps that may be taken; 0: no bound */
+} he_path_steps;
+
 /* Appends the half-edges of the path, `from` first and the last one at the end: one more than the
- * steps taken. `until` is tested after each step, not before the first. `repeat` = 0 takes no step;
- * UINT64_MAX is for paths that end by `until`. These always end: a list of steps maps half-edges
- * one to one, so after as many rounds as there are half-edges the path has come back (else
- * HE_CORRUPT). `limit` bounds the steps (0: no bound). `watch` may be NULL.
- * Returns HE_LIMIT if the path would take more steps.
+ * steps taken. A path that ends by `until` always ends: a list of steps maps half-edges one to one,
+ * so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT). `watch`
+ * may be NULL.
+ * Returns HE_LIMIT if the path would take more steps than `limit`.
  * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_BAD_VALUE if the list of steps is empty. */
-HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_step *steps,
-                                        size_t count, uint64_t repeat, he_until until,
-                                        uint64_t limit, he_watch *watch, he_ids *out,
+HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from,
+                                        const he_path_steps *steps, he_watch *watch, he_ids *out,
                                         he_error *err);
 
 /* LOOP. Appends the half-edges of the face or hole of `from`, in the order of next, beginning with
@@ -39,14 +45,19 @@ HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from, cons
 HE_NODISCARD he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_ids *out,
                                         he_error *err);
 
-/* BREADTH FIRST from a vertex along edges, or from a face across edges (`kind` is HE_VERTEX or
- * HE_FACE). Elements are in the order in which they are reached, neighbours counter-clockwise as in
- * adjacency.h, with their distance in steps; `from` is first, at depth 0. Nothing deeper than
- * `depth` is visited (HE_NONE: no bound). The walk stops at `limit` elements (0: no bound), which
- * is not an error. */
-HE_NODISCARD he_status he_traverse_breadth_first(const he_mesh *m, he_kind kind, uint32_t from,
-                                                 uint32_t depth, size_t limit, he_ids *ids,
-                                                 he_ids *depths, he_error *err);
+/* BREADTH FIRST from a vertex along edges, or from a face across edges. */
+typedef struct he_breadth_first {
+    he_kind kind;   /* HE_VERTEX or HE_FACE */
+    uint32_t from;  /* the vertex or face where the walk begins */
+    uint32_t depth; /* nothing deeper is visited; HE_NONE: no bound */
+    size_t limit;   /* the walk stops at so many elements, which is no error; 0: no bound */
+} he_breadth_first;
+
+/* Appends the elements in the order in which they are reached, neighbours counter-clockwise as in
+ * adjacency.h, and their distances in steps; `from` is first, at depth 0.
+ * Returns HE_BAD_VALUE if the walk begins at an element of another kind. */
+HE_NODISCARD he_status he_traverse_breadth_first(const he_mesh *m, const he_breadth_first *walk,
+                                                 he_ids *ids, he_ids *depths, he_error *err);
 
 /* SHORTEST PATH along edges: how the length of a path is measured. */
 typedef enum he_measure {

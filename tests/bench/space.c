@@ -132,7 +132,7 @@ int main(void)
     start = seconds();
     for (int i = 0; i < ASKED; i++) {
         he_vec3 from = random_point(5), along = random_point(1);
-        require(he_bvh_ray(tree, m, from, along, HUGE_VAL, &budget, &hit, NULL));
+        require(he_bvh_ray(tree, m, &(he_ray){from, along, HUGE_VAL}, &budget, &hit, NULL));
         hits += hit.face != HE_NONE;
     }
     show("rays", seconds() - start, &budget, hits);

@@ -24,7 +24,7 @@ static he_hit cast(const he_bvh *tree, const he_mesh *m, he_vec3 from, he_vec3 t
 {
     he_hit hit;
     he_budget budget = {.left = UINT64_MAX};
-    assert_int_equal(he_bvh_ray(tree, m, from, to, max, &budget, &hit, NULL), HE_OK);
+    assert_int_equal(he_bvh_ray(tree, m, &(he_ray){from, to, max}, &budget, &hit, NULL), HE_OK);
     return hit;
 }
 
@@ -196,7 +196,8 @@ static void a_ray_needs_a_direction(void **state)
     he_error err = {0};
     he_budget budget = {.left = 1000};
     const he_vec3 zero = {0, 0, -0.0}, tiny = {0, 0, 5e-324}, huge = {0, 0, DBL_MAX};
-    assert_int_equal(he_bvh_ray(tree, m, zero, zero, 1, &budget, &hit, &err), HE_BAD_VALUE);
+    assert_int_equal(he_bvh_ray(tree, m, &(he_ray){zero, zero, 1}, &budget, &hit, &err),
+                     HE_BAD_VALUE);
     assert_true(cast(tree, m, zero, tiny, HUGE_VAL).distance == 1);
     assert_true(cast(tree, m, zero, huge, 1).distance == 1);
     assert_int_equal(cast(tree, m, zero, huge, 0.999).face, HE_NONE);

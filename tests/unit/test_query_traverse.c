@@ -69,8 +69,9 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
         for (uint32_t depth = 0; depth < 6; depth++) {
             he_ids ids = {0}, depths = {0};
             uint32_t bound = depth == 5 ? HE_NONE : depth;
-            assert_int_equal(
-                he_traverse_breadth_first(m, kind, from, bound, 0, &ids, &depths, NULL), HE_OK);
+            assert_int_equal(he_traverse_breadth_first(m, &(he_breadth_first){kind, from, bound, 0},
+                                                       &ids, &depths, NULL),
+                             HE_OK);
             assert_int_equal(ids.count, depths.count);
             assert_int_equal(ids.ids[0], from);
             bool seen[SMALL] = {false};
@@ -87,7 +88,8 @@ static void try_breadth_first(const he_mesh *m, he_kind kind)
             for (size_t limit = 1; limit <= ids.count + 1; limit++) {
                 he_ids some = {0}, at = {0};
                 assert_int_equal(
-                    he_traverse_breadth_first(m, kind, from, bound, limit, &some, &at, NULL),
+                    he_traverse_breadth_first(m, &(he_breadth_first){kind, from, bound, limit},
+                                              &some, &at, NULL),
                     HE_OK);
                 size_t n = limit < ids.count ? limit : ids.count;
                 assert_int_equal(some.count, n);
@@ -183,58 +185,70 @@ static void test_traverse_path(void **state)
     he_halfedge start = {0};
     /* The first face has the half-edges 0 (0>1), 2 (1>2) and 4 (2>0); the second has 5 (0>2), 6
      * (2>3) and 8 (3>0). */
-    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 4, HE_UNTIL_COUNT, 0},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 2 4 0 2");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, prev, 1, 1, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){prev, 1, 1, HE_UNTIL_COUNT, 0},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 4");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, next, 1, 0, HE_UNTIL_COUNT, 0, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 0, HE_UNTIL_COUNT, 0},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0");
     ids.count = 0;
-    assert_int_equal(
-        he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_START, 0, NULL, &ids, NULL),
-        HE_OK);
+    assert_int_equal(he_traverse_path(m, start,
+                                      &(he_path_steps){next, 1, UINT64_MAX, HE_UNTIL_START, 0},
+                                      NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 2 4 0");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, start, next, 1, 2, HE_UNTIL_START, 0, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 2, HE_UNTIL_START, 0},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "0 2 4");
     ids.count = 0;
     /* The path turns at vertex 0 across the diagonal 5 to half-edge 9 (0>3), which belongs to the
      * hole. */
-    assert_int_equal(
-        he_traverse_path(m, start, turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
-        HE_OK);
+    assert_int_equal(he_traverse_path(m, start,
+                                      &(he_path_steps){turn, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
+                                      NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 4 5 8 9");
     ids.count = 0;
     /* The path never meets a hole, so it must end when the list of steps leads back to a place
      * where it began. */
-    assert_int_equal(
-        he_traverse_path(m, start, next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &ids, NULL),
-        HE_OK);
+    assert_int_equal(he_traverse_path(m, start,
+                                      &(he_path_steps){next, 1, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
+                                      NULL, &ids, NULL),
+                     HE_OK);
     assert_ids(&ids, "0 2 4 0");
     ids.count = 0;
-    assert_int_equal(he_traverse_path(m, (he_halfedge){5}, round, 2, UINT64_MAX, HE_UNTIL_BOUNDARY,
-                                      0, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, (he_halfedge){5},
+                                      &(he_path_steps){round, 2, UINT64_MAX, HE_UNTIL_BOUNDARY, 0},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1");
     /* The limit is a number of steps, and what the list contained before must stay. */
-    assert_int_equal(he_traverse_path(m, start, next, 1, 3, HE_UNTIL_COUNT, 3, NULL, &ids, NULL),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 3, HE_UNTIL_COUNT, 3},
+                                      NULL, &ids, NULL),
                      HE_OK);
     assert_ids(&ids, "5 4 0 1 0 2 4 0");
     ids.count = 1;
     he_error err = {0};
-    assert_int_equal(he_traverse_path(m, start, next, 1, 4, HE_UNTIL_COUNT, 3, NULL, &ids, &err),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 1, 4, HE_UNTIL_COUNT, 3},
+                                      NULL, &ids, &err),
                      HE_LIMIT);
-    assert_int_equal(he_traverse_path(m, start, next, 0, 4, HE_UNTIL_COUNT, 3, NULL, &ids, &err),
+    assert_int_equal(he_traverse_path(m, start, &(he_path_steps){next, 0, 4, HE_UNTIL_COUNT, 3},
+                                      NULL, &ids, &err),
                      HE_BAD_VALUE);
-    assert_int_equal(
-        he_traverse_path(m, (he_halfedge){10}, next, 1, 4, HE_UNTIL_COUNT, 0, NULL, &ids, &err),
-        HE_NO_SUCH_ELEMENT);
+    assert_int_equal(he_traverse_path(m, (he_halfedge){10},
+                                      &(he_path_steps){next, 1, 4, HE_UNTIL_COUNT, 0}, NULL, &ids,
+                                      &err),
+                     HE_NO_SUCH_ELEMENT);
     assert_ids(&ids, "5");
     he_ids_clear(&ids);
     he_mesh_free(m);
@@ -365,11 +379,15 @@ static void test_traverse_refuses(void **state)
     he_path path = {.length = 5};
     he_error err = {0};
     assert_int_equal(he_traverse_loop(m, (he_halfedge){6}, &a, &err), HE_DELETED_ELEMENT);
-    assert_int_equal(he_traverse_breadth_first(m, HE_VERTEX, 4, 1, 0, &a, &b, &err),
-                     HE_DELETED_ELEMENT);
-    assert_int_equal(he_traverse_breadth_first(m, HE_FACE, 1, 1, 0, &a, &b, &err),
-                     HE_DELETED_ELEMENT);
-    assert_int_equal(he_traverse_breadth_first(m, HE_EDGE, 0, 1, 0, &a, &b, &err), HE_BAD_VALUE);
+    assert_int_equal(
+        he_traverse_breadth_first(m, &(he_breadth_first){HE_VERTEX, 4, 1, 0}, &a, &b, &err),
+        HE_DELETED_ELEMENT);
+    assert_int_equal(
+        he_traverse_breadth_first(m, &(he_breadth_first){HE_FACE, 1, 1, 0}, &a, &b, &err),
+        HE_DELETED_ELEMENT);
+    assert_int_equal(
+        he_traverse_breadth_first(m, &(he_breadth_first){HE_EDGE, 0, 1, 0}, &a, &b, &err),
+        HE_BAD_VALUE);
     assert_int_equal(he_traverse_edge_loop(m, (he_edge){3}, &a, &closed, &err), HE_DELETED_ELEMENT);
     assert_int_equal(he_traverse_edge_ring(m, (he_edge){77}, &a, &closed, &err),
                      HE_NO_SUCH_ELEMENT);
@@ -420,12 +438,15 @@ static void walk_all(const he_mesh *m, he_status *worst)
         size_t n = 0;
         he_vertex v = {i}, w = {(i * 7 + 3) % rows};
         he_halfedge h = {i};
-        got[n++] = he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_START, 0, NULL, &a, NULL);
-        got[n++] =
-            he_traverse_path(m, h, steps, 3, UINT64_MAX, HE_UNTIL_BOUNDARY, 0, NULL, &a, NULL);
+        got[n++] = he_traverse_path(m, h, &(he_path_steps){steps, 3, UINT64_MAX, HE_UNTIL_START, 0},
+                                    NULL, &a, NULL);
+        got[n++] = he_traverse_path(
+            m, h, &(he_path_steps){steps, 3, UINT64_MAX, HE_UNTIL_BOUNDARY, 0}, NULL, &a, NULL);
         got[n++] = he_traverse_loop(m, h, &a, NULL);
-        got[n++] = he_traverse_breadth_first(m, HE_VERTEX, v.i, 3, 0, &a, &b, NULL);
-        got[n++] = he_traverse_breadth_first(m, HE_FACE, i, HE_NONE, 0, &a, &b, NULL);
+        got[n++] =
+            he_traverse_breadth_first(m, &(he_breadth_first){HE_VERTEX, v.i, 3, 0}, &a, &b, NULL);
+        got[n++] =
+            he_traverse_breadth_first(m, &(he_breadth_first){HE_FACE, i, HE_NONE, 0}, &a, &b, NULL);
         got[n++] = he_traverse_shortest_path(m, v, w, HE_BY_EDGES, &path, NULL);
         he_path_clear(&path);
         got[n++] = he_traverse_shortest_path(m, v, w, HE_BY_LENGTH, &path, NULL);
@@ -488,17 +509,20 @@ static void test_traverse_survives_failing_memory(void **state)
             fixture_fail_at(n);
             switch (walk) {
             case 0:
-                status = he_traverse_path(m, (he_halfedge){0}, steps, 3, UINT64_MAX, HE_UNTIL_START,
-                                          0, NULL, &a, NULL);
+                status = he_traverse_path(m, (he_halfedge){0},
+                                          &(he_path_steps){steps, 3, UINT64_MAX, HE_UNTIL_START, 0},
+                                          NULL, &a, NULL);
                 break;
             case 1:
                 status = he_traverse_loop(m, (he_halfedge){0}, &a, NULL);
                 break;
             case 2:
-                status = he_traverse_breadth_first(m, HE_FACE, 0, HE_NONE, 0, &a, &b, NULL);
+                status = he_traverse_breadth_first(m, &(he_breadth_first){HE_FACE, 0, HE_NONE, 0},
+                                                   &a, &b, NULL);
                 break;
             case 3:
-                status = he_traverse_breadth_first(m, HE_VERTEX, 0, HE_NONE, 0, &a, &b, NULL);
+                status = he_traverse_breadth_first(m, &(he_breadth_first){HE_VERTEX, 0, HE_NONE, 0},
+                                                   &a, &b, NULL);
                 break;
             case 4:
                 status = he_traverse_shortest_path(m, (he_vertex){0}, (he_vertex){44}, HE_BY_LENGTH,
@@ -536,7 +560,9 @@ static void test_traverse_costs_what_it_touches(void **state)
         he_ids a = {0}, b = {0};
         he_path path;
         fixture_fail_at(0);
-        assert_int_equal(he_traverse_breadth_first(m, HE_VERTEX, 0, 3, 0, &a, &b, NULL), HE_OK);
+        assert_int_equal(
+            he_traverse_breadth_first(m, &(he_breadth_first){HE_VERTEX, 0, 3, 0}, &a, &b, NULL),
+            HE_OK);
         assert_int_equal(
             he_traverse_shortest_path(m, (he_vertex){0}, (he_vertex){3}, HE_BY_EDGES, &path, NULL),
             HE_OK);
@@ -567,7 +593,8 @@ static void a_long_path_can_be_given_up(void **state)
     he_watch watch;
     int told = 0;
     he_watch_init(&watch, give_up, &told);
-    assert_int_equal(he_traverse_path(m, (he_halfedge){0}, steps, 1, 1000000, HE_UNTIL_COUNT, 0,
+    assert_int_equal(he_traverse_path(m, (he_halfedge){0},
+                                      &(he_path_steps){steps, 1, 1000000, HE_UNTIL_COUNT, 0},
                                       &watch, &ids, NULL),
                      HE_CANCELLED);
     assert_int_equal(told, 3);
