@@ -86,9 +86,16 @@ static void blend(const he_column *column, const uint32_t *rows, const double *w
     }
 }
 
-/* Sets row `to` of every column in a domain to the value that the column's rule makes of n rows. */
-static void carry(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *rows,
-                  const double *weights, size_t n, uint32_t nearest)
+/* The rows that a value is made of. */
+typedef struct mixture {
+    const uint32_t *rows;
+    const double *weights; /* NULL: all rows have one weight */
+    size_t n;
+    uint32_t nearest; /* the row that is copied where values are not interpolated */
+} mixture;
+
+/* Sets row `to` of every column in a domain to the value that the column's rule makes of others. */
+static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
 {
     for (size_t i = 0; i < m->c.column_count; i++) {
         const he_column *column = m->c.columns[i];
@@ -99,10 +106,10 @@ static void carry(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *rows,
         bool spreads = kind != HE_VERTEX || !he_is_mark(column, "locked");
         switch (spreads ? column->rule : HE_DEFAULT) {
         case HE_COPY:
-            memcpy(value, he_column_value(column, nearest), column->row_bytes);
+            memcpy(value, he_column_value(column, of->nearest), column->row_bytes);
             break;
         case HE_INTERPOLATE:
-            blend(column, rows, weights, n, value);
+            blend(column, of->rows, of->weights, of->n, value);
             break;
         case HE_DEFAULT:
         case HE_RULE_COUNT:
@@ -117,7 +124,7 @@ void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32
 {
     const uint32_t rows[2] = {a, b};
     const double weights[2] = {1 - t, t};
-    carry(m, kind, to, rows, weights, 2, t < 1 ? a : b);
+    carry(m, kind, to, &(mixture){rows, weights, 2, t < 1 ? a : b});
 }
 
 void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
@@ -137,7 +144,7 @@ void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n)
 {
     if (n > 0) {
-        carry(m, kind, to, from, NULL, n, from[0]);
+        carry(m, kind, to, &(mixture){from, NULL, n, from[0]});
     }
 }
 

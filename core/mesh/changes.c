@@ -120,15 +120,20 @@ static he_status note_attribute(const he_mesh *mesh, he_changes *out, const he_c
     return he_ids_add(&out->modified[column->domain], row, err);
 }
 
-/* Records that one word went from `before` to `after`, over all deltas; `attribute` is NULL unless
+/* How one word changed over all deltas. */
+typedef struct word_change {
+    uint32_t column, row, before, after;
+} word_change;
+
+/* Records the change of a word; `attribute` is NULL unless
  * it is a word of an attribute. Elements that were created or deleted are recorded as modified,
  * too; keep_modified drops them at the end. */
 static he_status note_word(const he_mesh *mesh, he_changes *out, const he_column *attribute,
-                           uint32_t column, uint32_t row, uint32_t before, uint32_t after,
-                           he_error *err)
+                           const word_change *change, he_error *err)
 {
+    const uint32_t row = change->row, before = change->before, after = change->after;
     he_status status = HE_OK;
-    switch ((he_col)column) {
+    switch ((he_col)change->column) {
     case HE_COL_NEXT:
         if ((row & 1u) == 0 && (before == HE_DEAD || after == HE_DEAD)) {
             status = note_row(out, HE_EDGE, row >> 1, before, after, err);
@@ -369,8 +374,8 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
         const he_column *attribute = attribute_of(mesh, w, column);
         if (records[i].before != records[last].after &&
             (column < HE_COL_ATTRIBUTE || attribute != NULL)) {
-            status = note_word(mesh, out, attribute, column, row, records[i].before,
-                               records[last].after, err);
+            const word_change change = {column, row, records[i].before, records[last].after};
+            status = note_word(mesh, out, attribute, &change, err);
         }
         if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
             status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);

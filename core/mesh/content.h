@@ -21,11 +21,11 @@ HE_NODISCARD he_status he_content_reserve_faces(he_content *c, size_t rows, he_e
  * they have two rows for each row of the edges. */
 he_rows *he_content_rows(he_content *content, he_kind kind);
 
-/* Applies the records `from`..`to` of a delta to a content: forwards, or backwards with `undo`.
- * Columns and contents that the records replace are exchanged with `objects`, which is indexed like
- * the delta's own list; NULL if the delta has none. */
-void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, bool undo,
-                      void **objects);
+/* Applies the records of a delta between the positions `from` and `to` to a content: forwards, or
+ * backwards, from the last one to the first, if `from` is after `to`. Columns and contents that the
+ * records replace are exchanged with `objects`, which is indexed like the delta's own list; NULL if
+ * the delta has none. */
+void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, void **objects);
 /* Applies a whole delta forwards to a content that may not have issued the delta's rows yet;
  * afterwards its high-water marks are `issued`, indexed by kind. On failure the content is as it
  * was.

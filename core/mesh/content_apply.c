@@ -100,14 +100,13 @@ static void apply(void **objects, he_content *c, const he_record *r, uint32_t be
     put_attribute(c, r, after);
 }
 
-void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, bool undo,
-                      void **objects)
+void he_content_apply(he_content *c, const he_delta *delta, size_t from, size_t to, void **objects)
 {
-    for (size_t i = from; i < to && !undo; i++) {
+    for (size_t i = from; i < to; i++) {
         const he_record *r = &delta->records[i];
         apply(objects, c, r, r->before, r->after);
     }
-    for (size_t i = to; i > from && undo; i--) {
+    for (size_t i = from; i > to; i--) {
         const he_record *r = &delta->records[i - 1];
         apply(objects, c, r, r->after, r->before);
     }

@@ -239,10 +239,10 @@ he_status he_content_forward(he_content *c, const he_delta *delta, void **object
     he_status status = ready(c, delta, objects, issued, refused, err);
     for (size_t i = 0; i < delta->count && status == HE_OK; i++) {
         if (!holds(c, objects, &delta->records[i])) {
-            he_content_apply(c, delta, 0, i, true, objects);
+            he_content_apply(c, delta, i, 0, objects);
             status = refuse(i, refused, "was made from another value than the mesh holds", err);
         } else {
-            he_content_apply(c, delta, i, i + 1, false, objects);
+            he_content_apply(c, delta, i, i + 1, objects);
         }
     }
     if (status != HE_OK) {

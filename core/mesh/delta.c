@@ -189,7 +189,7 @@ he_delta *he_mesh_record(he_mesh *mesh, he_delta *delta)
 
 static void undo_to(he_delta *d, he_mesh *mesh, size_t to)
 {
-    he_content_apply(&mesh->c, d, to, d->count, true, d->objects);
+    he_content_apply(&mesh->c, d, d->count, to, d->objects);
 }
 
 void he_delta_undo(he_delta *delta, he_mesh *mesh)
@@ -199,7 +199,7 @@ void he_delta_undo(he_delta *delta, he_mesh *mesh)
 
 void he_delta_redo(he_delta *delta, he_mesh *mesh)
 {
-    he_content_apply(&mesh->c, delta, 0, delta->count, false, delta->objects);
+    he_content_apply(&mesh->c, delta, 0, delta->count, delta->objects);
 }
 
 he_status he_delta_forward(he_delta *delta, he_mesh *mesh, const uint32_t issued[HE_KIND_COUNT],

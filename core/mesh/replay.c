@@ -181,7 +181,7 @@ static he_status require_side(he_replay *replay, const he_crossing *crossing, vo
  * crossing. */
 static he_status back(he_content *c, const he_crossing *crossing, void **objects, he_error *err)
 {
-    he_content_apply(c, crossing->delta, 0, crossing->delta->count, true, objects);
+    he_content_apply(c, crossing->delta, crossing->delta->count, 0, objects);
     he_status status = he_content_issue(c, crossing->issued, err);
     if (status == HE_OK) {
         he_content_withdraw(c, crossing->issued);
