@@ -180,12 +180,13 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
-/* Pairs the entries of a vertex of high degree. For every far vertex, `first` remembers the first
- * entry that named it. Values left by other vertices do not point to entries of this one, so the
- * array needs no clearing. */
-static void pair_large(pairing *p, uint32_t low, const filed *entries, uint32_t begin, uint32_t end,
+/* Pairs the entries of a vertex of high degree; those of vertex v are from starts[v] to
+ * starts[v + 1]. For every far vertex, `first` remembers the first entry that named it. Values left
+ * by other vertices do not point to entries of this one, so the array needs no clearing. */
+static void pair_large(pairing *p, uint32_t low, const filed *entries, const uint32_t *starts,
                        uint32_t *first)
 {
+    const uint32_t begin = starts[low], end = starts[low + 1];
     for (uint32_t i = begin; i < end; i++) {
         uint32_t far = entries[i].far & ~DOWNWARD, k = first[far];
         if (k >= begin && k < i && (entries[k].far & ~DOWNWARD) == far) {
@@ -243,7 +244,7 @@ static he_status visit_edges(pairing *p, he_error *err)
                 goto out;
             }
         }
-        pair_large(p, (uint32_t)v, entries, begin, end, first);
+        pair_large(p, (uint32_t)v, entries, starts, first);
     }
 out:
     he_mem_free(starts);

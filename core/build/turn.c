@@ -172,13 +172,19 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
+/* The vertices before and behind each corner of a vertex, in their faces. */
+typedef struct neighbours {
+    uint32_t before[SMALL_VERTEX], behind[SMALL_VERTEX];
+} neighbours;
+
 /* Finds the turns around a vertex of few corners. If they form one ring, nothing is wrong; only
  * otherwise is the reason searched. No branch depends on the ids, which may have no pattern. Two
  * faces that run along an edge in one direction show as two corners that leave one vertex for one
  * other. */
 static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
-                         const uint32_t *from, const uint32_t *to, size_t *matched)
+                         const neighbours *beside, size_t *matched)
 {
+    const uint32_t *from = beside->before, *to = beside->behind;
     uint32_t follow[SMALL_VERTEX], open = 0;
     assert(count > 0);
     match(from, to, count, follow);
@@ -201,12 +207,12 @@ static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count
 }
 
 static inline void find_beside(const turning *t, const uint32_t *filed, uint32_t count,
-                               uint32_t degree, uint32_t *from, uint32_t *to)
+                               uint32_t degree, neighbours *out)
 {
     for (uint32_t i = 0; i < count; i++) {
         he_corner at = he_corner_find(t->corners, filed[i], degree);
-        from[i] = t->soup->corners[at.prev];
-        to[i] = t->soup->corners[at.next];
+        out->before[i] = t->soup->corners[at.prev];
+        out->behind[i] = t->soup->corners[at.next];
     }
 }
 
@@ -279,7 +285,7 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
     enum { AHEAD = 32 };
     const uint32_t *filed = t->filed, *corners = t->soup->corners;
     const uint32_t last = end_of(t, t->soup->vertex_count - 1);
-    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
+    neighbours beside = {.before = {0}};
     unsigned found = 0;
     size_t matched = 0;
     uint32_t begin = begin_of(t, from), end;
@@ -295,8 +301,8 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
         if (end - begin > SMALL_VERTEX) {
             found |= LARGE_VERTEX;
         } else if (end > begin) {
-            find_beside(t, filed + begin, end - begin, degree, before, behind);
-            found |= turn_few(t, filed + begin, end - begin, before, behind, &matched);
+            find_beside(t, filed + begin, end - begin, degree, &beside);
+            found |= turn_few(t, filed + begin, end - begin, &beside, &matched);
         }
     }
     t->found[part] |= (unsigned char)found;
@@ -336,7 +342,7 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
     const he_soup *soup = t->soup;
     he_status status = HE_OK;
     size_t matched = 0;
-    uint32_t before[SMALL_VERTEX] = {0}, behind[SMALL_VERTEX];
+    neighbours beside = {.before = {0}};
     hub_turns hub = {.leads = he_mem_zero(soup->vertex_count, sizeof(uint32_t)),
                      .follows = he_mem_array(NULL, soup->corner_count, sizeof(uint32_t)),
                      .entered = he_bits_new(soup->corner_count)};
@@ -350,9 +356,9 @@ static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *t
         if (end - begin > SMALL_VERTEX) {
             found = turn_many(t, begin, end, &hub, &matched);
         } else if (all && end > begin) {
-            find_beside(t, t->filed + begin, end - begin, t->corners->degree, before, behind);
-            found = turn_few(t, t->filed + begin, end - begin, before, behind, &matched);
-            found |= leads_twice(before, end - begin) ? BAD_EDGE : 0;
+            find_beside(t, t->filed + begin, end - begin, t->corners->degree, &beside);
+            found = turn_few(t, t->filed + begin, end - begin, &beside, &matched);
+            found |= leads_twice(beside.before, end - begin) ? BAD_EDGE : 0;
         }
         t->all |= found;
         if (all && found == CLOSED_FAN) {
