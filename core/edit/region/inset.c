@@ -124,17 +124,22 @@ static void happens(motion *p, double time)
     }
 }
 
-/* Returns the smallest positive root of c0 + c1 t + c2 t^2 with c0 > 0, infinity if there is none.
- * A double root counts even if rounding has removed it. */
-static double first_root(double c0, double c1, double c2)
+/* The polynomial c0 + c1 t + c2 t^2. */
+typedef struct quadratic {
+    double c0, c1, c2;
+} quadratic;
+
+/* Returns the smallest positive root of a polynomial with c0 > 0, infinity if there is none. A
+ * double root counts even if rounding has removed it. */
+static double first_root(quadratic p)
 {
     const double noise = 1e-9;
-    double square = c1 * c1 - 4 * c0 * c2;
-    if (!(square >= -noise * c1 * c1)) {
+    double square = p.c1 * p.c1 - 4 * p.c0 * p.c2;
+    if (!(square >= -noise * p.c1 * p.c1)) {
         return INFINITY;
     }
-    double q = -0.5 * (c1 + copysign(sqrt(fmax(square, 0)), c1));
-    double one = q / c2, other = c0 / q;
+    double q = -0.5 * (p.c1 + copysign(sqrt(fmax(square, 0)), p.c1));
+    double one = q / p.c2, other = p.c0 / q;
     one = one > 0 ? one : INFINITY;
     other = other > 0 ? other : INFINITY;
     return fmin(one, other);
@@ -149,15 +154,16 @@ static corner corner_of(const motion *p, size_t i)
     return (corner){p->at[i], p->moves[i]};
 }
 
-/* Returns twice the area of the triangle a, b, c, projected along the normal, at time 0; *c1 and
- * *c2 are the coefficients with which it changes over time. */
-static double turn(corner a, corner b, corner c, he_vec3 normal, double *c1, double *c2)
+/* Returns twice the area of the triangle a, b, c, projected along the normal, as a polynomial of
+ * time. */
+static quadratic turn(corner a, corner b, corner c, he_vec3 normal)
 {
     he_vec3 x = he_vec3_sub(b.at, a.at), y = he_vec3_sub(c.at, b.at);
     he_vec3 dx = he_vec3_sub(b.moves, a.moves), dy = he_vec3_sub(c.moves, b.moves);
-    *c1 = he_vec3_dot(he_vec3_add(he_vec3_cross(x, dy), he_vec3_cross(dx, y)), normal);
-    *c2 = he_vec3_dot(he_vec3_cross(dx, dy), normal);
-    return he_vec3_dot(he_vec3_cross(x, y), normal);
+    return (quadratic){
+        .c0 = he_vec3_dot(he_vec3_cross(x, y), normal),
+        .c1 = he_vec3_dot(he_vec3_add(he_vec3_cross(x, dy), he_vec3_cross(dx, y)), normal),
+        .c2 = he_vec3_dot(he_vec3_cross(dx, dy), normal)};
 }
 
 static void watch_side(motion *p, corner a, corner b)
@@ -171,8 +177,8 @@ static void watch_side(motion *p, corner a, corner b)
  * the motion accordingly. */
 static void watch_hit(motion *p, corner a, corner b, corner c, he_vec3 normal)
 {
-    double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
-    double time = c0 > 0 ? first_root(c0, c1, c2) : INFINITY;
+    quadratic area = turn(a, b, c, normal);
+    double time = area.c0 > 0 ? first_root(area) : INFINITY;
     if (!(time < p->end)) {
         return;
     }
@@ -205,10 +211,10 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
     }
     for (size_t i = 0; i < n; i++) {
         corner a = corner_of(p, i), b = corner_of(p, (i + 1) % n), c = corner_of(p, (i + 2) % n);
-        double c1, c2, c0 = turn(a, b, c, normal, &c1, &c2);
+        quadratic area = turn(a, b, c, normal);
         watch_side(p, a, b);
-        if (c0 > 0) {
-            happens(p, first_root(c0, c1, c2));
+        if (area.c0 > 0) {
+            happens(p, first_root(area));
             continue;
         }
         /* The face has a reflex corner at b, which is tested against every side of which it is not
