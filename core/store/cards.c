@@ -57,15 +57,21 @@ static const st_card *newer(const st_card *memory, const st_card *disk)
     return same && ahead ? disk : memory;
 }
 
-static size_t merge(const st_card *memory, size_t in_memory, const st_card *disk, size_t on_disk,
-                    st_card *out, size_t limit)
+/* A run of cards in the order of their ids. */
+typedef struct card_run {
+    const st_card *at, *end;
+} card_run;
+
+static size_t merge(card_run memory, card_run disk, st_card *out, size_t limit)
 {
-    size_t count = 0, m = 0, d = 0;
-    while (count < limit && (m < in_memory || d < on_disk)) {
-        int order = m == in_memory ? 1 : d == on_disk ? -1 : strcmp(memory[m].id, disk[d].id);
-        out[count++] = order < 0 ? memory[m] : order > 0 ? disk[d] : *newer(&memory[m], &disk[d]);
-        m += order <= 0 ? 1 : 0;
-        d += order >= 0 ? 1 : 0;
+    size_t count = 0;
+    while (count < limit && (memory.at < memory.end || disk.at < disk.end)) {
+        int order = memory.at == memory.end ? 1
+                    : disk.at == disk.end   ? -1
+                                            : strcmp(memory.at->id, disk.at->id);
+        out[count++] = order < 0 ? *memory.at : order > 0 ? *disk.at : *newer(memory.at, disk.at);
+        memory.at += order <= 0 ? 1 : 0;
+        disk.at += order >= 0 ? 1 : 0;
     }
     return count;
 }
@@ -86,7 +92,8 @@ st_status st_cards(st_store *store, const char *after, st_card *out, size_t limi
     size_t on_disk = 0, in_memory = cards_in_memory(store, after, cards, limit);
     st_status status = journal->list(journal->self, after, cards + limit, limit, &on_disk);
     if (status == ST_OK) {
-        *count = merge(cards, in_memory, cards + limit, on_disk, out, limit);
+        *count = merge((card_run){cards, cards + in_memory},
+                       (card_run){cards + limit, cards + limit + on_disk}, out, limit);
     }
     he_mem_free(cards);
     return status;
