@@ -324,9 +324,15 @@ static const api_token *met_find(met *m, const api_token_list *list, size_t offs
     return NULL;
 }
 
-static bool add_token(reader *r, const char *at, size_t length, api_token_list *list, met *names,
-                      met *hashes)
+/* The tokens read so far, and their names and hashes, which must differ. */
+typedef struct gathered {
+    api_token_list list;
+    met names, hashes;
+} gathered;
+
+static bool add_token(reader *r, const char *at, size_t length, gathered *to)
 {
+    api_token_list *list = &to->list;
     if (list->count == API_TOKENS) {
         return fail(r, "there are more than %d tokens", API_TOKENS);
     }
@@ -345,16 +351,16 @@ static bool add_token(reader *r, const char *at, size_t length, api_token_list *
     if (!read_line(r, at, length, token)) {
         return false;
     }
-    const api_token *other = met_find(names, list, offsetof(api_token, name), sizeof token->name);
+    const api_token *other =
+        met_find(&to->names, list, offsetof(api_token, name), sizeof token->name);
     if (other != NULL) {
         return fail(r, "the name is that of line %zu", other->line);
     }
-    other = met_find(hashes, list, offsetof(api_token, hash), sizeof token->hash);
+    other = met_find(&to->hashes, list, offsetof(api_token, hash), sizeof token->hash);
     return other == NULL || fail(r, "the hash is that of line %zu", other->line);
 }
 
-static bool read_lines(reader *r, const char *at, const char *end, api_token_list *list, met *names,
-                       met *hashes)
+static bool read_lines(reader *r, const char *at, const char *end, gathered *to)
 {
     while (at < end) {
         const char *newline = memchr(at, '\n', (size_t)(end - at));
@@ -367,34 +373,32 @@ static bool read_lines(reader *r, const char *at, const char *end, api_token_lis
         if (!check_bytes(r, at, (size_t)(stop - at))) {
             return false;
         }
-        if (first < stop && *first != '#' &&
-            !add_token(r, first, (size_t)(stop - first), list, names, hashes)) {
+        if (first < stop && *first != '#' && !add_token(r, first, (size_t)(stop - first), to)) {
             return false;
         }
         at = newline == NULL ? end : newline + 1;
     }
     r->line = 0;
-    return list->count > 0 || fail(r, "there is no token in it");
+    return to->list.count > 0 || fail(r, "there is no token in it");
 }
 
 bool api_token_file_read(const char *bytes, size_t length, api_token_list *out,
                          char message[API_TOKENS_MESSAGE])
 {
     reader r = {.message = message};
-    api_token_list list = {he_mem_zero(API_TOKENS, sizeof *list.items), 0};
-    met names, hashes;
-    bool memory = met_new(&names);
-    memory = met_new(&hashes) && memory && list.items != NULL;
+    gathered all = {.list = {he_mem_zero(API_TOKENS, sizeof *all.list.items), 0}};
+    bool memory = met_new(&all.names);
+    memory = met_new(&all.hashes) && memory && all.list.items != NULL;
     bool good =
         length <= API_TOKENS_FILE || fail(&r, "the file is larger than %d bytes", API_TOKENS_FILE);
     good = good && (memory || fail(&r, "no memory for the tokens")) &&
-           read_lines(&r, bytes, bytes + length, &list, &names, &hashes);
-    met_free(&names);
-    met_free(&hashes);
+           read_lines(&r, bytes, bytes + length, &all);
+    met_free(&all.names);
+    met_free(&all.hashes);
     if (good) {
-        *out = list;
+        *out = all.list;
     } else {
-        api_token_list_clear(&list);
+        api_token_list_clear(&all.list);
     }
     return good;
 }
