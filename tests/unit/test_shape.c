@@ -1,6 +1,8 @@
 /* The table of primitive shapes: counts, positions, orientation, and what is refused. */
 #include "fixture.h"
 
+#include "tests/failing.h"
+
 #include "algo/shape.h"
 #include "geometry/geometry.h"
 #include "query/topology.h"
@@ -346,27 +348,35 @@ static void test_shape_limits_are_kept_before_memory_is_taken(void **state)
     }
 }
 
-static void test_shape_survives_failing_memory(void **state)
+typedef struct making {
+    const he_shape *shape;
+    double args[HE_SHAPE_PARAMS];
+    he_soup soup;
+} making;
+
+static int make_icosphere(void *context)
+{
+    making *m = context;
+    m->soup = (he_soup){.vertex_count = 77};
+    he_status status = he_shape_make(m->shape, m->args, NULL, &m->soup, NULL);
+    if (status == HE_OK) {
+        he_soup_clear(&m->soup);
+    }
+    return (int)status;
+}
+
+static bool soup_is_untouched(void *context)
+{
+    const making *m = context;
+    return m->soup.vertex_count == 77;
+}
+
+static void each_allocation_of_a_shape_may_fail(void **state)
 {
     (void)state;
-    const he_shape *shape = shape_named("icosphere");
-    double args[HE_SHAPE_PARAMS];
-    he_shape_defaults(shape, args);
-    he_status status = HE_NO_MEMORY;
-    long n = 0;
-    while (status != HE_OK) {
-        he_soup soup = {.vertex_count = 77};
-        fixture_fail_at(++n);
-        status = he_shape_make(shape, args, NULL, &soup, NULL);
-        if (status == HE_OK) {
-            he_soup_clear(&soup);
-        } else {
-            assert_int_equal(status, HE_NO_MEMORY);
-            assert_int_equal(soup.vertex_count, 77);
-        }
-        fixture_memory_back();
-    }
-    assert_int_equal(n, 4);
+    making m = {.shape = shape_named("icosphere")};
+    he_shape_defaults(m.shape, m.args);
+    assert_int_equal(fails_cleanly(make_icosphere, soup_is_untouched, &m), 4);
 }
 
 int main(void)
@@ -379,7 +389,7 @@ int main(void)
         cmocka_unit_test(test_shape_round_ones_fit_their_radius),
         cmocka_unit_test(test_shape_arguments_are_refused),
         cmocka_unit_test(test_shape_limits_are_kept_before_memory_is_taken),
-        cmocka_unit_test(test_shape_survives_failing_memory),
+        cmocka_unit_test(each_allocation_of_a_shape_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
