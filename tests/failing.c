@@ -11,87 +11,110 @@
 
 #include <cmocka.h>
 
-/* Threads of the code under test may allocate too, hence the atomics. */
-static struct {
-    atomic_long calls;
-    atomic_bool paused;
-    long fail_at; /* 0 never fails */
-    bool sticky;
-} memory;
+/* Threads of the code under test allocate too, hence the atomics. */
+static atomic_long calls, fail_at, blocks;
+static atomic_int pauses;
+static atomic_bool lasts;
+static bool is_installed;
 
 static void *resize(void *context, void *block, size_t size)
 {
     (void)context;
     if (size == 0) {
+        atomic_fetch_sub(&blocks, block != NULL);
         free(block);
         return NULL;
     }
-    if (atomic_load(&memory.paused)) {
-        return realloc(block, size);
+    if (atomic_load(&pauses) == 0) {
+        long n = atomic_fetch_add(&calls, 1) + 1, chosen = atomic_load(&fail_at);
+        if (n == chosen || (n > chosen && atomic_load(&lasts))) {
+            return NULL;
+        }
     }
-    long n = atomic_fetch_add(&memory.calls, 1) + 1;
-    bool fails = n == memory.fail_at || (memory.sticky && n > memory.fail_at);
-    return fails ? NULL : realloc(block, size);
+    void *resized = realloc(block, size);
+    atomic_fetch_add(&blocks, block == NULL && resized != NULL);
+    return resized;
 }
 
-static void install(long n, bool sticky)
+void failing_at(long n)
 {
     static const he_mem_hook hook = {resize, NULL};
-    atomic_store(&memory.calls, 0);
-    atomic_store(&memory.paused, false);
-    memory.fail_at = n;
-    memory.sticky = sticky;
-    he_mem_set_hook(&hook);
+    atomic_store(&calls, 0);
+    atomic_store(&pauses, 0);
+    atomic_store(&lasts, false);
+    atomic_store(&fail_at, n);
+    if (!is_installed) {
+        atomic_store(&blocks, 0);
+        he_mem_set_hook(&hook);
+        is_installed = true;
+    }
 }
 
-void failing_begin(long n)
+long failing_count(void)
 {
-    install(n, false);
+    return atomic_load(&calls);
 }
 
-long failing_end(void)
+long failing_blocks(void)
+{
+    return atomic_load(&blocks);
+}
+
+void failing_off(void)
 {
     he_mem_set_hook(NULL);
-    return atomic_load(&memory.calls);
+    is_installed = false;
 }
 
 void failing_pause(void)
 {
-    atomic_store(&memory.paused, true);
+    atomic_fetch_add(&pauses, 1);
 }
 
 void failing_resume(void)
 {
-    atomic_store(&memory.paused, false);
+    atomic_fetch_sub(&pauses, 1);
 }
 
-long fails_as(const failing *f)
+bool failing_next(failing *f)
 {
-    const char *what = f->what == NULL ? "" : f->what;
-    for (long n = 1;; n++) {
-        install(n, f->sticky);
-        int status = f->run(f->context);
-        bool reached = failing_end() >= n;
-        bool succeeded = status == f->done;
-        bool allowed = succeeded ? !reached || f->may_succeed : reached && status == f->refused;
-        if (!allowed) {
-            fail_msg("%s allocation %ld %s, and the status is %d", what, n,
-                     reached ? "failed" : "was not made", status);
-        }
-        if (!succeeded && f->compare != NULL && !f->compare(f->context)) {
-            fail_msg("%s allocation %ld failed, and something has changed", what, n);
-        }
-        if (!reached) {
-            return n;
-        }
+    if (f->is_over) {
+        return false;
     }
+    failing_at(++f->n);
+    atomic_store(&lasts, f->lasts);
+    return true;
+}
+
+bool failing_end(failing *f, bool succeeded)
+{
+    failing_off();
+    f->is_over = failing_count() < f->n;
+    if (succeeded != f->is_over && !(succeeded && f->may_succeed)) {
+        fail_msg("%s: allocation %ld %s, and the run %s", f->what == NULL ? "run" : f->what, f->n,
+                 f->is_over ? "was not made" : "failed", succeeded ? "succeeded" : "was refused");
+    }
+    return succeeded;
+}
+
+bool failing_status(failing *f, he_status status)
+{
+    failing_off();
+    if (status != HE_OK && status != HE_NO_MEMORY) {
+        fail_msg("%s: allocation %ld failed, and the status is %d",
+                 f->what == NULL ? "run" : f->what, f->n, (int)status);
+    }
+    return failing_end(f, status == HE_OK);
 }
 
 long fails_cleanly(int (*run)(void *context), bool (*compare)(void *context), void *context)
 {
-    return fails_as(&(failing){.run = run,
-                               .compare = compare,
-                               .context = context,
-                               .done = HE_OK,
-                               .refused = HE_NO_MEMORY});
+    failing f = {0};
+    while (failing_next(&f)) {
+        he_status status = (he_status)run(context);
+        if (!failing_status(&f, status) && compare != NULL && !compare(context)) {
+            fail_msg("allocation %ld failed, and something has changed", f.n);
+        }
+    }
+    return f.n;
 }

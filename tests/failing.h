@@ -1,47 +1,60 @@
 /* failing.h - allocations that fail on purpose, one after the other.
  *
  * What allocates memory must fail cleanly wherever an allocation fails: it is refused, and nothing
- * has changed. fails_cleanly() proves it for each allocation that a run makes:
+ * has changed. This loop proves it for each allocation of a run:
  *
- *     static int split(void *context) { return he_edge_split(...); }
- *     static bool unchanged(void *context) { return he_mesh_equal(...); }
- *     assert_true(fails_cleanly(split, unchanged, &mesh) > 5);
+ *     failing f = {0};
+ *     while (failing_next(&f)) {
+ *         he_status status = he_edge_split(mesh, e, NULL);
+ *         if (!failing_status(&f, status)) {
+ *             assert_true(he_mesh_equal(mesh, before));
+ *         }
+ *     }
  *
- * A run that reaches the failing allocation must not succeed, unless the caller says that some
- * allocations are optional, such as those that only shrink a block. What a run prepares or inspects
- * with allocations that are not on trial stands between failing_pause() and failing_resume(). The
- * hook of base/mem.h is installed during runs only; `compare` allocates from the C library. */
+ * In its N-th turn the N-th allocation fails. It ends after the first run that makes fewer than N
+ * allocations, which must succeed; every earlier run must not. The allocator fails only between
+ * failing_next() and failing_status() or failing_end(); it may be called by several threads. */
 #ifndef TESTS_FAILING_H
 #define TESTS_FAILING_H
 
+#include "base/status.h"
+
 #include <stdbool.h>
 
-/* What is run, and what is expected of it. */
+/* The state of the loop. It begins as {0}, or with one of its options. */
 typedef struct failing {
-    int (*run)(void *context);      /* returns a status, or the status of an HTTP answer */
-    bool (*compare)(void *context); /* after a refused run: is everything as before? may be NULL */
-    void *context;
-    int done;         /* the status of a run that succeeds */
-    int refused;      /* the status of a run without memory */
-    bool may_succeed; /* a run may succeed although an allocation failed */
-    bool sticky;      /* all allocations after the N-th fail too */
-    const char *what; /* begins the messages of failures; may be NULL */
+    long n;           /* the allocation that fails; after the loop, one that was not made */
+    bool may_succeed; /* option: some allocations are optional, and a run succeeds without them */
+    bool lasts;       /* option: all allocations after the n-th fail too */
+    const char *what; /* option: what was run, for the messages of failures */
+    bool is_over;     /* the last run made fewer than n allocations */
 } failing;
 
-/* Runs with the N-th allocation failing, for N = 1, 2, 3 ..., until a run makes fewer than N
- * allocations; that run must succeed. Fails the test, naming N, if another run ends otherwise than
- * declared or `compare` returns false. Returns the last N, which is one more than the number of
- * allocations of the last run. */
-long fails_as(const failing *f);
+/* Begins a run whose allocation n + 1 will fail. Returns false if the loop is over. */
+bool failing_next(failing *f);
+/* Ends a run, and returns `succeeded`. Fails the test, naming n, if the run succeeded although its
+ * allocation failed, or failed although it did not. */
+bool failing_end(failing *f, bool succeeded);
+/* Ends a run that returned HE_OK or HE_NO_MEMORY; another status fails the test. Returns true if
+ * the status is HE_OK. */
+bool failing_status(failing *f, he_status status);
 
-/* Calls fails_as() for a run that returns HE_OK or HE_NO_MEMORY. */
+/* Calls `run` in the loop above, and `compare` after each run that was refused; `compare` returns
+ * true if everything is as it was, and may be NULL. Returns the last n. `run` returns a
+ * he_status. */
 long fails_cleanly(int (*run)(void *context), bool (*compare)(void *context), void *context);
 
-/* Installs an allocator that refuses the n-th request from now on; with n = 0 it only counts. */
-void failing_begin(long n);
-/* Restores the allocator of the C library. Returns the number of requests that were counted. */
-long failing_end(void);
-/* Requests between these two are neither counted nor refused. */
+/* Makes the n-th allocation from now on fail, in whatever thread it is made; with n = 0 allocations
+ * are only counted. The first call and failing_off() exchange the allocator, so no other thread may
+ * allocate meanwhile; later calls only choose another n. */
+void failing_at(long n);
+/* Returns the number of allocations since failing_at(). */
+long failing_count(void);
+/* Returns the number of blocks allocated since the allocator was exchanged, less those freed. */
+long failing_blocks(void);
+/* Restores the allocator of the C library. */
+void failing_off(void);
+/* Allocations between these two are neither counted nor refused. Pauses may be nested. */
 void failing_pause(void);
 void failing_resume(void);
 

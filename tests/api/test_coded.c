@@ -5,6 +5,7 @@
 #include "tests/codings.h"
 
 #include "api/limits.h"
+#include "tests/failing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -582,33 +583,15 @@ static void a_job_of_a_coded_upload(void **state)
 
 /* --- memory --- */
 
-static struct {
-    long calls, fail_at;
-} memory;
-
-static void *resize(void *context, void *bytes, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(bytes);
-        return NULL;
-    }
-    return memory.fail_at > 0 && ++memory.calls == memory.fail_at ? NULL : realloc(bytes, size);
-}
-
 /* Lets each allocation of the request fail in turn: the answer must be the expected one or 507. */
 static void starve(api_bench *b, const char *method, const char *target, const char *const *headers,
                    const char *body, size_t length, const bench_reply *expected)
 {
-    bool reached = true;
-    long n = 1;
-    for (; reached; n++) {
+    failing f = {.may_succeed = true, .what = target};
+    while (failing_next(&f)) {
         bench_reply r;
-        memory.calls = 0;
-        memory.fail_at = n;
         bool sent = bench_try(b, method, target, headers, body, length, &r);
-        reached = memory.calls >= n;
-        memory.fail_at = 0;
+        failing_end(&f, sent && r.status == expected->status);
         if (!sent) {
             continue;
         }
@@ -624,16 +607,14 @@ static void starve(api_bench *b, const char *method, const char *target, const c
         }
         bench_reply_free(&r);
     }
-    print_message("%s %s: %ld allocations failed\n", method, target, n - 2);
+    print_message("%s %s: %ld allocations failed\n", method, target, f.n - 1);
 }
 
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {resize, NULL};
     static const char question[] = "{\"queries\":[{\"get\":{\"face\":0}},{\"get\":{\"face\":1}},"
                                    "{\"relation\":\"vertices\",\"of\":{\"vertices\":\"all\"}}]}";
-    he_mem_set_hook(&hook);
     api_bench *b = with_grid();
     for (size_t c = 0; c < 2; c++) {
         const char *const accept[] = {"Accept-Encoding", both[c], NULL};
@@ -657,7 +638,6 @@ static void every_allocation_may_fail(void **state)
         free(packed);
     }
     bench_free(b);
-    he_mem_set_hook(NULL);
 }
 
 int main(void)

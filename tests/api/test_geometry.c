@@ -3,6 +3,7 @@
 #include "tests/api/specimens.h"
 
 #include "unit/fixture.h"
+#include "tests/failing.h"
 
 enum { HEADER = 96, ROW = 16 };
 
@@ -286,14 +287,11 @@ static void test_each_allocation_failing(void **state)
     put_mesh(b, &pg);
     arrays whole = fetch(b);
     unsigned refused = 0;
-    bool done = false;
-    for (long failing = 1; !done; failing++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
         bench_reply r = {0};
-        fixture_fail_at(failing);
         bool answered = bench_try(b, "GET", PATH, NULL, NULL, 0, &r);
-        done = fixture_memory.calls < failing;
-        fixture_memory_back();
-        if (answered && r.status == 200) {
+        if (failing_end(&f, answered && r.status == 200)) {
             assert_int_equal(r.length, whole.reply.length);
             assert_memory_equal(r.body, whole.reply.body, r.length);
         } else {

@@ -12,6 +12,7 @@
 #include "model/random.h"
 #include "op/op.h"
 #include "unit/fixture.h"
+#include "tests/failing.h"
 
 #include <inttypes.h>
 #include <pthread.h>
@@ -536,19 +537,19 @@ static void test_each_allocation_failing(void **state)
     arrays c = {0}, fresh = {0};
     unsigned refused = 0;
     arrays_update(w.b, "m", &c);
-    for (long n = 1, before = -1; before != (long)refused || n < 10; n++) {
-        before = refused;
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":7}");
         post(w.b, "/v1/meshes/m/undo", NULL);
-        poke(w.b, (int)n);
+        poke(w.b, (int)f.n);
         char target[200];
         snprintf(target, sizeof target, "/v1/meshes/m/geometry?since=%" PRIu64 "&layout=%" PRIu64,
                  c.revision, c.layout);
         bench_reply r = {0};
-        fixture_fail_at(n);
+        failing_resume();
         bool answered = bench_try(w.b, "GET", target, NULL, NULL, 0, &r);
-        fixture_memory_back();
-        if (answered && r.status == 200) {
+        if (failing_end(&f, answered && r.status == 200)) {
             arrays_apply(&c, r.body, r.length);
         } else {
             assert_true(!answered || r.status == 507 || r.status == 500);

@@ -6,6 +6,7 @@
 #include "api/job/job_table.h"
 #include "api/limits.h"
 #include "base/mem.h"
+#include "tests/failing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -589,27 +590,6 @@ static void a_listener_is_told_that_the_server_stops(void **state)
 
 /* --- when an allocation fails --- */
 
-static struct {
-    long calls, fail_at;
-    size_t blocks;
-} memory;
-
-static void *resize(void *context, void *block, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        memory.blocks -= block != NULL;
-        free(block);
-        return NULL;
-    }
-    if (++memory.calls == memory.fail_at) {
-        return NULL;
-    }
-    void *resized = realloc(block, size);
-    memory.blocks += block == NULL && resized != NULL;
-    return resized;
-}
-
 static const char *state_of(const char *path, char out[16])
 {
     bench_reply r = expect(200, "GET", path, NULL, NULL);
@@ -622,14 +602,14 @@ static const char *state_of(const char *path, char out[16])
  * refused, or the job fails and leaves the mesh as it was, or everything succeeds. */
 static void starve(const char *method, const char *target, const char *body)
 {
-    bool reached = true;
-    for (long n = 1; reached; n++) {
+    failing f = {.may_succeed = true, .what = target};
+    while (failing_next(&f)) {
+        failing_pause();
         char path[64] = "", name[16];
         bench_reply r;
         bench = bench_new();
         send(201, "PUT", "/v1/meshes/m", LARGE);
-        memory.calls = 0;
-        memory.fail_at = n;
+        failing_resume();
         bool sent =
             bench_try(bench, method, target, async, body, body == NULL ? 0 : strlen(body), &r);
         if (sent) {
@@ -640,9 +620,9 @@ static void starve(const char *method, const char *target, const char *body)
             bench_reply_free(&r);
         }
         bench_run_jobs(bench, 1);
-        reached = memory.calls >= n;
-        memory.fail_at = 0;
-        if (path[0] != '\0' && strcmp(state_of(path, name), "done") != 0) {
+        failing_pause();
+        bool done = path[0] != '\0' && strcmp(state_of(path, name), "done") == 0;
+        if (path[0] != '\0' && !done) {
             assert_string_equal(name, "failed");
             r = expect(200, "GET", "/v1/meshes/m", NULL, NULL);
             assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 1);
@@ -653,20 +633,18 @@ static void starve(const char *method, const char *target, const char *body)
         send(200, "POST", "/v1/meshes/m/edits", POKE);
         bench_free(bench);
         bench = NULL;
+        failing_end(&f, done);
+        assert_int_equal(failing_blocks(), 0);
     }
 }
 
 static void jobs_without_memory(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {resize, NULL};
-    he_mem_set_hook(&hook);
     starve("POST", "/v1/meshes/m/edits", TRANSFORM);
     starve("POST", "/v1/meshes/m/edits", "{\"op\":\"compact\"}");
     starve("POST", "/v1/meshes", CUBE);
     starve("POST", "/v1/meshes/m/copy", NULL);
-    assert_int_equal(memory.blocks, 0);
-    he_mem_set_hook(NULL);
 }
 
 #define JOB_TEST(f) cmocka_unit_test_setup_teardown(f, start, stop)

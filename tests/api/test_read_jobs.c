@@ -4,6 +4,7 @@
 #include "tests/api/request.h"
 
 #include "base/mem.h"
+#include "tests/failing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -438,39 +439,22 @@ static void a_job_has_copies_of_its_headers(void **state)
 
 /* --- memory --- */
 
-static struct {
-    long calls, at; /* the allocation that fails, 0: none */
-} memory;
-
-static void *resize(void *context, void *block, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(block);
-        return NULL;
-    }
-    return ++memory.calls == memory.at ? NULL : realloc(block, size);
-}
-
 static void a_starved_job_has_failed_or_its_whole_answer(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {resize, NULL};
-    he_mem_set_hook(&hook);
     api_bench *b = bench_of_sphere();
     bench_reply wanted = bench_expect(200, bench_get(b, "/v1/meshes/m/content?format=obj"));
-    bool done = false;
-    for (long n = 1; !done; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         char path[PATH], link[PATH + 8];
         begin(b, "/v1/meshes/m/content?format=obj", path);
-        memory.calls = 0;
-        memory.at = n;
+        failing_resume();
         bench_run_jobs(b, 1);
-        memory.at = 0;
-        done = memory.calls < n;
+        failing_pause();
         snprintf(link, sizeof link, "%s/result", path);
         bench_reply r = bench_get(b, link);
-        assert_true(r.status == 200 || (!done && r.status == 404));
+        assert_true(failing_end(&f, r.status == 200) || r.status == 404);
         if (r.status == 200) {
             assert_int_equal(r.length, wanted.length);
             assert_memory_equal(r.body, wanted.body, wanted.length);
@@ -480,7 +464,6 @@ static void a_starved_job_has_failed_or_its_whole_answer(void **state)
     }
     bench_done(wanted);
     bench_free(b);
-    he_mem_set_hook(NULL);
 }
 
 int main(void)

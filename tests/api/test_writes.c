@@ -6,6 +6,7 @@
 
 #include "api/json/text.h"
 #include "api/limits.h"
+#include "tests/failing.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,24 +24,6 @@ static const char *text_of(const bench_reply *r, const char *member)
 }
 
 /* --- memory --- */
-
-static struct {
-    long calls, fail_at; /* 0 never fails */
-    bool sticky;
-} memory;
-
-static void *resize(void *context, void *old, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(old);
-        return NULL;
-    }
-    memory.calls++;
-    bool fails = memory.fail_at != 0 && (memory.calls == memory.fail_at ||
-                                         (memory.sticky && memory.calls > memory.fail_at));
-    return fails ? NULL : realloc(old, size);
-}
 
 typedef struct write {
     const char *method, *target;
@@ -205,11 +188,10 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
     free(after);
 }
 
-/* Tries a write whose allocation number `fail_at` fails, and all later ones if `sticky`. Returns
- * false if there were fewer allocations. */
-static bool try_write(const write *w, long fail_at, bool sticky)
+/* Tries a write in one turn of the loop over `f`. */
+static void try_write(const write *w, failing *f)
 {
-    memory.fail_at = 0;
+    failing_pause();
     api_bench *b = begin();
     const char *question = strchr(w->target, '?');
     char path[64];
@@ -222,25 +204,22 @@ static bool try_write(const write *w, long fail_at, bool sticky)
         bench_done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
     }
     char *before = state_of(b);
-    memory.calls = 0;
-    memory.sticky = sticky;
-    memory.fail_at = fail_at;
+    failing_resume();
     bench_reply r = {0};
     bool sent = bench_try(b, w->method, w->target, headers, w->body, length, &r);
-    bool reached = memory.calls >= fail_at;
-    memory.fail_at = 0;
+    failing_end(f, sent && r.status < 300);
     char *after = state_of(b);
     bool same = strcmp(before, after) == 0;
     if (!sent || r.status >= 300) {
         if ((sent && r.status != 507) || !same) {
             fail_msg("%s %s, allocation %ld: %d, and the state is%s the same", w->method, w->target,
-                     fail_at, sent ? r.status : 0, same ? "" : " not");
+                     f->n, sent ? r.status : 0, same ? "" : " not");
         }
     } else {
         /* If there was no memory for the body of the answer, its status must still be correct. */
         bool bare = r.status == (w->status == 201 ? 201 : 204) && r.length == 0;
         if (same != (w->how != ONCE) || (r.status != w->status && !bare)) {
-            fail_msg("%s %s, allocation %ld: %d", w->method, w->target, fail_at, r.status);
+            fail_msg("%s %s, allocation %ld: %d", w->method, w->target, f->n, r.status);
         }
         if (w->headers[0] != NULL && strcmp(w->headers[0], "Idempotency-Key") == 0) {
             expect_done_once(b, w, headers, &r);
@@ -256,26 +235,22 @@ static bool try_write(const write *w, long fail_at, bool sticky)
     free(after);
     assert_int_equal(journal.out, 0);
     bench_free(b);
-    return reached;
 }
 
 static void writes_are_whole_or_not_at_all(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {resize, NULL};
-    he_mem_set_hook(&hook);
     for (size_t i = 0; i < sizeof writes / sizeof *writes; i++) {
         for (int sticky = 0; sticky < 2; sticky++) {
-            long n = 1;
-            while (try_write(&writes[i], n, sticky != 0)) {
-                n++;
+            failing f = {.may_succeed = true, .lasts = sticky != 0, .what = writes[i].target};
+            while (failing_next(&f)) {
+                try_write(&writes[i], &f);
             }
-            assert_true(n > 2);
+            assert_true(f.n > 2);
             print_message("%s %s: %ld allocations failed%s\n", writes[i].method, writes[i].target,
-                          n - 1, sticky ? " and all after" : "");
+                          f.n - 1, sticky ? " and all after" : "");
         }
     }
-    he_mem_set_hook(NULL);
 }
 
 static void refuse_write(const write *w, st_status refusal, int status, const char *code)

@@ -1,5 +1,5 @@
-/* fixture.h - small meshes and failing allocators for unit tests. Include this header once per
- * program: its functions are static. */
+/* fixture.h - small meshes for unit tests. Include this header once per program: its functions are
+ * static. */
 #ifndef TESTS_UNIT_FIXTURE_H
 #define TESTS_UNIT_FIXTURE_H
 
@@ -71,36 +71,6 @@ static inline void fixture_counts(const he_mesh *mesh, unsigned v, unsigned e, u
     assert_int_equal(he_mesh_vertices(mesh), v);
     assert_int_equal(he_mesh_edges(mesh), e);
     assert_int_equal(he_mesh_faces(mesh), f);
-}
-
-/* An allocator that counts requests, and refuses the N-th one after fixture_fail_at(N). */
-typedef struct fixture_allocator {
-    long calls, fail_at;
-} fixture_allocator;
-
-static fixture_allocator fixture_memory;
-
-static inline void *fixture_resize(void *context, void *memory, size_t size)
-{
-    fixture_allocator *a = context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    return ++a->calls == a->fail_at ? NULL : realloc(memory, size);
-}
-
-/* Makes the n-th request from now on fail; with n = 0 none fails. */
-static inline void fixture_fail_at(long n)
-{
-    static const he_mem_hook hook = {fixture_resize, &fixture_memory};
-    fixture_memory = (fixture_allocator){0, n};
-    he_mem_set_hook(&hook);
-}
-
-static inline void fixture_memory_back(void)
-{
-    he_mem_set_hook(NULL);
 }
 
 #endif

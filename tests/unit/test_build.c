@@ -1,5 +1,6 @@
 /* he_build makes a mesh from a soup of faces, and refuses soups that no mesh can represent. */
 #include "fixture.h"
+#include "tests/failing.h"
 
 #include <math.h>
 
@@ -396,8 +397,9 @@ static void test_columns_follow_their_elements(void **state)
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
-    long n = 1;
-    for (bool done = false; !done; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         he_soup soup;
         he_mesh *m = NULL;
         he_error err = {0};
@@ -405,22 +407,19 @@ static void test_every_allocation_may_fail(void **state)
         he_column *column;
         assert_int_equal(
             he_soup_column(&soup, "uv", HE_HALFEDGE, HE_FLOAT, 2, HE_COPY, &column, NULL), HE_OK);
-        fixture_fail_at(n);
-        he_status status = he_build(&soup, n % 2 ? HE_BUILD_TAKE : 0, &m, NULL, &err);
-        fixture_memory_back();
-        if (status == HE_OK) {
-            done = fixture_memory.calls < n;
+        failing_resume();
+        he_status status = he_build(&soup, f.n % 2 ? HE_BUILD_TAKE : 0, &m, NULL, &err);
+        if (failing_status(&f, status)) {
             fixture_check(m);
             he_mesh_free(m);
         } else {
-            assert_int_equal(status, HE_NO_MEMORY);
             assert_int_equal(err.status, HE_NO_MEMORY);
             assert_int_equal(soup.vertex_count, 7);
         }
         he_soup_clear(&soup);
     }
-    print_message("build: %ld allocations failed in turn\n", n - 2);
-    assert_true(n > 10);
+    print_message("build: %ld allocations failed in turn\n", f.n - 1);
+    assert_true(f.n > 9);
 }
 
 int main(void)

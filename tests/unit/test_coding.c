@@ -5,6 +5,7 @@
 #include "api/header/pack.h"
 #include "api/header/unpack.h"
 #include "api/limits.h"
+#include "tests/failing.h"
 
 #include <zstd.h>
 
@@ -674,31 +675,30 @@ static void every_allocation_may_fail(void **state)
     bytes plain = text_of(100000);
     for (size_t c = 0; c < 2; c++) {
         bytes coded = pack_bytes(both[c], &plain);
-        bool done = false;
-        for (long n = 1; !done; n++) {
+        failing unpacking = {.what = "unpacking"};
+        while (failing_next(&unpacking)) {
             bytes out = {0};
             api_problem problem = {0};
-            fixture_fail_at(n);
             size_t used;
             static api_unpack_room room;
             api_unpack *u = api_unpack_new(both[c], &room, take, &out, &problem);
-            done = u != NULL && api_unpack_feed(u, coded.data, coded.length, &used, &problem) &&
-                   api_unpack_end(u, &problem);
+            bool done = u != NULL &&
+                        api_unpack_feed(u, coded.data, coded.length, &used, &problem) &&
+                        api_unpack_end(u, &problem);
             api_unpack_free(u);
-            fixture_memory_back();
+            failing_end(&unpacking, done);
             assert_int_equal(room.lent, 0);
             assert_true(done || problem.code == HE_NO_MEMORY);
-            assert_true(done == (n > fixture_memory.calls));
             free(out.data);
         }
-        done = false;
-        for (long n = 1; !done; n++) {
+        failing packing = {.what = "packing"};
+        while (failing_next(&packing)) {
             const char *whole;
             size_t length;
-            fixture_fail_at(n);
             api_pack *pack =
                 api_pack_new(both[c], &(api_plain){.bytes = plain.data, .length = plain.length});
-            done = pack != NULL && !api_pack_whole(pack, &whole, &length) && api_pack_begin(pack);
+            bool done =
+                pack != NULL && !api_pack_whole(pack, &whole, &length) && api_pack_begin(pack);
             if (pack != NULL && !done) {
                 api_pack_give_up(pack);
             }
@@ -710,8 +710,7 @@ static void every_allocation_may_fail(void **state)
                 free(out.data);
             }
             api_pack_free(pack);
-            fixture_memory_back();
-            assert_true(done == (n > fixture_memory.calls));
+            failing_end(&packing, done);
         }
         free(coded.data);
     }

@@ -3,6 +3,7 @@
 
 #include "algo/progressive.h"
 #include "mesh/write.h"
+#include "tests/failing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -136,20 +137,17 @@ static void memory_may_end_anywhere(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         he_mesh *first = dense_torus(ways[i].side);
-        bool failed = true;
-        for (long n = 1; failed; n++) {
+        failing f = {0};
+        while (failing_next(&f)) {
+            failing_pause();
             he_mesh *m = dense_copy(first);
+            failing_resume();
             he_decimate_options options = {ways[i].faces, INFINITY, 100};
-            fixture_fail_at(n);
-            he_status status = he_decimate(m, &options, NULL, NULL);
-            failed = status != HE_OK;
-            fixture_fail_at(0);
-            if (failed) {
-                assert_int_equal(status, HE_NO_MEMORY);
+            if (!failing_status(&f, he_decimate(m, &options, NULL, NULL))) {
                 assert_true(he_mesh_equal(m, first));
             }
             he_mesh_free(m);
-            assert_true(n < 200);
+            assert_true(f.n < 200);
         }
         he_mesh_free(first);
     }
@@ -159,22 +157,18 @@ static void a_progressive_mesh_may_run_out_of_memory(void **state)
 {
     (void)state;
     he_mesh *first = dense_torus(20);
-    bool failed = true;
-    for (long n = 1; failed; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
         he_progressive made = {0};
         const he_decimate_options options = {0, INFINITY, 100};
-        fixture_fail_at(n);
-        he_status status = he_progressive_new(first, &options, NULL, &made, NULL);
-        failed = status != HE_OK;
-        fixture_fail_at(0);
-        assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+        bool failed = !failing_status(&f, he_progressive_new(first, &options, NULL, &made, NULL));
         assert_true(failed ? made.base == NULL : made.count > 100);
         if (!failed) {
             fixture_check(made.base);
             assert_int_equal(he_mesh_vertices(made.base) + made.count, 400);
         }
         he_progressive_clear(&made);
-        assert_true(n < 200);
+        assert_true(f.n < 200);
     }
     he_mesh_free(first);
 }

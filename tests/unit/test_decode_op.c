@@ -3,6 +3,7 @@
 #include "api/write/names.h"
 
 #include "fixture.h"
+#include "tests/failing.h"
 
 static const struct {
     const char *body;
@@ -370,23 +371,21 @@ static void every_failed_allocation_is_a_problem(void **state)
     (void)state;
     static const char body[] = "[" SPLIT ",{\"op\":\"face_delete\",\"faces\":[1,\"$a.faces\",2]},"
                                "{\"op\":\"vertex_move\",\"vertices\":[1],\"to\":[[0,0,1]]}]";
-    long n = 0;
-    bool good = false;
-    while (!good) {
+    failing f = {0};
+    while (failing_next(&f)) {
         parsed p = {0};
         api_names names;
         api_in_limits limits = {.values = 1000};
         api_names_init(&names, (const uint64_t[2]){1, 2});
-        fixture_fail_at(++n);
-        good = api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
-               check_list(&p.root, &names, &p.arena);
-        assert_int_equal(good, fixture_memory.calls < n);
+        bool good =
+            api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
+            check_list(&p.root, &names, &p.arena);
+        failing_end(&f, good);
         assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
         api_names_clear(&names);
         clear(&p);
-        fixture_memory_back();
     }
-    assert_true(n > 20);
+    assert_true(f.n > 20);
 }
 
 int main(void)

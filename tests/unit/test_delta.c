@@ -5,6 +5,7 @@
 
 #include "mesh/compact.h"
 #include "mesh/write.h"
+#include "tests/failing.h"
 
 static he_mesh *copy_of(const he_mesh *m)
 {
@@ -397,33 +398,32 @@ static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns(), *start = copy_of(m);
-    long n = 1;
-    for (bool done = false; !done; n++) {
+    failing editing = {.what = "editing"}, copying = {.what = "copying"};
+    while (failing_next(&editing)) {
+        failing_pause();
         he_delta *d = he_delta_new();
         he_mesh_record(m, d);
         he_savepoint mark = he_delta_mark(m);
-        fixture_fail_at(n);
+        failing_resume();
         he_status status = add_triangle(m, NULL);
         if (status == HE_OK) {
             status = he_compact(m, NULL, NULL);
         }
-        fixture_memory_back();
-        done = status == HE_OK && fixture_memory.calls < n;
-        assert_true(done || status == HE_NO_MEMORY);
+        failing_status(&editing, status);
         he_delta_rollback(m, mark);
         he_mesh_record(m, NULL);
         he_delta_free(d);
         fixture_check(m);
         assert_true(he_mesh_equal(m, start));
+    }
+    while (failing_next(&copying)) {
         he_mesh *copy = NULL;
-        fixture_fail_at(n);
-        status = he_mesh_copy(m, &copy, NULL);
-        fixture_memory_back();
-        assert_true(status == HE_OK || copy == NULL);
+        bool copied = failing_status(&copying, he_mesh_copy(m, &copy, NULL));
+        assert_true(copied || copy == NULL);
         he_mesh_free(copy);
     }
-    print_message("%ld allocations failed in turn\n", n - 2);
-    assert_true(n > 12);
+    print_message("%ld allocations failed in turn\n", editing.n - 1);
+    assert_true(editing.n > 11);
     he_mesh_free(m);
     he_mesh_free(start);
 }

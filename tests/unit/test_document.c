@@ -7,6 +7,7 @@
 #include "mesh/compact.h"
 #include "mesh/write.h"
 #include "repair/repair.h"
+#include "tests/failing.h"
 
 #include <stdint.h>
 
@@ -252,11 +253,9 @@ static void limits_of_the_soup_are_kept(void **state)
 static void every_failed_allocation_while_reading_is_a_problem(void **state)
 {
     (void)state;
-    long n = 0;
-    bool good = false;
-    while (!good) {
+    failing f = {0};
+    while (failing_next(&f)) {
         api_problem problem = {0};
-        fixture_fail_at(++n);
         api_document_in *in = api_document_in_new(NULL);
         for (size_t at = 0; in != NULL && problem.code == HE_OK && at < strlen(sample); at += 9) {
             size_t left = strlen(sample) - at;
@@ -264,12 +263,11 @@ static void every_failed_allocation_while_reading_is_a_problem(void **state)
                 assert_int_equal(problem.code, HE_NO_MEMORY);
             }
         }
-        good = in != NULL && problem.code == HE_OK && api_document_in_end(in, &problem);
-        assert_int_equal(good, fixture_memory.calls < n);
+        bool good = in != NULL && problem.code == HE_OK && api_document_in_end(in, &problem);
+        failing_end(&f, good);
         api_document_in_free(in);
-        fixture_memory_back();
     }
-    assert_true(n > 10);
+    assert_true(f.n > 10);
 }
 
 static const char attributed[] =
@@ -322,16 +320,13 @@ static he_mesh *make_attributed(api_problem *problem)
 static void every_failed_allocation_of_attributes_and_repairs_is_a_problem(void **state)
 {
     (void)state;
-    bool struck = true;
     long refused = 0;
-    for (long n = 1; struck; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
         api_problem problem = {0};
-        fixture_fail_at(n);
         he_mesh *mesh = make_attributed(&problem);
-        struck = fixture_memory.calls >= n;
-        fixture_memory_back();
+        failing_end(&f, mesh != NULL);
         assert_int_equal(problem.code, mesh != NULL ? HE_OK : HE_NO_MEMORY);
-        assert_true(mesh != NULL || struck);
         refused += mesh == NULL;
         if (mesh != NULL) {
             fixture_check(mesh);
@@ -475,17 +470,14 @@ static void every_failed_allocation_of_the_writer_gives_null(void **state)
                      HE_OK);
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    long n = 0;
-    api_document_out *out = NULL;
-    while (out == NULL) {
-        fixture_fail_at(++n);
-        out = api_document_out_new(mesh, "name");
-        assert_int_equal(out != NULL, fixture_memory.calls < n);
-        fixture_memory_back();
+    failing f = {0};
+    while (failing_next(&f)) {
+        api_document_out *out = api_document_out_new(mesh, "name");
+        failing_end(&f, out != NULL);
+        api_document_out_free(out);
     }
-    api_document_out_free(out);
     he_mesh_free(mesh);
-    assert_true(n > 1);
+    assert_true(f.n > 1);
 }
 
 int main(void)

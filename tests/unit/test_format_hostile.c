@@ -3,6 +3,7 @@
 #include "unit/format_fixture.h"
 
 #include "tests/pace.h"
+#include "tests/failing.h"
 
 static const char obj[] =
     "# all there is\nmtllib x.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1 0.5\nv 0 1 0 1 1 1\n"
@@ -102,26 +103,22 @@ static void readers_without_memory(void **state)
 {
     (void)state;
     for (size_t i = 0; i < FILES; i++) {
-        he_status status = HE_NO_MEMORY;
-        long n = 0;
-        while (status != HE_OK) {
+        failing f = {.what = files[i].name};
+        while (failing_next(&f)) {
             he_import import = {0};
             he_error err = {0};
-            fixture_fail_at(++n);
-            status =
+            he_status status =
                 read_pieces(files[i].name, files[i].text, files[i].length, 5, NULL, &import, &err);
-            fixture_memory_back();
-            if (status == HE_OK) {
+            if (failing_status(&f, status)) {
                 he_import_clear(&import);
             } else {
-                assert_int_equal(status, HE_NO_MEMORY);
                 assert_int_equal(err.status, HE_NO_MEMORY);
                 assert_true(err.text[0] != '\0');
             }
         }
         print_message("%s: %ld allocations of the reader failed, each refused\n", files[i].name,
-                      n - 1);
-        assert_true(n > 5);
+                      f.n - 1);
+        assert_true(f.n > 5);
     }
 }
 
@@ -147,26 +144,24 @@ static void writers_without_memory(void **state)
     long failures = 0;
     for (size_t i = 0; i < FILES * FILES; i++) {
         const char *name = writer_of(files[i % FILES].name);
-        he_status status = HE_NO_MEMORY;
-        long n = 0;
-        while (status != HE_OK) {
+        failing f = {.what = name};
+        while (failing_next(&f)) {
             he_writer *writer;
             he_error err = {0};
-            fixture_fail_at(++n);
-            status = he_writer_new(he_format_find(name), meshes[i / FILES], 0, NULL, &writer, &err);
+            he_status status =
+                he_writer_new(he_format_find(name), meshes[i / FILES], 0, NULL, &writer, &err);
             if (status == HE_OK) {
                 char buffer[64];
                 while (he_writer_read(writer, buffer, sizeof buffer) > 0) {
                 }
                 he_writer_free(writer);
             } else {
-                assert_int_equal(status, HE_NO_MEMORY);
                 assert_int_equal(err.status, HE_NO_MEMORY);
             }
-            fixture_memory_back();
+            failing_status(&f, status);
         }
-        failures += n - 1;
-        assert_true(n > 2);
+        failures += f.n - 1;
+        assert_true(f.n > 2);
     }
     print_message("%ld allocations of the writers failed, each refused\n", failures);
     for (size_t i = 0; i < FILES; i++) {

@@ -4,6 +4,7 @@
 
 #include "format/gltf/gltf.h"
 #include "format/gltf/meshopt.h"
+#include "tests/failing.h"
 
 #include <math.h>
 
@@ -457,17 +458,14 @@ static void without_memory_nothing_is_read(void **state)
     glb_file f;
     describe(json, sizeof json, first, second);
     glb_make(&f, json, b.bytes, CHUNK);
-    long n = 1;
-    for (he_status status = HE_NO_MEMORY; status != HE_OK; n++) {
+    failing each = {0};
+    while (failing_next(&each)) {
         he_import import = {0};
         he_error err = {0};
-        fixture_fail_at(n);
-        status = read_pieces("glb", f.bytes, f.length, 0, NULL, &import, &err);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        failing_status(&each, read_pieces("glb", f.bytes, f.length, 0, NULL, &import, &err));
         he_import_clear(&import);
     }
-    assert_true(n > 5);
+    assert_true(each.n > 4);
 }
 
 /* --- writing --- */
@@ -594,17 +592,14 @@ static void a_writer_without_memory_is_refused(void **state)
 {
     (void)state;
     he_mesh *mesh = mesh_of_text("obj", seam);
-    he_status status = HE_NO_MEMORY;
-    long n = 1;
-    for (; status != HE_OK; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
         he_writer *writer = NULL;
-        fixture_fail_at(n);
-        status = he_writer_new(he_format_find("glb"), mesh, HE_GLB_MESHOPT, NULL, &writer, NULL);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
-        he_writer_free(status == HE_OK ? writer : NULL);
+        he_status status =
+            he_writer_new(he_format_find("glb"), mesh, HE_GLB_MESHOPT, NULL, &writer, NULL);
+        he_writer_free(failing_status(&f, status) ? writer : NULL);
     }
-    assert_true(n > 10);
+    assert_true(f.n > 9);
     he_mesh_free(mesh);
 }
 

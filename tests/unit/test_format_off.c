@@ -1,5 +1,6 @@
 /* The OFF reader: headers, colours, counts, and every refusal with its line. */
 #include "unit/format_fixture.h"
+#include "tests/failing.h"
 
 #include <math.h>
 
@@ -334,11 +335,11 @@ static void a_count_allocates_nothing(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         he_import import = {0};
         he_error err = {0};
-        fixture_fail_at(0);
+        failing_at(0);
         he_status status = read_pieces("off", texts[i], strlen(texts[i]), 0, NULL, &import, &err);
         assert_int_equal(status, HE_SYNTAX);
-        assert_in_range(fixture_memory.calls, 1, 12);
-        fixture_memory_back();
+        assert_in_range(failing_count(), 1, 12);
+        failing_off();
     }
 }
 

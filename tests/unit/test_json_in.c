@@ -2,6 +2,7 @@
 
 #include "api/limits.h"
 #include "fixture.h"
+#include "tests/failing.h"
 
 #include <stdint.h>
 
@@ -382,25 +383,22 @@ static void every_failed_allocation_is_a_problem(void **state)
 {
     (void)state;
     static const char body[] = "{\"ids\":[1,2,3],\"name\":\"x\",\"deep\":[[{\"a\":null}]]}";
-    long n = 0;
-    bool good = false;
-    while (!good) {
+    failing f = {0};
+    while (failing_next(&f)) {
         api_document document = {0};
         api_arena arena = {0};
         api_in root, list;
         api_problem problem = {0};
         uint32_t *ids;
         size_t count;
-        fixture_fail_at(++n);
-        good = parse(body, strlen(body), 100, &document, &root, &problem) &&
-               api_in_need(&root, "ids", &list) && api_in_ids(&list, 1, &arena, &ids, &count);
-        assert_int_equal(good, fixture_memory.calls < n);
+        bool good = parse(body, strlen(body), 100, &document, &root, &problem) &&
+                    api_in_need(&root, "ids", &list) && api_in_ids(&list, 1, &arena, &ids, &count);
+        failing_end(&f, good);
         assert_int_equal(problem.code, good ? HE_OK : HE_NO_MEMORY);
         api_arena_clear(&arena);
         api_document_clear(&document);
-        fixture_memory_back();
     }
-    assert_true(n > 10);
+    assert_true(f.n > 10);
 }
 
 int main(void)

@@ -3,6 +3,7 @@
 #include "unit/fixture.h"
 
 #include "geometry/near.h"
+#include "tests/failing.h"
 
 #include <math.h>
 
@@ -84,9 +85,9 @@ static void without_a_tolerance_only_equal_points_are_near(void **state)
     he_near_keep(&near, home, 1);
     assert_int_equal(he_near_find(&near, points[2], &home), 0);
     he_near_clear(&near);
-    fixture_fail_at(1);
+    failing_at(1);
     assert_int_equal(he_near_make(&near, points, 3, 0, 0, NULL, NULL), HE_NO_MEMORY);
-    fixture_memory_back();
+    failing_off();
 }
 
 static bool give_up(void *context, const char *phase, double done)

@@ -4,6 +4,7 @@
 
 #include "query/adjacency.h"
 #include "query/idmap.h"
+#include "tests/failing.h"
 
 static const he_relation *relation_named(he_kind of, const char *name)
 {
@@ -395,26 +396,20 @@ static void test_relations_survive_failing_memory(void **state)
     (void)state;
     he_mesh *m = query_shape("cone", 40, 1, 1, 1);
     for (size_t i = 0; i < he_relation_count(); i++) {
-        he_status status = HE_NO_MEMORY;
-        for (long n = 1; status != HE_OK; n++) {
+        failing f = {0};
+        while (failing_next(&f)) {
             he_dense dense = {0};
-            fixture_fail_at(n);
-            status = he_relation_dense(m, he_relation_at(i), NULL, 0, 0, 0, &dense, NULL);
-            assert_true(status == HE_OK || status == HE_NO_MEMORY);
-            assert_true(status == HE_OK || dense.ids.ids == NULL);
+            he_status status = he_relation_dense(m, he_relation_at(i), NULL, 0, 0, 0, &dense, NULL);
+            assert_true(failing_status(&f, status) || dense.ids.ids == NULL);
             he_dense_clear(&dense);
-            fixture_memory_back();
         }
     }
-    he_status status = HE_NO_MEMORY;
-    for (long n = 1; status != HE_OK; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
         he_ids common = {0};
-        fixture_fail_at(n);
-        status = he_common_faces(m, (he_vertex){40}, (he_vertex){1}, &common, NULL);
-        assert_true(status == HE_OK || (status == HE_NO_MEMORY && common.count == 0));
-        assert_true(status != HE_OK || common.count == 2);
+        he_status status = he_common_faces(m, (he_vertex){40}, (he_vertex){1}, &common, NULL);
+        assert_int_equal(common.count, failing_status(&f, status) ? 2 : 0);
         he_ids_clear(&common);
-        fixture_memory_back();
     }
     he_mesh_free(m);
 }
@@ -437,8 +432,8 @@ static void test_idmap_numbers_in_order_of_arrival(void **state)
     }
     assert_int_equal(map.ids.count, next);
     he_idmap_clear(&map);
-    for (long n = 1; n < 20; n++) {
-        fixture_fail_at(n);
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
         uint32_t index;
         bool added;
         for (uint32_t id = 0; id < 100; id++) {
@@ -450,8 +445,8 @@ static void test_idmap_numbers_in_order_of_arrival(void **state)
             }
             assert_int_equal(index, id);
         }
+        failing_end(&f, true);
         he_idmap_clear(&map);
-        fixture_memory_back();
     }
 }
 

@@ -5,6 +5,7 @@
 #include "edit/local/vertex.h"
 #include "geometry/geometry.h"
 #include "geometry/triangulation.h"
+#include "tests/failing.h"
 
 #include <float.h>
 #include <math.h>
@@ -440,22 +441,17 @@ static void test_each_allocation_failing(void **state)
     static double ell[][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
     he_mesh *m = face_of(&(polygon){ell, 6}, 1, 1, 0);
     he_frame frame = he_frame_of(m);
-    long n = 0;
-    he_status status;
-    do {
+    failing f = {0};
+    while (failing_next(&f)) {
         he_drawing d;
         he_error err = {0};
-        fixture_fail_at(++n);
-        status = he_drawing_init(&d, m, &frame, &err);
-        fixture_memory_back();
-        if (status == HE_OK) {
+        if (failing_status(&f, he_drawing_init(&d, m, &frame, &err))) {
             he_drawing_clear(&d);
         } else {
-            assert_int_equal(status, HE_NO_MEMORY);
             assert_int_equal(err.status, HE_NO_MEMORY);
         }
-    } while (status != HE_OK);
-    assert_true(n > 3);
+    }
+    assert_true(f.n > 3);
     he_mesh_free(m);
 }
 

@@ -3,6 +3,7 @@
 
 #include "edit/local/vertex.h"
 #include "geometry/geometry.h"
+#include "tests/failing.h"
 
 #include <float.h>
 #include <math.h>
@@ -196,9 +197,9 @@ static void dihedrals_are_refused_where_memory_is_out(void **state)
     (void)state;
     he_mesh *m = cube();
     double all[12];
-    fixture_fail_at(1);
+    failing_at(1);
     he_status status = he_edge_dihedrals(m, NULL, all, NULL);
-    fixture_memory_back();
+    failing_off();
     assert_int_equal(status, HE_NO_MEMORY);
     he_mesh_free(m);
 }

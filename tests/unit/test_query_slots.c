@@ -8,6 +8,7 @@
 #include "edit/local/vertex.h"
 #include "model/random.h"
 #include "tests/seed.h"
+#include "tests/failing.h"
 
 #include <math.h>
 #include <time.h>
@@ -290,31 +291,21 @@ static void test_each_allocation_failing(void **state)
     while (w.faces < 20) {
         add_face(&w);
     }
-    long n = 0;
-    he_status status;
-    do {
+    failing making = {.what = "making"};
+    while (failing_next(&making)) {
         he_slots *slots;
-        fixture_fail_at(++n);
-        status = he_slots_new(w.m, 1, 1, &slots, NULL);
-        fixture_memory_back();
-        if (status == HE_OK) {
+        if (failing_status(&making, he_slots_new(w.m, 1, 1, &slots, NULL))) {
             he_slots_free(slots);
-        } else {
-            assert_int_equal(status, HE_NO_MEMORY);
         }
-    } while (status != HE_OK);
-    assert_true(n > 3);
-    n = 0;
-    do {
-        fixture_fail_at(++n);
-        status = advance(&w, UINT64_MAX);
-        fixture_memory_back();
-        if (status != HE_OK) {
-            assert_int_equal(status, HE_NO_MEMORY);
+    }
+    assert_true(making.n > 3);
+    failing advancing = {.what = "advancing"};
+    while (failing_next(&advancing)) {
+        if (!failing_status(&advancing, advance(&w, UINT64_MAX))) {
             assert_true(w.slots->revision == 1 && w.slots->count == 0);
         }
-    } while (status != HE_OK);
-    assert_true(n > 5);
+    }
+    assert_true(advancing.n > 5);
     check_slots(&w);
     close_world(&w);
 }

@@ -3,6 +3,7 @@
 #include "query_specimens.h"
 
 #include "query/topology.h"
+#include "tests/failing.h"
 
 static bool is_live(const he_mesh *m, he_kind kind, uint32_t id)
 {
@@ -306,14 +307,13 @@ static void test_topology_survives_failing_memory(void **state)
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056,7890");
     for (int which = 0; which < 5; which++) {
-        he_status status = HE_NO_MEMORY;
-        long failures = -1;
-        for (long n = 1; status != HE_OK; n++, failures++) {
+        failing f = {0};
+        while (failing_next(&f)) {
+            he_status status = HE_OK;
             he_topology t = {.faces = 77};
             he_boundaries loops = {.count = 77};
             he_components parts = {.count = 77};
             he_ids bowties = {0};
-            fixture_fail_at(n);
             switch (which) {
             case 0:
                 status = he_topology_find(m, &t, NULL);
@@ -330,9 +330,7 @@ static void test_topology_survives_failing_memory(void **state)
                 status = he_bowties_find(m, &bowties, NULL);
                 break;
             }
-            fixture_memory_back();
-            assert_true(status == HE_OK || status == HE_NO_MEMORY);
-            if (status != HE_OK) {
+            if (!failing_status(&f, status)) {
                 assert_true(t.faces == 77 && loops.count == 77 && parts.count == 77);
                 assert_int_equal(bowties.count, 0);
             }
@@ -341,7 +339,7 @@ static void test_topology_survives_failing_memory(void **state)
             he_components_clear(&parts);
             he_ids_clear(&bowties);
         }
-        assert_true(failures > 0);
+        assert_true(f.n > 1);
     }
     he_mesh_free(m);
 }

@@ -1,6 +1,7 @@
 /* Each repair by itself; then failing allocations, cancelling, and soups that cannot be
  * repaired. */
 #include "repair_fixture.h"
+#include "tests/failing.h"
 
 /* --- one by one --- */
 
@@ -217,11 +218,10 @@ static he_status mend_or_fail(const he_soup *soup, unsigned which, he_watch *wat
     he_mesh *mesh = NULL;
     he_error err = {0};
     he_repair_plan plan = plan_of(which);
-    long fail_at = fixture_memory.fail_at;
-    fixture_memory_back();
+    failing_pause();
     copy_soup(soup, &copy);
     copy.limits.watch = watch;
-    fixture_fail_at(fail_at);
+    failing_resume();
     he_status status = he_repair_soup(&copy, &plan, &done, &err);
     if (status == HE_OK) {
         status = he_build(&copy, 0, &mesh, NULL, &err);
@@ -231,11 +231,9 @@ static he_status mend_or_fail(const he_soup *soup, unsigned which, he_watch *wat
         status = he_repair_mesh(mesh, &plan, &done, &err);
     }
     assert_int_equal(err.status, status);
-    fixture_memory_back();
     he_mesh_free(mesh);
     he_repaired_clear(&done);
     he_soup_clear(&copy);
-    fixture_memory.fail_at = fail_at;
     return status;
 }
 
@@ -251,23 +249,19 @@ static void every_failing_allocation_is_survived(void **state)
         if ((which & (DEGENERATE | SPLIT)) != (DEGENERATE | SPLIT)) {
             continue;
         }
-        he_status status = HE_NO_MEMORY;
-        for (long n = 1; status != HE_OK; n++) {
-            fixture_memory.fail_at = n;
-            status = mend_or_fail(&soup, which, NULL);
-            assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        failing f = {.what = "repair"};
+        while (failing_next(&f)) {
+            failing_status(&f, mend_or_fail(&soup, which, NULL));
         }
     }
-    fixture_memory.fail_at = 0;
-    he_status status = HE_NO_MEMORY;
-    for (long n = 1; status != HE_OK; n++) {
+    failing f = {.what = "advice"};
+    while (failing_next(&f)) {
+        failing_pause();
         he_soup copy;
         unsigned which;
         copy_soup(&soup, &copy);
-        fixture_fail_at(n);
-        status = he_repair_advise(&copy, 0, &which, NULL);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
+        failing_resume();
+        failing_status(&f, he_repair_advise(&copy, 0, &which, NULL));
         he_soup_clear(&copy);
     }
     he_soup_clear(&soup);
@@ -292,7 +286,6 @@ static void it_can_be_given_up_at_any_time(void **state)
     (void)state;
     he_soup soup;
     fixture_soup(&soup, BROKEN);
-    fixture_memory.fail_at = 0;
     he_status status = HE_CANCELLED;
     for (int n = 1; status != HE_OK; n++) {
         teller t = {.left = n};

@@ -4,6 +4,7 @@
 
 #include "query/open_seams.h"
 #include "repair/repair.h"
+#include "tests/failing.h"
 
 /* Two triangles share an edge in space, but each has vertices of its own, as many programs write a
  * texture seam. */
@@ -134,9 +135,9 @@ static void counting_them_may_lack_memory(void **state)
     (void)state;
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     uint64_t seams;
-    fixture_fail_at(1);
+    failing_at(1);
     assert_int_equal(he_open_seams_count(mesh, &seams, NULL), HE_NO_MEMORY);
-    fixture_memory_back();
+    failing_off();
     he_mesh_free(mesh);
 }
 

@@ -326,10 +326,10 @@ static void test_shape_limits_are_kept_before_memory_is_taken(void **state)
                 continue;
             }
             he_error err = {0};
-            fixture_fail_at(0);
+            failing_at(0);
             assert_int_equal(he_shape_make(shape, args, &low, &soup, &err), HE_LIMIT);
-            assert_int_equal(fixture_memory.calls, 0);
-            fixture_memory_back();
+            assert_int_equal(failing_count(), 0);
+            failing_off();
             assert_int_equal(err.status, HE_LIMIT);
         }
     }
@@ -341,10 +341,10 @@ static void test_shape_limits_are_kept_before_memory_is_taken(void **state)
         args[0] = shape->params[0].max;
         args[1] = shape->params[1].max;
         he_soup soup;
-        fixture_fail_at(0);
+        failing_at(0);
         assert_int_equal(he_shape_make(shape, args, NULL, &soup, NULL), HE_LIMIT);
-        assert_int_equal(fixture_memory.calls, 0);
-        fixture_memory_back();
+        assert_int_equal(failing_count(), 0);
+        failing_off();
     }
 }
 

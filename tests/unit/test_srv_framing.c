@@ -5,6 +5,7 @@
 #include "server/http/syntax/http_framing.h"
 #include "server/http/http_headers.h"
 #include "server/http/http_policy.h"
+#include "tests/failing.h"
 
 static srv_head head_of(const char *target)
 {
@@ -143,17 +144,17 @@ static void headers_ask_for_memory_only_where_lines_are_joined(void **state)
     add_field(&head, "Idempotency-Key", "b");
     add_field(&head, "X-Other", "1");
     add_field(&head, "X-Other", "2");
-    fixture_fail_at(1);
+    failing_at(1);
     bool good = srv_headers_read(&head, values, &joined);
-    fixture_memory_back();
+    failing_off();
     assert_true(good);
     assert_null(joined);
     assert_ptr_equal(values[API_HEADER_ACCEPT], head.fields[0].value);
     assert_ptr_equal(values[API_HEADER_IDEMPOTENCY_KEY], head.fields[1].value);
     add_field(&head, "Accept", "text/plain");
-    fixture_fail_at(1);
+    failing_at(1);
     good = srv_headers_read(&head, values, &joined);
-    fixture_memory_back();
+    failing_off();
     assert_false(good);
     assert_null(joined);
 }

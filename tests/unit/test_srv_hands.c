@@ -7,6 +7,7 @@
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 #include "system/parallel.h"
+#include "tests/failing.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -88,17 +89,17 @@ static void of_parts_that_fail_the_first_one_is_told(void **state)
     for (size_t i = 0; i < HAND_COUNTS; i++) {
         st_parallel *hands = st_parallel_new(hand_counts[i]);
         const he_exec *exec = st_parallel_exec(hands);
-        for (uint32_t failing = 0; failing < PARTS; failing += 7) {
-            tally t = {.failing = failing};
+        for (uint32_t unlucky = 0; unlucky < PARTS; unlucky += 7) {
+            tally t = {.failing = unlucky};
             he_error err = {0};
             char text[64];
             assert_int_equal(exec->run(exec->self, PARTS, count_part, &t, NULL, &err),
                              HE_NO_MEMORY);
-            snprintf(text, sizeof text, "part %u of the work", failing);
+            snprintf(text, sizeof text, "part %u of the work", unlucky);
             assert_string_equal(err.text, text);
-            assert_int_equal(atomic_load(&t.runs[failing]), 1);
+            assert_int_equal(atomic_load(&t.runs[unlucky]), 1);
             uint32_t runs = 0;
-            for (uint32_t part = failing; part < PARTS; part++) {
+            for (uint32_t part = unlucky; part < PARTS; part++) {
                 runs += atomic_load(&t.runs[part]);
             }
             assert_true(runs <= hand_counts[i] + 1);
@@ -347,28 +348,9 @@ static void defects_are_the_same_on_1_2_and_8_threads(void **state)
 
 /* --- memory --- */
 
-static _Atomic long requests, blocks, failing;
-
-static void *fail_one(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        atomic_fetch_sub(&blocks, memory != NULL);
-        free(memory);
-        return NULL;
-    }
-    if (atomic_fetch_add(&requests, 1) + 1 == atomic_load(&failing)) {
-        return NULL;
-    }
-    void *resized = realloc(memory, size);
-    atomic_fetch_add(&blocks, memory == NULL && resized != NULL);
-    return resized;
-}
-
 static void memory_that_runs_out_leaves_nothing_behind(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {fail_one, NULL};
     he_soup soup;
     make_soup(2, &soup);
     st_parallel *hands = st_parallel_new(1);
@@ -376,22 +358,17 @@ static void memory_that_runs_out_leaves_nothing_behind(void **state)
     he_watch_init(&watch, NULL, NULL);
     watch.exec = st_parallel_exec(hands);
     soup.limits.watch = &watch;
-    he_mem_set_hook(&hook);
-    he_status status = HE_NO_MEMORY;
-    long n = 0;
-    while (status != HE_OK) {
+    failing f = {0};
+    while (failing_next(&f)) {
         he_mesh *mesh = NULL;
         he_error err = {0};
-        n++;
-        atomic_store(&requests, 0);
-        atomic_store(&failing, n);
-        status = he_build(&soup, 0, &mesh, NULL, &err);
+        he_status status = he_build(&soup, 0, &mesh, NULL, &err);
         assert_true(status == HE_OK || (status == HE_NO_MEMORY && mesh == NULL));
         he_mesh_free(mesh);
-        assert_int_equal(atomic_load(&blocks), 0);
+        failing_status(&f, status);
+        assert_int_equal(failing_blocks(), 0);
     }
-    he_mem_set_hook(NULL);
-    assert_true(n > 10);
+    assert_true(f.n > 10);
     st_parallel_free(hands);
     soup.limits.watch = NULL;
     he_soup_clear(&soup);

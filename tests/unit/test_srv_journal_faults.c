@@ -2,7 +2,7 @@
  * acknowledged records must be there, others must be reported as lost, and nothing else may
  * change. */
 #include "tests/disk.h"
-#include "tests/failing_memory.h"
+#include "tests/failing.h"
 #include "tests/store_folder.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
@@ -578,15 +578,14 @@ static void without_memory_nothing_is_lost(void **state)
         told_journal told;
         kept_mesh mesh = new_mesh();
         unsigned acknowledged = 0, records = 0;
-        failing_memory_begin();
-        failing_memory_at(n);
+        failing_at(n);
         if (try_open(&told, 0)) {
             use_all(&told, &mesh, &acknowledged);
             assert_int_equal(told_losses(&told), 0);
             told_end(&told);
         }
-        failed = failing_memory_calls() >= n;
-        failing_memory_end();
+        failed = failing_count() >= n;
+        failing_off();
         open_store(&told, 0);
         st_status status = count_records(&told.journal, "a", &records);
         assert_int_equal(status, acknowledged == 0 ? ST_ABSENT : ST_OK);

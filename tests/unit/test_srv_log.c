@@ -4,6 +4,7 @@
 
 #include "server/log/log.h"
 #include "system/memory.h"
+#include "tests/failing.h"
 
 #include <cjson/cJSON.h>
 #include <pthread.h>
@@ -369,11 +370,10 @@ static void the_ring_takes_little_of_a_small_budget(void **state)
 static void a_log_without_memory_is_none(void **state)
 {
     (void)state;
-    for (long n = 1; n <= 2; n++) {
-        fixture_fail_at(n);
+    failing f = {0};
+    while (f.n < 2 && failing_next(&f)) {
         srv_log *log = srv_log_new(STDERR_FILENO, 4, &(srv_log_settings){.json = true});
-        fixture_memory_back();
-        assert_null(log);
+        assert_false(failing_end(&f, log != NULL));
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include "server/net/address.h"
 #include "server/net/peers.h"
+#include "tests/failing.h"
 
 static bool is_one_client(const char *a, const char *b)
 {
@@ -105,24 +106,22 @@ static void a_full_table_counts_those_it_has(void **state)
 static void a_table_without_memory_is_none(void **state)
 {
     (void)state;
-    srv_peers *peers = NULL;
-    long n = 0;
-    while (peers == NULL) {
-        fixture_fail_at(++n);
-        peers = srv_peers_new(10);
-        fixture_memory_back();
+    failing f = {0};
+    while (failing_next(&f)) {
+        srv_peers *peers = srv_peers_new(10);
+        failing_end(&f, peers != NULL);
+        srv_peers_free(peers);
     }
-    assert_int_equal(n, 4); /* the object, its heads and its entries */
-    srv_peers_free(peers);
+    assert_int_equal(f.n, 4); /* the object, its heads and its entries */
 }
 
 /* The key of an address asks for no memory, so there is none that it could be without. */
 static void an_address_key_needs_no_memory(void **state)
 {
     (void)state;
-    fixture_fail_at(1);
+    failing_at(1);
     const api_rate_key starved = srv_address_key("unix:uid=1000");
-    fixture_memory_back();
+    failing_off();
     const api_rate_key key = srv_address_key("unix:uid=1000");
     assert_memory_equal(&starved, &key, sizeof key);
 }

@@ -5,6 +5,7 @@
 
 #include "api/limit/rate.h"
 #include "tests/seed.h"
+#include "tests/failing.h"
 
 #include <pthread.h>
 #include <time.h>
@@ -367,22 +368,22 @@ static void a_table_is_made_whole_or_not_at_all(void **state)
     const api_rate rate = {.requests = 10, .seconds = 1};
     api_rate_state said;
     api_rates *rates = NULL;
-    long n = 0;
-    while (rates == NULL) {
-        fixture_fail_at(++n);
+    failing f = {0};
+    while (failing_next(&f)) {
         rates = api_rates_new(8);
-        assert_true(n < 10);
+        failing_end(&f, rates != NULL);
+        assert_true(f.n < 10);
     }
-    assert_true(n > 3);
+    assert_true(f.n > 3);
     /* From now on requests must allocate nothing. */
-    fixture_fail_at(1);
+    failing_at(1);
     for (uint64_t i = 0; i < 100; i++) {
         assert_true(admit(rates, i, &rate, START + i, &said));
         charge(rates, i, &rate, 5, START + i);
     }
-    assert_int_equal(fixture_memory.calls, 0);
+    assert_int_equal(failing_count(), 0);
     api_rates_free(rates);
-    fixture_memory_back();
+    failing_off();
 }
 
 enum { THREADS = 4, TRIES = 20000 };

@@ -7,6 +7,7 @@
 #include "mesh/compact.h"
 #include "store/publish/limits.h"
 #include "stored/stored.h"
+#include "tests/failing.h"
 
 enum { BUDGET = 1 << 20 };
 
@@ -286,23 +287,23 @@ static void every_allocation_of_a_claim_may_fail(void **state)
 {
     (void)state;
     make_large();
-    he_mesh *before = copy_of_content();
-    st_status status = ST_NO_MEMORY;
-    for (long n = 1; status != ST_OK; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
+        he_mesh *before = copy_of_content();
         st_write w;
         compact_claimed(&w);
-        fixture_fail_at(n);
-        status = st_write_commit(&w, "compact");
-        fixture_memory_back();
-        assert_true(status == ST_OK || (status == ST_NO_MEMORY && n < 100));
-        if (status != ST_OK) {
+        failing_resume();
+        st_status status = st_write_commit(&w, "compact");
+        assert_true(status == ST_OK || (status == ST_NO_MEMORY && f.n < 100));
+        if (!failing_end(&f, status == ST_OK)) {
             assert_true(he_mesh_equal(before, st_read_begin(mesh, NULL)));
             st_read_end(mesh);
         }
         assert_int_equal(journal.out, 0);
-        assert_true(status != ST_OK || n > 2);
+        he_mesh_free(before);
     }
-    he_mesh_free(before);
+    assert_true(f.n > 2);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* A store on a disk, with the N-th allocation failing, of the store and of SQLite, in whatever
  * thread it is: each request is done completely or not at all, and the mesh in memory, the mesh
  * that is loaded again and the mesh after a restart are what the requests that succeeded made. */
-#include "tests/failing_memory.h"
+#include "tests/failing.h"
 #include "tests/store_folder.h"
 #include "tests/unit/dense.h"
 #include "tests/writing.h"
@@ -49,12 +49,13 @@ typedef struct expected {
     bool renamed;
 } expected;
 
+static long chosen; /* the allocation that fails */
+
 static bool was_done(st_status status)
 {
     if (status != ST_OK && status != ST_NO_MEMORY) {
-        long at = failing_memory_chosen();
-        failing_memory_at(0);
-        fail_msg("status %d: allocation %ld had failed", status, at);
+        failing_at(0);
+        fail_msg("status %d: allocation %ld had failed", status, chosen);
     }
     return status == ST_OK;
 }
@@ -291,13 +292,14 @@ static void without_memory_each_request_is_whole_or_not_at_all(void **state)
         expected e = {.revision = 1, .vertices = 4};
         he_mesh *content = dense_copy(large);
         make_m();
-        failing_memory_begin();
+        failing_at(0);
         open_store();
-        failing_memory_at(n);
+        chosen = n;
+        failing_at(n);
         use_all(content, &e);
         close_store();
-        fired = failing_memory_calls() >= n;
-        failing_memory_end();
+        fired = failing_count() >= n;
+        failing_off();
         expect_after_restart(&e);
         all += e.made && e.renamed && e.revision == 10;
         folder_remove(folder);
@@ -321,7 +323,7 @@ static int begin(void **state)
 static int end(void **state)
 {
     (void)state;
-    failing_memory_end();
+    failing_off();
     he_mesh_free(large);
     folder_remove(folder);
     return 0;

@@ -7,6 +7,7 @@
 #include "edit/local/vertex.h"
 #include "store/store.h"
 #include "system/memory.h"
+#include "tests/failing.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -419,12 +420,15 @@ static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
-    for (long n = 1; n < 200; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        assert_true(f.n < 200);
+        failing_pause();
         st_mesh *made = NULL;
         st_snapshot *snapshot = NULL;
         he_mesh *content = fixture_mesh("012,023");
         bool all = true;
-        fixture_fail_at(n);
+        failing_resume();
         st_status status = st_create(store, NULL, "x", content, NULL, &made);
         if (status != ST_OK) {
             assert_int_equal(status, ST_NO_MEMORY);
@@ -434,7 +438,7 @@ static void test_every_allocation_may_fail(void **state)
         he_mesh *writing = writing_begin(mesh, &w);
         if (writing != NULL) {
             uint32_t vertex = 0;
-            he_vec3 point = {(double)n, 0, 0};
+            he_vec3 point = {(double)f.n, 0, 0};
             if (he_vertex_move(writing, &vertex, 1, HE_MOVE_TO, &point, 1, NULL) == HE_OK) {
                 all = writing_commit(&w, "vertex_move", NULL) && all;
             } else {
@@ -447,7 +451,7 @@ static void test_every_allocation_may_fail(void **state)
         if (st_snapshot_take(mesh, &snapshot) != ST_OK) {
             all = false;
         }
-        fixture_memory_back();
+        failing_end(&f, all);
         if (snapshot != NULL) {
             const he_mesh *now = st_read_begin(mesh, NULL);
             assert_true(he_mesh_equal_live(st_snapshot_content(snapshot, NULL), now));
@@ -460,12 +464,9 @@ static void test_every_allocation_may_fail(void **state)
         } else {
             he_mesh_free(content);
         }
-        if (all && n > 1) {
-            st_release(mesh);
-            return;
-        }
     }
-    fail_msg("no end of failing allocations");
+    assert_true(f.n > 1);
+    st_release(mesh);
 }
 
 /* Memory is used up when the next large block does not fit, although a smaller one still would. */

@@ -8,6 +8,7 @@
 
 #include "store/publish/durability_wait.h"
 #include "tests/seed.h"
+#include "tests/failing.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -160,9 +161,9 @@ static void a_loss_without_memory_takes_too_much_rather_than_too_little(void **s
 {
     (void)state;
     const st_loss loss = {.incarnation = 7, .from = 4, .to = 4, .reason = "no room"};
-    fixture_fail_at(1);
+    failing_at(1);
     slow_journal_lose(&slow, &loss);
-    fixture_memory_back();
+    failing_off();
     slow_journal_advance(&slow, 9);
     assert_false(add(&all[0], 3, 7));
     assert_int_equal(all[0].end, ST_WAIT_DURABLE);

@@ -14,6 +14,7 @@
 #include "mesh/write.h"
 #include "stored/stored.h"
 #include "tests/seed.h"
+#include "tests/failing.h"
 
 #define GOLDEN "tests/fuzz/seeds/stored"
 
@@ -521,12 +522,12 @@ static void test_a_small_content_gets_no_large_memory(void **state)
     he_mesh *m = NULL;
     he_error err;
     memset(run.content.bytes + 5 + 16, 0x3f, 12); /* numbers of vertices, edges and faces */
-    fixture_fail_at(0);
+    failing_at(0);
     assert_int_equal(he_stored_content_read(run.content.bytes, run.content.size, &m, &err),
                      HE_CORRUPT);
     assert_string_equal(err.text, "the stored mesh declares more bytes than its parts hold");
-    assert_true(fixture_memory.calls <= 4);
-    fixture_memory_back();
+    assert_true(failing_count() <= 4);
+    failing_off();
     run_clear(&run);
 }
 

@@ -3,6 +3,7 @@
 
 #include "api/token/tickets.h"
 #include "api/token/token_set.h"
+#include "tests/failing.h"
 
 #include <math.h>
 #include <time.h>
@@ -306,22 +307,21 @@ static void a_line_may_set_limits_of_its_own(void **state)
 static void without_memory_the_tokens_before_stay(void **state)
 {
     (void)state;
-    bool loaded = false;
-    for (long n = 1; !loaded; n++) {
-        fixture_fail_at(0);
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
         api_tokens *tokens = api_tokens_new();
         assert_non_null(tokens);
         assert_true(load(tokens, "a read " HASH));
-        fixture_fail_at(n);
-        loaded = load(tokens, "a write " HASH "\nb read " OTHER);
-        fixture_memory_back();
+        failing_resume();
+        bool loaded = failing_end(&f, load(tokens, "a write " HASH "\nb read " OTHER));
         assert_true(loaded || strstr(message, "no memory") != NULL);
         api_token *a = api_tokens_find(tokens, "test", 4, 0);
         assert_non_null(a);
         assert_int_equal(a->role, loaded ? API_ROLE_WRITE : API_ROLE_READ);
         api_token_release(a);
         api_tokens_free(tokens);
-        assert_true(n < 20);
+        assert_true(f.n < 20);
     }
 }
 

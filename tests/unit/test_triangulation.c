@@ -14,6 +14,7 @@
 #include "mesh/write.h"
 #include "polygons.h"
 #include "seed.h"
+#include "tests/failing.h"
 
 #include <math.h>
 
@@ -322,22 +323,19 @@ static void each_allocation_fails_cleanly(void **state)
             continue;
         }
         he_mesh *m = mesh_of(&polygon_shapes[s], 2000);
-        he_status status = HE_NO_MEMORY;
-        long n = 0;
-        while (status != HE_OK) {
+        failing f = {0};
+        while (failing_next(&f)) {
             he_triangulation t;
             he_error err = {0};
-            fixture_fail_at(++n);
-            status = he_triangulation_make(m, first_of(m), HE_AVOID_EDGES, NULL, &t, &err);
-            fixture_memory_back();
-            if (status == HE_OK) {
+            he_status status =
+                he_triangulation_make(m, first_of(m), HE_AVOID_EDGES, NULL, &t, &err);
+            if (failing_status(&f, status)) {
                 he_triangulation_clear(&t);
             } else {
-                assert_int_equal(status, HE_NO_MEMORY);
                 assert_int_equal(err.status, HE_NO_MEMORY);
             }
         }
-        assert_true(n > 5);
+        assert_true(f.n > 5);
         he_mesh_free(m);
     }
 }
@@ -462,13 +460,10 @@ static void keeping_fails_cleanly(void **state)
     he_watch_init(&watch, give_up, &told);
     assert_int_equal(he_long_faces_keep(m, &watch, NULL), HE_CANCELLED);
     assert_null(he_long_faces_find(m, first_of(m)));
-    he_status status = HE_NO_MEMORY;
-    for (long n = 1; status != HE_OK; n++) {
-        fixture_fail_at(n);
-        status = he_long_faces_keep(m, NULL, NULL);
-        fixture_memory_back();
-        assert_true(status == HE_OK || status == HE_NO_MEMORY);
-        assert_true((he_long_faces_find(m, first_of(m)) != NULL) == (status == HE_OK));
+    failing f = {0};
+    while (failing_next(&f)) {
+        bool kept = failing_status(&f, he_long_faces_keep(m, NULL, NULL));
+        assert_true((he_long_faces_find(m, first_of(m)) != NULL) == kept);
     }
     he_replay_free(replay);
 }
