@@ -12,6 +12,7 @@
 #include "edit/piece/point.h"
 #include "mesh/check.h"
 #include "mesh/write.h"
+#include "tests/failing.h"
 
 enum { MAX_LIST = 64, MAX_TEXT = 256 };
 
@@ -105,42 +106,21 @@ void script_add_columns(he_mesh *m)
 
 /* --- memory --- */
 
-static unsigned allocations_left;
-static bool failed;
-
-static void *resize(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    if (allocations_left > 0 && --allocations_left == 0) {
-        failed = true;
-        return NULL;
-    }
-    return realloc(memory, size);
-}
-
-static bool counting;
-
-static void count_allocations(bool on)
-{
-    static const he_mem_hook hook = {resize, NULL};
-    he_mem_set_hook(on ? &hook : NULL);
-}
+static long fails_at;
 
 void fail_allocation(unsigned n)
 {
-    allocations_left = n;
-    failed = false;
-    counting = n > 0;
-    count_allocations(counting);
+    fails_at = n;
+    if (n > 0) {
+        failing_at(n);
+    } else {
+        failing_off();
+    }
 }
 
 bool allocation_failed(void)
 {
-    return failed;
+    return failing_count() >= fails_at;
 }
 
 /* --- operations --- */
@@ -196,7 +176,7 @@ static he_mesh *other_mesh(const char *text)
     char faces[MAX_TEXT];
     size_t length = strcspn(text, "*!");
     snprintf(faces, sizeof faces, "%.*s", (int)length, text);
-    count_allocations(false);
+    failing_pause();
     he_mesh *other = script_mesh(faces, NULL);
     if (text[length] == '*') {
         he_column *column = NULL;
@@ -208,7 +188,7 @@ static he_mesh *other_mesh(const char *text)
         script_prepare(other, "material_set name=red base_color=1,0,0 face=0;"
                               "material_set name=blue base_color=0,0,1");
     }
-    count_allocations(counting);
+    failing_resume();
     return other;
 }
 
