@@ -8,6 +8,7 @@
 #include "mesh/delta.h"
 #include "mesh/write.h"
 #include "tests/seed.h"
+#include "tests/failing.h"
 
 enum { ENTRIES = 60 };
 
@@ -63,21 +64,20 @@ static void test_without_memory_the_mesh_stays_as_it_was(void **state)
 {
     (void)state;
     md_random random = {11};
-    bool failed = true;
-    for (unsigned n = 1; failed; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
         md_random same = random;
         edit_log *log = undone_log(&same);
         bool seen[EDIT_LOG_MOST] = {false};
         he_mesh *m = copy_of(log->entries[0].after);
-        fail_allocation(n);
+        failing_resume();
         he_status status = HE_OK;
         size_t i = 1;
         for (; i < log->count && status == HE_OK; i++) {
             status = apply(log, i, seen, m);
         }
-        failed = allocation_failed();
-        fail_allocation(0);
-        assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+        bool failed = !failing_status(&f, status);
         assert_true(he_mesh_equal(m, log->entries[status == HE_OK ? i - 1 : i - 2].after));
         for (i -= failed; i < log->count; i++) {
             assert_int_equal(apply(log, i, seen, m), HE_OK);

@@ -20,6 +20,7 @@
 #include "mesh/check.h"
 #include "mesh/marks.h"
 #include "mesh/write.h"
+#include "tests/failing.h"
 
 static const he_scheme schemes[] = {HE_LOOP, HE_CATMULL_CLARK, HE_LINEAR, HE_SQRT3};
 enum { SCHEMES = 4 };
@@ -592,19 +593,18 @@ static void undo_is_one_step_and_issues_no_id_again(void **state)
 static void making_ready_for_undo_may_lack_memory(void **state)
 {
     (void)state;
-    bool failed = true;
-    for (unsigned n = 1; failed; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
         he_mesh *m = wheel(6, false), *before = copy_of(m);
         he_delta *delta = he_delta_new();
         he_mesh_record(m, delta);
         subdivide(m, HE_CATMULL_CLARK, 2);
         he_mesh_record(m, NULL);
         he_mesh *after = copy_of(m);
-        fail_allocation(n);
+        failing_resume();
         he_status status = he_delta_ready(delta, m, NULL);
-        failed = allocation_failed();
-        fail_allocation(0);
-        assert_int_equal(status, failed ? HE_NO_MEMORY : HE_OK);
+        failing_status(&f, status);
         assert_equal(m, after);
         assert_int_equal(he_delta_ready(delta, m, NULL), HE_OK);
         he_delta_undo(delta, m);
