@@ -15,6 +15,7 @@
 #include "store/publish/limits.h"
 #include "store/table.h"
 #include "stored/stored.h"
+#include "tests/failing.h"
 
 #include <semaphore.h>
 
@@ -484,16 +485,14 @@ static void without_memory_nothing_is_loaded(void **state)
     for (unsigned i = 0; i < 30; i++) {
         change(mesh, &random, i);
     }
-    bool failed = true;
-    unsigned n = 0;
-    while (failed) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         st_store *other = open_store(1 << 20);
         st_mesh *loaded = NULL;
-        fail_allocation(++n);
+        failing_resume();
         st_status status = st_load(other, "m", &loaded);
-        failed = allocation_failed();
-        fail_allocation(0);
-        assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
+        assert_true(failing_end(&f, status == ST_OK) || status == ST_NO_MEMORY);
         if (status == ST_OK) {
             assert_string_equal(st_damage(loaded), "");
             kept_store_expect_same(mesh, loaded);
@@ -504,7 +503,7 @@ static void without_memory_nothing_is_loaded(void **state)
         }
         st_store_free(other);
     }
-    printf("note: %u allocations\n", n - 1);
+    printf("note: %ld allocations\n", f.n - 1);
     st_release(mesh);
     st_store_free(store);
     kept_journal_free(journal);
@@ -523,16 +522,15 @@ static void without_memory_for_its_keys_nothing_is_loaded(void **state)
     journal = kept_journal_new();
     st_store *store = open_store(1 << 20);
     st_release(kept_store_make(store, "m"));
-    bool failed = true;
-    for (unsigned n = 1; failed; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         st_store *other = open_store(1 << 20);
         st_mesh *loaded = NULL;
         other->journal.keys = one_key;
-        fail_allocation(n);
+        failing_resume();
         st_status status = st_load(other, "m", &loaded);
-        failed = allocation_failed();
-        fail_allocation(0);
-        assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY));
+        assert_true(failing_end(&f, status == ST_OK) || status == ST_NO_MEMORY);
         st_release(status == ST_OK ? loaded : kept_store_load(other, "m"));
         st_store_free(other);
     }

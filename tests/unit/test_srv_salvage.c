@@ -8,6 +8,7 @@
 
 #include "journal/sqlite/sqlite_backup.h"
 #include "store/store.h"
+#include "tests/failing.h"
 
 #include <unistd.h>
 
@@ -241,16 +242,15 @@ static void without_memory_nothing_is_said_of_a_mesh(void **state)
     (void)state;
     kept_journal *journal = make_damaged(4, KEPT_CUT, 0);
     const st_journal kept = kept_journal_open(journal);
-    bool failed = true;
-    for (unsigned n = 1; failed; n++) {
+    failing f = {.may_succeed = true};
+    while (failing_next(&f)) {
+        failing_pause();
         st_store *store = store_over(&kept);
         st_mesh *mesh = NULL;
         char damage[ST_DAMAGE];
-        fail_allocation(n);
+        failing_resume();
         st_status status = st_salvage(store, "m", &mesh, damage);
-        failed = allocation_failed();
-        fail_allocation(0);
-        assert_true(status == ST_OK || (failed && status == ST_NO_MEMORY && mesh == NULL));
+        assert_true(failing_end(&f, status == ST_OK) || (status == ST_NO_MEMORY && mesh == NULL));
         st_release(mesh);
         st_store_free(store);
     }
