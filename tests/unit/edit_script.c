@@ -104,25 +104,6 @@ void script_add_columns(he_mesh *m)
     }
 }
 
-/* --- memory --- */
-
-static long fails_at;
-
-void fail_allocation(unsigned n)
-{
-    fails_at = n;
-    if (n > 0) {
-        failing_at(n);
-    } else {
-        failing_off();
-    }
-}
-
-bool allocation_failed(void)
-{
-    return failing_count() >= fails_at;
-}
-
 /* --- operations --- */
 
 typedef struct storage {

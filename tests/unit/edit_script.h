@@ -46,9 +46,4 @@ he_mesh *copy_of(const he_mesh *m);
 he_halfedge halfedge_between(const he_mesh *m, uint32_t a, uint32_t b);
 he_edge edge_between(const he_mesh *m, uint32_t a, uint32_t b);
 
-/* Makes the n-th allocation from now on fail, and only this one; 0: none fails. */
-void fail_allocation(unsigned n);
-/* Returns whether an allocation failed since fail_allocation() was called. */
-bool allocation_failed(void);
-
 #endif

@@ -9,6 +9,7 @@
 #include "store/history_cursor.h"
 #include "store/store.h"
 #include "system/memory.h"
+#include "tests/failing.h"
 #include "tests/model/random.h"
 #include "tests/seed.h"
 
@@ -347,8 +348,9 @@ static void what_the_log_frees_is_free(void **state)
 static void every_allocation_may_fail(void **state)
 {
     (void)state;
-    bool failed = true;
-    for (unsigned n = 1; failed; n++) {
+    failing f = {0};
+    while (failing_next(&f)) {
+        failing_pause();
         md_random random = {11};
         st_mesh *mesh = open_mesh(1 << 20);
         album pictures = {0};
@@ -360,9 +362,9 @@ static void every_allocation_may_fail(void **state)
         uint64_t head = pictures.head;
         st_write w;
         assert_non_null(writing_begin(mesh, &w));
-        fail_allocation(n);
+        failing_resume();
         st_status status = st_write_step(&w, ST_UNDO, 7);
-        bool step_failed = allocation_failed();
+        bool step_failed = failing_count() >= f.n;
         if (status == ST_OK) {
             assert_int_equal(st_write_commit(&w, NULL), ST_OK);
         } else {
@@ -376,11 +378,10 @@ static void every_allocation_may_fail(void **state)
         while (walked == ST_OK) {
             walked = st_cursor_next(walk, &at);
         }
-        failed = allocation_failed();
-        fail_allocation(0);
+        failing_end(&f, status == ST_OK && seen == ST_OK && walked == ST_NOTHING);
         assert_true(status == ST_OK || (step_failed && status == ST_NO_MEMORY));
-        assert_true(seen == ST_OK || (failed && seen == ST_NO_MEMORY));
-        assert_true(walked == ST_NOTHING || (failed && walked == ST_NO_MEMORY));
+        assert_true(seen == ST_OK || seen == ST_NO_MEMORY);
+        assert_true(walked == ST_NOTHING || walked == ST_NO_MEMORY);
         he_mesh *now;
         assert_int_equal(head_of(mesh, &now), head + (status == ST_OK ? 7 : 0));
         if (status != ST_OK) {
