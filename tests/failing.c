@@ -13,9 +13,17 @@
 
 /* Threads of the code under test allocate too, hence the atomics. */
 static atomic_long calls, fail_at, blocks;
-static atomic_int pauses;
+static atomic_int pauses, threads;
 static atomic_bool lasts;
 static bool is_installed;
+static _Thread_local bool is_this_thread;
+
+static bool is_counted(void)
+{
+    const int whose = atomic_load(&threads);
+    return atomic_load(&pauses) == 0 &&
+           (whose == FAILING_ALL_THREADS || (whose == FAILING_THIS_THREAD) == is_this_thread);
+}
 
 static void *resize(void *context, void *block, size_t size)
 {
@@ -25,7 +33,7 @@ static void *resize(void *context, void *block, size_t size)
         free(block);
         return NULL;
     }
-    if (atomic_load(&pauses) == 0) {
+    if (is_counted()) {
         long n = atomic_fetch_add(&calls, 1) + 1, chosen = atomic_load(&fail_at);
         if (n == chosen || (n > chosen && atomic_load(&lasts))) {
             return NULL;
@@ -42,6 +50,7 @@ void failing_at(long n)
     atomic_store(&calls, 0);
     atomic_store(&pauses, 0);
     atomic_store(&lasts, false);
+    atomic_store(&threads, FAILING_ALL_THREADS);
     atomic_store(&fail_at, n);
     if (!is_installed) {
         atomic_store(&blocks, 0);
@@ -81,8 +90,11 @@ bool failing_next(failing *f)
     if (f->is_over) {
         return false;
     }
-    failing_at(++f->n);
+    f->n += f->sparse > 0 ? 1 + f->n / f->sparse : 1;
+    is_this_thread = true;
+    failing_at(f->n);
     atomic_store(&lasts, f->lasts);
+    atomic_store(&threads, (int)f->threads);
     return true;
 }
 
@@ -105,16 +117,4 @@ bool failing_status(failing *f, he_status status)
                  f->what == NULL ? "run" : f->what, f->n, (int)status);
     }
     return failing_end(f, status == HE_OK);
-}
-
-long fails_cleanly(int (*run)(void *context), bool (*compare)(void *context), void *context)
-{
-    failing f = {0};
-    while (failing_next(&f)) {
-        he_status status = (he_status)run(context);
-        if (!failing_status(&f, status) && compare != NULL && !compare(context)) {
-            fail_msg("allocation %ld failed, and something has changed", f.n);
-        }
-    }
-    return f.n;
 }

@@ -21,16 +21,26 @@
 
 #include <stdbool.h>
 
-/* The state of the loop. It begins as {0}, or with one of its options. */
+/* Whose allocations count and may fail; those of other threads always succeed. */
+typedef enum failing_threads {
+    FAILING_ALL_THREADS,
+    FAILING_THIS_THREAD, /* the thread that calls failing_next() */
+    FAILING_OTHER_THREADS
+} failing_threads;
+
+/* The state of the loop. It begins as {0}, or with some of its options, which may be changed
+ * between two turns. */
 typedef struct failing {
     long n;           /* the allocation that fails; after the loop, one that was not made */
     bool may_succeed; /* option: some allocations are optional, and a run succeeds without them */
     bool lasts;       /* option: all allocations after the n-th fail too */
-    const char *what; /* option: what was run, for the messages of failures */
-    bool is_over;     /* the last run made fewer than n allocations */
+    long sparse;      /* option: if not 0, n grows by n / sparse more than 1 in each turn */
+    failing_threads threads; /* option */
+    const char *what;        /* option: what was run, for the messages of failures */
+    bool is_over;            /* the last run made fewer than n allocations */
 } failing;
 
-/* Begins a run whose allocation n + 1 will fail. Returns false if the loop is over. */
+/* Raises n and begins a run whose n-th allocation will fail. Returns false if the loop is over. */
 bool failing_next(failing *f);
 /* Ends a run, and returns `succeeded`. Fails the test, naming n, if the run succeeded although its
  * allocation failed, or failed although it did not. */
@@ -38,11 +48,6 @@ bool failing_end(failing *f, bool succeeded);
 /* Ends a run that returned HE_OK or HE_NO_MEMORY; another status fails the test. Returns true if
  * the status is HE_OK. */
 bool failing_status(failing *f, he_status status);
-
-/* Calls `run` in the loop above, and `compare` after each run that was refused; `compare` returns
- * true if everything is as it was, and may be NULL. Returns the last n. `run` returns a
- * he_status. */
-long fails_cleanly(int (*run)(void *context), bool (*compare)(void *context), void *context);
 
 /* Makes the n-th allocation from now on fail, in whatever thread it is made; with n = 0 allocations
  * are only counted. The first call and failing_off() exchange the allocator, so no other thread may

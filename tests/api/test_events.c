@@ -6,15 +6,14 @@
 
 #include "api/event/events.h"
 #include "api/limits.h"
-#include "base/mem.h"
 #include "mesh/column.h"
 #include "mesh/write.h"
 #include "op/op.h"
 #include "store/publish/limits.h"
+#include "tests/failing.h"
 #include "tests/seed.h"
 
 #include <inttypes.h>
-#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -528,93 +527,69 @@ static void too_many_listeners_are_503(void **state)
 
 /* --- when an allocation fails --- */
 
-typedef struct famine {
-    pthread_t tester;
-    bool jobs; /* fail allocations of the job pool, not those of the test's thread */
-    uint32_t left;
-    bool struck;
-} famine;
-
-static void *resize_until(void *context, void *memory, size_t size)
-{
-    famine *f = context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    if ((pthread_equal(pthread_self(), f->tester) != 0) == f->jobs) {
-        return realloc(memory, size);
-    }
-    if (f->left == 0) {
-        f->struck = true;
-        return NULL;
-    }
-    f->left--;
-    return realloc(memory, size);
-}
-
-/* Each allocation made for an event fails in turn: the edit must succeed, and the listener must get
- * either the event or a `resync`. */
+/* Each allocation made for an event fails in turn, with all later ones: the edit must succeed, and
+ * the listener must get either the event or a `resync`. */
 static void a_failed_allocation_loses_no_listener(void **state)
 {
     (void)state;
     unsigned lost = 0, told = 0;
-    for (uint32_t n = 0;; n++) {
+    failing f = {.may_succeed = true, .lasts = true, .threads = FAILING_THIS_THREAD};
+    while (failing_next(&f)) {
+        failing_pause();
+        bool is_told = false;
         api_bench *b = bench_new();
         mirror copy = {0};
         put_mesh(b);
-        famine f = {.tester = pthread_self(), .left = n};
-        const he_mem_hook hook = {resize_until, &f};
-        he_mem_set_hook(&hook);
+        failing_resume();
         listener *l = stream_try(b, "/v1/meshes/m/events", "", NULL);
+        failing_pause();
         if (l != NULL) {
-            he_mem_set_hook(NULL);
             stream_dump(b, &copy);
-            he_mem_set_hook(&hook);
+            failing_resume();
             bench_reply r = {0};
             bool sent = bench_try(b, "POST", "/v1/meshes/m/edits", NULL, POKE, sizeof POKE - 1, &r);
-            he_mem_set_hook(NULL);
+            failing_pause();
             if (sent) {
                 bench_reply_free(&r);
             }
             unsigned anew = stream_follow(b, l, &copy);
             lost += anew;
-            told += copy.revision == 2 && anew == 0;
+            is_told = copy.revision == 2 && anew == 0;
+            told += is_told;
             stream_require(b, &copy, "a failed allocation");
             stream_close(l);
         }
-        he_mem_set_hook(NULL);
         mirror_clear(&copy);
         bench_free(b);
-        if (!f.struck) {
-            break;
-        }
-        assert_true(n < 2000);
+        failing_end(&f, is_told);
+        assert_true(f.n < 2000);
     }
     assert_true(lost > 0);
     assert_true(told > 0);
 }
 
-/* Each allocation made while events are read from the history fails in turn: the listener must get
- * events in order, and possibly a `resync` after them. */
+/* Each allocation of the thread that reads events from the history fails in turn, with all later
+ * ones: the listener must get events in order, and possibly a `resync` after them. */
 static void a_failed_allocation_in_the_history_is_a_resync(void **state)
 {
     (void)state;
     unsigned lost = 0;
-    for (uint32_t n = 0;; n++) {
+    failing f = {.may_succeed = true, .lasts = true, .threads = FAILING_OTHER_THREADS};
+    while (failing_next(&f)) {
+        failing_pause();
         api_bench *b = bench_new();
         put_mesh(b);
         assert_int_equal(send(b, "POST", "/v1/meshes/m/edits", POKE), 200);
         assert_int_equal(send(b, "POST", "/v1/meshes/m/undo", NULL), 200);
-        famine f = {.tester = pthread_self(), .left = n, .jobs = true};
-        const he_mem_hook hook = {resize_until, &f};
-        he_mem_set_hook(&hook);
+        failing_resume();
+        bool is_told = true;
         listener *l = stream_open(b, "/v1/meshes/m/events", "since=1", NULL);
         assert_string_equal(stream_next(l, true), "metadata");
         const char *name = "";
         for (uint64_t at = 1; at < 3; at++) {
             name = stream_next(l, true);
             if (strcmp(name, "edit") != 0 || cJSON_GetObjectItem(l->data, "stale") != NULL) {
+                is_told = false;
                 lost++;
                 break;
             }
@@ -624,13 +599,11 @@ static void a_failed_allocation_in_the_history_is_a_resync(void **state)
             assert_int_equal(stream_number(l, "revision"), 3);
             assert_string_equal(stream_next(l, false), "");
         }
-        he_mem_set_hook(NULL);
+        failing_pause();
         stream_close(l);
         bench_free(b);
-        if (!f.struck) {
-            break;
-        }
-        assert_true(n < 2000);
+        failing_end(&f, is_told);
+        assert_true(f.n < 2000);
     }
     assert_true(lost > 0);
 }

@@ -10,7 +10,6 @@
  * have occurred.
  *
  * EDITS (50000) and SEED (from the clock) come from the environment. */
-#include "base/mem.h"
 #include "mesh/check.h"
 #include "mesh/delta.h"
 #include "model/calls.h"
@@ -18,6 +17,7 @@
 #include "model/marks.h"
 #include "model/net.h"
 #include "model/starts.h"
+#include "tests/failing.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -94,49 +94,30 @@ static he_mesh *copy_of(const world *w)
 
 /* --- allocations that fail --- */
 
-typedef struct famine {
-    uint32_t left; /* number of allocations that still succeed */
-    bool lasts;    /* all allocations after the first failure fail, too */
-    bool struck;
-} famine;
-
-static void *resize_until(void *context, void *memory, size_t size)
-{
-    famine *f = context;
-    if (size == 0) {
-        free(memory);
-        return NULL;
-    }
-    if (f->left == 0 && (!f->struck || f->lasts)) {
-        f->struck = true;
-        return NULL;
-    }
-    f->left -= f->left > 0;
-    return realloc(memory, size);
-}
-
-/* Runs the call with the first, second, third ... allocation failing, until one run succeeds. If a
- * call makes very many allocations, not all are tried. */
+/* Runs the call with the first, second, third ... allocation failing, and in half of the runs also
+ * all later ones, until one run succeeds. If a call makes very many allocations, not all are
+ * tried. */
 static he_status run_starved(world *w, const he_mesh *before, const he_delta *delta,
                              he_results *results, he_error *err)
 {
     md_row_tally *t = &w->tally->row[w->call.row];
-    for (uint32_t n = 0;; n += 1 + n / 50) {
-        famine f = {.left = n, .lasts = md_chance(&w->random, 50)};
-        const he_mem_hook hook = {resize_until, &f};
-        he_mem_set_hook(&hook);
-        he_status status = he_op_run(w->call.op, w->mesh, w->call.args, results, err);
-        he_mem_set_hook(NULL);
-        if (status != HE_NO_MEMORY) {
-            return status;
+    failing f = {.may_succeed = true, .sparse = 50, .lasts = md_chance(&w->random, 50)};
+    he_status status = HE_NO_MEMORY;
+    while (failing_next(&f)) {
+        status = he_op_run(w->call.op, w->mesh, w->call.args, results, err);
+        require(w, status != HE_NO_MEMORY || failing_count() >= f.n,
+                "out of memory although no allocation failed");
+        if (failing_end(&f, status != HE_NO_MEMORY)) {
+            break;
         }
-        t->starved = n + 1 > t->starved ? n + 1 : t->starved;
-        require(w, f.struck, "out of memory although no allocation failed");
+        f.lasts = md_chance(&w->random, 50);
+        t->starved = (uint32_t)f.n > t->starved ? (uint32_t)f.n : t->starved;
         require(w, he_mesh_equal(w->mesh, before), "a failed allocation changed the mesh");
         require(w, delta == NULL || (delta->count == 0 && delta->object_count == 0),
                 "a failed allocation left records");
-        require(w, n < 100000, "allocations without end");
+        require(w, f.n < 100000, "allocations without end");
     }
+    return status;
 }
 
 /* --- undo --- */
