@@ -3,8 +3,8 @@
  * must hold no memory. */
 #include "tests/unit/fixture.h"
 
-#include "base/mem.h"
 #include "store/publish/broadcast_queue.h"
+#include "tests/failing.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -243,26 +243,17 @@ static void only_so_many_may_listen(void **state)
     st_queue_leave(&listener[2]);
 }
 
-static void *no_memory(void *context, void *memory, size_t size)
-{
-    (void)context;
-    if (size == 0) {
-        free(memory);
-    }
-    return NULL;
-}
-
 static void a_message_without_memory_is_a_gap(void **state)
 {
     (void)state;
-    static const he_mem_hook hook = {no_memory, NULL};
     st_listener listener;
     unsigned wakes = 0;
     join(&listener, &wakes);
     add(8, 4);
-    he_mem_set_hook(&hook);
+    failing_at(1);
     add(9, 5);
-    he_mem_set_hook(NULL);
+    assert_int_equal(failing_count(), 1);
+    failing_off();
     st_queue_allow(&feed, 9);
     assert_step(&listener, ST_QUEUE_BEHIND);
     assert_int_equal(st_queue_skip(&listener).key, 5);
