@@ -573,19 +573,18 @@ static void without_memory_nothing_is_lost(void **state)
 {
     (void)state;
     unsigned runs = 0;
-    bool failed = true;
-    for (long n = 1; failed; n += 1 + n / 8, runs++) {
+    failing f = {.may_succeed = true, .sparse = 8};
+    while (failing_next(&f)) {
         told_journal told;
         kept_mesh mesh = new_mesh();
         unsigned acknowledged = 0, records = 0;
-        failing_at(n);
         if (try_open(&told, 0)) {
             use_all(&told, &mesh, &acknowledged);
             assert_int_equal(told_losses(&told), 0);
             told_end(&told);
         }
-        failed = failing_count() >= n;
-        failing_off();
+        failing_end(&f, acknowledged == 2);
+        runs++;
         open_store(&told, 0);
         st_status status = count_records(&told.journal, "a", &records);
         assert_int_equal(status, acknowledged == 0 ? ST_ABSENT : ST_OK);

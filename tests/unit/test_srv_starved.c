@@ -49,13 +49,13 @@ typedef struct expected {
     bool renamed;
 } expected;
 
-static long chosen; /* the allocation that fails */
+static failing turn;
 
 static bool was_done(st_status status)
 {
     if (status != ST_OK && status != ST_NO_MEMORY) {
-        failing_at(0);
-        fail_msg("status %d: allocation %ld had failed", status, chosen);
+        failing_pause();
+        fail_msg("status %d: allocation %ld had failed", status, turn.n);
     }
     return status == ST_OK;
 }
@@ -279,29 +279,27 @@ static void make_m(void)
 }
 
 /* ROUNDS in the environment: every allocation up to that one fails; otherwise some of those after
- * the 32nd do not. The start, which allocates most often, is tested in test_srv_journal_faults.c.
- */
+ * the 8th do not. The start, which allocates most often, is tested in test_srv_journal_faults.c. */
 static void without_memory_each_request_is_whole_or_not_at_all(void **state)
 {
     (void)state;
     const char *text = getenv("ROUNDS");
     const long every = text == NULL ? 0 : strtol(text, NULL, 10);
     unsigned runs = 0, all = 0;
-    bool fired = true;
-    for (long n = 1; fired; n += n < every ? 1 : 1 + n / 8, runs++) {
+    turn = (failing){.may_succeed = true};
+    while (failing_next(&turn)) {
+        failing_pause();
         expected e = {.revision = 1, .vertices = 4};
         he_mesh *content = dense_copy(large);
         make_m();
-        failing_at(0);
         open_store();
-        chosen = n;
-        failing_at(n);
+        failing_resume();
         use_all(content, &e);
         close_store();
-        fired = failing_count() >= n;
-        failing_off();
+        all += failing_end(&turn, e.made && e.renamed && e.revision == 10);
+        runs++;
+        turn.sparse = turn.n < every ? 0 : 8;
         expect_after_restart(&e);
-        all += e.made && e.renamed && e.revision == 10;
         folder_remove(folder);
         folder_make(folder);
     }
