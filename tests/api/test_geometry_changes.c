@@ -537,7 +537,7 @@ static void test_each_allocation_failing(void **state)
     arrays c = {0}, fresh = {0};
     unsigned refused = 0;
     arrays_update(w.b, "m", &c);
-    failing f = {.may_succeed = true};
+    failing f = {0};
     while (failing_next(&f)) {
         failing_pause();
         post(w.b, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":7}");

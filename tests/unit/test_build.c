@@ -397,7 +397,7 @@ static void test_columns_follow_their_elements(void **state)
 static void test_every_allocation_may_fail(void **state)
 {
     (void)state;
-    failing f = {.may_succeed = true};
+    failing f = {0};
     while (failing_next(&f)) {
         failing_pause();
         he_soup soup;

@@ -200,7 +200,7 @@ static void without_memory_nothing_is_written_or_read(void **state)
         failing_status(&writing, status);
         he_writer_free(status == HE_OK ? writer : NULL);
     }
-    failing reading = {.may_succeed = true};
+    failing reading = {0};
     while (failing_next(&reading)) {
         failing_pause();
         he_import import = {0};

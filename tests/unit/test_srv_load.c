@@ -522,7 +522,7 @@ static void without_memory_for_its_keys_nothing_is_loaded(void **state)
     journal = kept_journal_new();
     st_store *store = open_store(1 << 20);
     st_release(kept_store_make(store, "m"));
-    failing f = {.may_succeed = true};
+    failing f = {0};
     while (failing_next(&f)) {
         failing_pause();
         st_store *other = open_store(1 << 20);

@@ -301,9 +301,9 @@ static void every_allocation_of_a_claim_may_fail(void **state)
             st_read_end(mesh);
         }
         assert_int_equal(journal.out, 0);
+        assert_true(status != ST_OK || f.n > 2);
         he_mesh_free(before);
     }
-    assert_true(f.n > 2);
 }
 
 int main(void)
