@@ -76,9 +76,8 @@ static bool find(srv_assets *assets, const char *path, found *f)
 {
     const api_asset *asset = srv_assets_find(assets, path);
     if (asset != NULL) {
-        *f = (found){.type = asset->type,
-                     .etag = api_kept_etag(asset->body),
-                     .immutable = asset->immutable};
+        *f = (found){
+            .type = asset->type, .etag = api_kept_etag(asset->body), .immutable = asset->immutable};
         api_kept_bytes(asset->body, &f->bytes, &f->length);
     }
     return asset != NULL;
