@@ -139,7 +139,7 @@ static bool fail_reading(api_exchange *x, const upload *u, he_error *err)
         err->kind = HE_KIND_COUNT;
     } else if (looks != NULL && looks != u->format) {
         snprintf(err->text + length, sizeof err->text - length,
-                 "; the body begins as one of the format %s does", looks->name);
+                 "; the body looks like a file of the format %s", looks->name);
     }
     return api_fail_core(x, err);
 }

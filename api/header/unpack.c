@@ -41,7 +41,8 @@ static bool fail_memory(const api_unpack *u, api_problem *problem)
                      problem, API_TOO_MANY_CODED,
                      "decompressing this body too would take more than %zu bytes of memory in all",
                      u->memory.most)
-               : api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
+               : api_problem_set(problem, HE_NO_MEMORY,
+                                 "memory is out: the body cannot be decompressed");
 }
 
 /* --- eviction --- */
@@ -135,7 +136,7 @@ api_unpack *api_unpack_new(api_coding coding, api_unpack_room *room,
 {
     api_unpack *u = he_mem_alloc(sizeof *u);
     if (u == NULL) {
-        api_problem_set(problem, HE_NO_MEMORY, "no memory to unfold the body");
+        api_problem_set(problem, HE_NO_MEMORY, "memory is out: the body cannot be decompressed");
         return NULL;
     }
     memset(u, 0, offsetof(api_unpack, piece));

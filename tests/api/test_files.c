@@ -399,10 +399,10 @@ static void a_body_of_another_format_is_told(void **state)
         int status;
         const char *words;
     } rows[] = {
-        {"/v1/meshes", "model/stl", obj, 400, "the body begins as one of the format obj does"},
-        {"/v1/meshes", "model/obj", off, 400, "the body begins as one of the format off does"},
-        {"/v1/meshes", "model/gltf-binary", off, 400, "begins as one of the format off does"},
-        {"/v1/meshes?format=ply", "model/obj", obj, 400, "begins as one of the format obj does"},
+        {"/v1/meshes", "model/stl", obj, 400, "the body looks like a file of the format obj"},
+        {"/v1/meshes", "model/obj", off, 400, "the body looks like a file of the format off"},
+        {"/v1/meshes", "model/gltf-binary", off, 400, "looks like a file of the format off"},
+        {"/v1/meshes?format=ply", "model/obj", obj, 400, "looks like a file of the format obj"},
         {"/v1/meshes?format=obj", "model/stl", obj, 201, "\"format\":\"obj\""},
         {"/v1/meshes?format=obj", "application/json", obj, 201, "\"format\":\"obj\""},
         {"/v1/meshes", "model/off", off, 415, "model/off"},

@@ -229,21 +229,21 @@ static void what_the_extension_forbids_is_refused(void **state)
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':0"), NULL, HE_BAD_VALUE,
          "/byteStride: 0"},
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':14"), NULL, HE_BAD_VALUE,
-         "byteStride is no multiple of 4 up to 256"},
+         "byteStride must be a multiple of 4, from 4 to 256"},
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':260"), NULL, HE_BAD_VALUE,
-         "byteStride is no multiple of 4 up to 256"},
+         "byteStride must be a multiple of 4, from 4 to 256"},
         {CORNERS("'mode':'ATTRIBUTES','count':4,'byteStride':18446744073709551632"), NULL,
          HE_BAD_VALUE, "/byteStride: "},
         {CORNERS("'mode':'ATTRIBUTES','filter':'OCTAHEDRAL','count':4,'byteStride':16"), NULL,
-         HE_BAD_VALUE, "the filter is of another byteStride"},
+         HE_BAD_VALUE, "the filter needs another byteStride"},
         {CORNERS("'mode':'ATTRIBUTES','filter':'QUATERNION','count':4,'byteStride':16"), NULL,
-         HE_BAD_VALUE, "the filter is of another byteStride"},
+         HE_BAD_VALUE, "the filter needs another byteStride"},
         {CORNERS("'mode':'ATTRIBUTES','count':3,'byteStride':16"), NULL, HE_BAD_VALUE,
          "the buffer view declares 64 bytes, but decompresses to 48"},
         {CORNERS("'mode':'ATTRIBUTES','count':200,'byteStride':16"), NULL, HE_SYNTAX,
-         "the bytes are not compressed ATTRIBUTES of 200"},
+         "the bytes are not ATTRIBUTES of 200"},
         {CORNERS("'mode':'TRIANGLES','count':6,'byteStride':4"), NULL, HE_SYNTAX,
-         "the bytes are not compressed TRIANGLES"},
+         "the bytes are not TRIANGLES in compressed form"},
         {"{'buffer':2,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
          HE_BAD_INDEX, "there is no buffer 2; the file has 2"},
         {"{'buffer':1,'byteLength':%zu,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL,
@@ -254,13 +254,13 @@ static void what_the_extension_forbids_is_refused(void **state)
         {"{'buffer':0,'mode':'ATTRIBUTES','count':4,'byteStride':16}", NULL, HE_BAD_VALUE,
          "'byteLength' is missing"},
         {NULL, INDICES("'mode':'TRIANGLES','count':7,'byteStride':2"), HE_BAD_VALUE,
-         "count is no multiple of 3"},
+         "count must be a multiple of 3"},
         {NULL, INDICES("'mode':'TRIANGLES','count':6,'byteStride':1"), HE_BAD_VALUE,
-         "byteStride is neither 2 nor 4"},
+         "byteStride must be 2 or 4"},
         {NULL, INDICES("'mode':'TRIANGLES','count':6,'byteStride':8"), HE_BAD_VALUE,
-         "byteStride is neither 2 nor 4"},
+         "byteStride must be 2 or 4"},
         {NULL, INDICES("'mode':'TRIANGLES','filter':'EXPONENTIAL','count':6,'byteStride':2"),
-         HE_BAD_VALUE, "only ATTRIBUTES have a filter"},
+         HE_BAD_VALUE, "a filter needs the mode ATTRIBUTES"},
         {NULL, INDICES("'mode':'TRIANGLES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
          "2000000001 elements of 2 bytes cannot be compressed to"},
         {NULL, INDICES("'mode':'INDICES','count':2000000001,'byteStride':2"), HE_BAD_VALUE,
@@ -268,7 +268,7 @@ static void what_the_extension_forbids_is_refused(void **state)
         {NULL, INDICES("'mode':'TRIANGLES','count':3,'byteStride':2"), HE_BAD_VALUE,
          "the buffer view declares 12 bytes, but decompresses to 6"},
         {NULL, INDICES("'mode':'INDICES','count':6,'byteStride':2"), HE_SYNTAX,
-         "the bytes are not compressed INDICES"},
+         "the bytes are not INDICES in compressed form"},
     };
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -320,12 +320,15 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
     extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
     b.bytes[0] = 0xA1;
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED,
-                          "ATTRIBUTES packed by version 1, where EXT_meshopt_compression has 0");
+                          "ATTRIBUTES were compressed by version 1 of their coding; "
+                          "EXT_meshopt_compression allows at most 0");
     b.bytes[0] = 0xB0;
-    expect_packed_refused(&b, first, second, HE_SYNTAX, "the bytes are not compressed ATTRIBUTES");
+    expect_packed_refused(&b, first, second, HE_SYNTAX,
+                          "the bytes are not ATTRIBUTES in compressed form");
     b.bytes[0] = 0xA0;
     b.bytes[b.at] = 0xE2;
-    expect_packed_refused(&b, first, second, HE_UNSUPPORTED, "TRIANGLES packed by version 2");
+    expect_packed_refused(&b, first, second, HE_UNSUPPORTED,
+                          "TRIANGLES were compressed by version 2");
 }
 
 /* Changed bytes must give a mesh, perhaps another one, or a refusal. */

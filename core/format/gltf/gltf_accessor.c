@@ -224,7 +224,7 @@ he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor 
     }
     if (status == HE_OK && a.count > HE_MAX_ROWS) {
         status = he_json_fail(json, a.value, err, HE_LIMIT,
-                              "%llu elements are more than a mesh can have",
+                              "the accessor has %llu elements, more than a mesh can have",
                               (unsigned long long)a.count);
     }
     if (status != HE_OK) {

@@ -25,7 +25,7 @@ he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error
 {
     if (bytes > asset->room) {
         return he_json_fail(&asset->json, value, err, HE_LIMIT,
-                            "the scene unfolds to more than %llu MiB of geometry, and more than "
+                            "the scene has more than %llu MiB of geometry, and more than "
                             "%llu times the file",
                             (unsigned long long)(HE_GLTF_ROOM >> 20),
                             (unsigned long long)HE_GLTF_FACTOR);

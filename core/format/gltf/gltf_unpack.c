@@ -119,12 +119,13 @@ static he_status check_stream(const he_gltf *asset, uint32_t object,
                             (unsigned long long)packed->length);
     }
     if (version < 0) {
-        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are not compressed %s",
+        return he_json_fail(json, object, err, HE_SYNTAX, "the bytes are not %s in compressed form",
                             he_meshopt_modes[stream->mode]);
     }
     if (version > latest) {
         return he_json_fail(json, object, err, HE_UNSUPPORTED,
-                            "%s packed by version %d, where " HE_GLTF_MESHOPT " has %d",
+                            "%s were compressed by version %d of their coding; " HE_GLTF_MESHOPT
+                            " allows at most %d",
                             he_meshopt_modes[stream->mode], version, latest);
     }
     return HE_OK;
@@ -173,7 +174,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     if (!he_meshopt_decode(&stream, packed.bytes, (size_t)packed.length, own)) {
         he_mem_free(own);
         return he_json_fail(json, object, err, HE_SYNTAX,
-                            "the bytes are not compressed %s of %llu elements",
+                            "the bytes are not %s of %llu elements in compressed form",
                             he_meshopt_modes[stream.mode], (unsigned long long)stream.count);
     }
     *out = (he_gltf_buffer){.bytes = own, .own = own, .length = length, .place = HE_GLTF_NOWHERE};

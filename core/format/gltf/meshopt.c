@@ -23,18 +23,19 @@ const char *he_meshopt_fits(const he_meshopt_stream *s)
     bool attributes = s->mode == HE_MESHOPT_ATTRIBUTES;
     if (attributes ? s->stride == 0 || s->stride % 4 != 0 || s->stride > 256
                    : s->stride != 2 && s->stride != 4) {
-        return attributes ? "byteStride is no multiple of 4 up to 256"
-                          : "byteStride is neither 2 nor 4";
+        return attributes
+                   ? "byteStride must be a multiple of 4, from 4 to 256, in the mode ATTRIBUTES"
+                   : "byteStride must be 2 or 4 in this mode";
     }
     if (s->mode == HE_MESHOPT_TRIANGLES && s->count % 3 != 0) {
-        return "count is no multiple of 3";
+        return "count must be a multiple of 3 in the mode TRIANGLES";
     }
     if (s->filter != HE_MESHOPT_NONE && !attributes) {
-        return "only ATTRIBUTES have a filter";
+        return "a filter needs the mode ATTRIBUTES";
     }
     if ((s->filter == HE_MESHOPT_OCTAHEDRAL && s->stride != 4 && s->stride != 8) ||
         (s->filter == HE_MESHOPT_QUATERNION && s->stride != 8)) {
-        return "the filter is of another byteStride";
+        return "the filter needs another byteStride: 4 or 8 for OCTAHEDRAL, 8 for QUATERNION";
     }
     return NULL;
 }
