@@ -40,7 +40,7 @@ static void *come_and_go(void *context)
 }
 
 /* A PUT must replace or create the mesh even if other clients delete it meanwhile. */
-static void test_put_meets_delete(void **state)
+static void put_succeeds_while_others_delete_the_mesh(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
@@ -73,7 +73,7 @@ static void *poke(void *context)
 }
 
 /* Every edit of every writer must be applied exactly once. */
-static void test_writers_of_one_mesh(void **state)
+static void each_edit_of_concurrent_writers_is_applied_once(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
@@ -105,8 +105,8 @@ static void test_writers_of_one_mesh(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_put_meets_delete),
-        cmocka_unit_test(test_writers_of_one_mesh),
+        cmocka_unit_test(put_succeeds_while_others_delete_the_mesh),
+        cmocka_unit_test(each_edit_of_concurrent_writers_is_applied_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

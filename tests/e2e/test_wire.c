@@ -90,7 +90,7 @@ static void expect_raw(const char *request, int status)
     "--x\r\nContent-Disposition: form-data; name=\"a.obj\"\r\n\r\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 " \
     "2 3\n\r\n--x--"
 
-static void test_framing(void **state)
+static void hostile_requests_get_their_status_and_change_no_mesh(void **state)
 {
     (void)state;
     static const struct {
@@ -174,7 +174,7 @@ static void test_framing(void **state)
 
 /* An ambiguous request must not leave a second request behind on its connection (request
  * smuggling). */
-static void test_no_second_answer(void **state)
+static void an_ambiguous_request_smuggles_no_second_one(void **state)
 {
     (void)state;
     static const char request[] =
@@ -187,7 +187,7 @@ static void test_no_second_answer(void **state)
     free(answer);
 }
 
-static void test_long_lines(void **state)
+static void a_long_target_gets_414_and_150_headers_get_431(void **state)
 {
     (void)state;
     enum { LONG = 20000 };
@@ -210,7 +210,7 @@ static void test_long_lines(void **state)
     free(request);
 }
 
-static void test_client_that_stops(void **state)
+static void an_edit_sent_in_part_changes_nothing(void **state)
 {
     (void)state;
     char request[512];
@@ -224,7 +224,7 @@ static void test_client_that_stops(void **state)
     expect_unchanged();
 }
 
-static void test_bad_bodies(void **state)
+static void a_bad_edit_gets_its_code_and_changes_nothing(void **state)
 {
     (void)state;
     static const struct {
@@ -277,7 +277,7 @@ static void test_bad_bodies(void **state)
     expect_unchanged();
 }
 
-static void test_meshes_that_cannot_be(void **state)
+static void meshes_that_cannot_be_are_refused_with_their_code(void **state)
 {
     (void)state;
 #define SQUARE "\"vertices\":[[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1]]"
@@ -318,9 +318,12 @@ static void test_meshes_that_cannot_be(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_framing),    cmocka_unit_test(test_no_second_answer),
-        cmocka_unit_test(test_long_lines), cmocka_unit_test(test_client_that_stops),
-        cmocka_unit_test(test_bad_bodies), cmocka_unit_test(test_meshes_that_cannot_be),
+        cmocka_unit_test(hostile_requests_get_their_status_and_change_no_mesh),
+        cmocka_unit_test(an_ambiguous_request_smuggles_no_second_one),
+        cmocka_unit_test(a_long_target_gets_414_and_150_headers_get_431),
+        cmocka_unit_test(an_edit_sent_in_part_changes_nothing),
+        cmocka_unit_test(a_bad_edit_gets_its_code_and_changes_nothing),
+        cmocka_unit_test(meshes_that_cannot_be_are_refused_with_their_code),
     };
     return cmocka_run_group_tests(tests, start, stop);
 }

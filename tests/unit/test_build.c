@@ -27,7 +27,7 @@ static void expect_refusal(const char *faces, he_status reason, he_kind kind, ui
     he_soup_clear(&soup);
 }
 
-static void test_build_counts(void **state)
+static void faces_that_share_sides_share_edges_and_the_rest_is_boundary(void **state)
 {
     (void)state;
     static const struct {
@@ -51,7 +51,7 @@ static void test_build_counts(void **state)
     }
 }
 
-static void test_build_numbers_in_order(void **state)
+static void elements_are_numbered_in_the_order_of_the_faces(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -66,7 +66,7 @@ static void test_build_numbers_in_order(void **state)
     he_mesh_free(m);
 }
 
-static void test_bowtie_is_visited_whole(void **state)
+static void turning_around_a_bowtie_visits_all_its_fans(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056");
@@ -77,7 +77,7 @@ static void test_bowtie_is_visited_whole(void **state)
     he_mesh_free(m);
 }
 
-static void test_build_refusals(void **state)
+static void a_refusal_names_the_defect_and_leaves_the_soup_complete(void **state)
 {
     (void)state;
     expect_refusal("012,01", HE_TOO_FEW_CORNERS, HE_FACE, 1, 1);
@@ -128,7 +128,7 @@ static void a_refusal_names_the_defects_of_all_stages(void **state)
     }
 }
 
-static void test_build_names_bad_indices(void **state)
+static void a_refusal_names_each_bad_index_and_its_corner(void **state)
 {
     (void)state;
     he_soup soup;
@@ -148,7 +148,7 @@ static void test_build_names_bad_indices(void **state)
     he_soup_clear(&soup);
 }
 
-static void test_report_keeps_the_first_hundred(void **state)
+static void a_report_counts_all_defects_and_keeps_the_first_hundred(void **state)
 {
     (void)state;
     he_soup soup;
@@ -166,7 +166,7 @@ static void test_report_keeps_the_first_hundred(void **state)
     he_soup_clear(&soup);
 }
 
-static void test_soup_limits(void **state)
+static void a_soup_takes_no_more_than_its_limits_and_no_nan(void **state)
 {
     (void)state;
     he_soup soup;
@@ -194,7 +194,7 @@ static void test_soup_limits(void **state)
 
 /* All edges of the hub of a large fan are looked up under the hub's id: if that took more than
  * linear time, 400,000 triangles would take minutes. */
-static void test_large_fan(void **state)
+static void a_fan_of_400000_triangles_takes_no_quadratic_time(void **state)
 {
     (void)state;
     enum { N = 400000 };
@@ -216,7 +216,7 @@ static void test_large_fan(void **state)
 }
 
 /* The mesh is one face with very many corners, of which one is repeated at the far end. */
-static void test_large_face(void **state)
+static void a_repeated_corner_is_found_in_a_face_of_200000(void **state)
 {
     (void)state;
     enum { N = 200000 };
@@ -302,7 +302,7 @@ static bool can_hold(uint32_t (*faces)[3], size_t count, uint32_t vertices)
     return true;
 }
 
-static void test_random_soups_against_definition(void **state)
+static void random_soups_are_built_exactly_if_a_mesh_can_hold_them(void **state)
 {
     (void)state;
     const char *text = getenv("SEED");
@@ -354,7 +354,7 @@ static void test_random_soups_against_definition(void **state)
     assert_true(held > 1000 && refused > 1000);
 }
 
-static void test_columns_follow_their_elements(void **state)
+static void values_of_a_soup_reach_their_corners_and_faces(void **state)
 {
     (void)state;
     he_soup soup;
@@ -394,7 +394,7 @@ static void test_columns_follow_their_elements(void **state)
     he_soup_clear(&soup);
 }
 
-static void test_every_allocation_may_fail(void **state)
+static void a_build_without_memory_is_refused_and_keeps_the_soup(void **state)
 {
     (void)state;
     failing f = {0};
@@ -425,19 +425,19 @@ static void test_every_allocation_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_build_counts),
-        cmocka_unit_test(test_build_numbers_in_order),
-        cmocka_unit_test(test_bowtie_is_visited_whole),
-        cmocka_unit_test(test_build_refusals),
+        cmocka_unit_test(faces_that_share_sides_share_edges_and_the_rest_is_boundary),
+        cmocka_unit_test(elements_are_numbered_in_the_order_of_the_faces),
+        cmocka_unit_test(turning_around_a_bowtie_visits_all_its_fans),
+        cmocka_unit_test(a_refusal_names_the_defect_and_leaves_the_soup_complete),
         cmocka_unit_test(a_refusal_names_the_defects_of_all_stages),
-        cmocka_unit_test(test_build_names_bad_indices),
-        cmocka_unit_test(test_report_keeps_the_first_hundred),
-        cmocka_unit_test(test_soup_limits),
-        cmocka_unit_test(test_large_fan),
-        cmocka_unit_test(test_large_face),
-        cmocka_unit_test(test_random_soups_against_definition),
-        cmocka_unit_test(test_columns_follow_their_elements),
-        cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(a_refusal_names_each_bad_index_and_its_corner),
+        cmocka_unit_test(a_report_counts_all_defects_and_keeps_the_first_hundred),
+        cmocka_unit_test(a_soup_takes_no_more_than_its_limits_and_no_nan),
+        cmocka_unit_test(a_fan_of_400000_triangles_takes_no_quadratic_time),
+        cmocka_unit_test(a_repeated_corner_is_found_in_a_face_of_200000),
+        cmocka_unit_test(random_soups_are_built_exactly_if_a_mesh_can_hold_them),
+        cmocka_unit_test(values_of_a_soup_reach_their_corners_and_faces),
+        cmocka_unit_test(a_build_without_memory_is_refused_and_keeps_the_soup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,7 +185,7 @@ static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool conv
 
 static const he_vec3 SQUARE[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
-static void test_square(void **state)
+static void a_square_is_cut_only_if_corners_lie_on_both_sides(void **state)
 {
     (void)state;
     static const struct {
@@ -223,7 +223,7 @@ static void test_square(void **state)
 
 /* The part with the side that begins at the origin of the face's stored half-edge must keep
  * the id. */
-static void test_who_survives(void **state)
+static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123", SQUARE);
@@ -258,7 +258,7 @@ static void test_who_survives(void **state)
 }
 
 /* Only listed faces are cut; a neighbour that is not listed gets the new vertex as a corner. */
-static void test_only_some_faces(void **state)
+static void only_listed_faces_are_cut_and_neighbours_get_the_corner(void **state)
 {
     (void)state;
     static const he_vec3 strip[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0},
@@ -275,7 +275,7 @@ static void test_only_some_faces(void **state)
     he_mesh_free(m);
 }
 
-static void test_attributes_follow(void **state)
+static void values_are_copied_to_parts_and_interpolated_at_the_cut(void **state)
 {
     (void)state;
     static const he_kind domains[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
@@ -314,7 +314,7 @@ static void test_attributes_follow(void **state)
     he_mesh_free(m);
 }
 
-static void test_refusals(void **state)
+static void what_cannot_be_cut_is_refused_and_changes_nothing(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3210", SQUARE), *before = copy_of(m);
@@ -435,7 +435,7 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     he_mesh_free(m);
 }
 
-static void test_concave(void **state)
+static void parts_of_a_concave_face_are_one_sided_and_fill_it(void **state)
 {
     (void)state;
     static const point angle[] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
@@ -461,7 +461,7 @@ static void test_concave(void **state)
     check_cut(spiral, 16, 8, 4, 1);
 }
 
-static void test_comb(void **state)
+static void a_comb_of_3000_teeth_is_cut_into_teeth_and_back(void **state)
 {
     (void)state;
     enum { TEETH = 3000 };
@@ -484,7 +484,7 @@ static void test_comb(void **state)
 
 /* The polygons have corners at integer heights and are cut at integer heights: corners and sides
  * lie in the plane and touch it from above and below, also at the ends. */
-static void test_random_profiles(void **state)
+static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **state)
 {
     (void)state;
     static const double scales[] = {1, 1e300, 1e-300};
@@ -526,7 +526,7 @@ static he_vec3 random_vector(md_random *r)
     return (he_vec3){md_unit(r) * 2 - 1, md_unit(r) * 2 - 1, md_unit(r) * 2 - 1};
 }
 
-static void test_convex_shapes(void **state)
+static void cut_shapes_keep_topology_and_area_with_faces_on_one_side(void **state)
 {
     (void)state;
     static const char *const names[] = {"cube",      "dodecahedron", "icosahedron",
@@ -599,7 +599,7 @@ static void random_plane(const he_mesh *m, md_random *r, he_vec3 *at, he_vec3 *n
     }
 }
 
-static void test_random_meshes(void **state)
+static void random_meshes_are_cut_as_predicted_or_stay_unchanged(void **state)
 {
     (void)state;
     uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 1500);
@@ -627,7 +627,7 @@ static void test_random_meshes(void **state)
     assert_true(rounds < 100 || done > 20 * refused);
 }
 
-static void test_memory_runs_out(void **state)
+static void a_plane_split_without_memory_leaves_the_mesh_unchanged(void **state)
 {
     (void)state;
     for (unsigned record = 0; record < 2; record++) {
@@ -662,17 +662,17 @@ static void test_memory_runs_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_square),
-        cmocka_unit_test(test_who_survives),
-        cmocka_unit_test(test_only_some_faces),
-        cmocka_unit_test(test_attributes_follow),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_concave),
-        cmocka_unit_test(test_comb),
-        cmocka_unit_test(test_random_profiles),
-        cmocka_unit_test(test_convex_shapes),
-        cmocka_unit_test(test_random_meshes),
-        cmocka_unit_test(test_memory_runs_out),
+        cmocka_unit_test(a_square_is_cut_only_if_corners_lie_on_both_sides),
+        cmocka_unit_test(the_part_of_the_first_side_keeps_the_id_of_the_face),
+        cmocka_unit_test(only_listed_faces_are_cut_and_neighbours_get_the_corner),
+        cmocka_unit_test(values_are_copied_to_parts_and_interpolated_at_the_cut),
+        cmocka_unit_test(what_cannot_be_cut_is_refused_and_changes_nothing),
+        cmocka_unit_test(parts_of_a_concave_face_are_one_sided_and_fill_it),
+        cmocka_unit_test(a_comb_of_3000_teeth_is_cut_into_teeth_and_back),
+        cmocka_unit_test(random_profiles_have_one_part_for_each_rise_above_the_cut),
+        cmocka_unit_test(cut_shapes_keep_topology_and_area_with_faces_on_one_side),
+        cmocka_unit_test(random_meshes_are_cut_as_predicted_or_stay_unchanged),
+        cmocka_unit_test(a_plane_split_without_memory_leaves_the_mesh_unchanged),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     or_free(shapes);

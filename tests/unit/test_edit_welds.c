@@ -32,7 +32,7 @@ static void assert_same_rings(he_mesh *m, const he_mesh *before)
     assert_true(he_mesh_equal_live(m, before));
 }
 
-static void test_cf3_split_corners(void **state)
+static void collapsing_the_new_edge_undoes_a_split_at_the_boundary(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(CF3, NULL), *before = copy_of(m);
@@ -81,7 +81,7 @@ static void split_and_collapse(const he_mesh *before, uint32_t a, uint32_t b)
     he_mesh_free(m);
 }
 
-static void test_split_corners_and_collapse(void **state)
+static void a_vertex_split_is_undone_by_a_collapse_where_allowed(void **state)
 {
     (void)state;
     static const char *const meshes[] = {CF3, HEXAGON, QCUBE, STRANGE, BOARD, "012", "012,021"};
@@ -97,7 +97,7 @@ static void test_split_corners_and_collapse(void **state)
     }
 }
 
-static void test_separate_and_weld(void **state)
+static void welds_undo_the_separation_of_bowties(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(STRANGE, NULL), *before = copy_of(m);
@@ -132,7 +132,7 @@ static void test_separate_and_weld(void **state)
     he_mesh_free(m);
 }
 
-static void test_poke_and_dissolve(void **state)
+static void face_poke_and_vertex_dissolve_undo_each_other(void **state)
 {
     (void)state;
     for (unsigned f = 0; f < 6; f++) {
@@ -158,7 +158,7 @@ static void test_poke_and_dissolve(void **state)
 
 /* --- cases --- */
 
-static void test_cube_bevel(void **state)
+static void a_cube_vertex_bevels_to_a_triangle_of_limited_width(void **state)
 {
     (void)state;
     static const he_vec3 cube[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -189,7 +189,7 @@ static void test_cube_bevel(void **state)
 
 /* Each vertex is merged into the lowest remaining one within the tolerance. Vertex 1 is near both 0
  * and 2; this must not merge 2 into 0. */
-static void test_weld_does_not_chain(void **state)
+static void a_weld_does_not_merge_along_a_chain(void **state)
 {
     (void)state;
     static const he_vec3 line[] = {{0, 0, 0}, {0.6, 0, 0}, {1.2, 0, 0}, {1.5, 0, 0}, {9, 0, 0}};
@@ -208,7 +208,7 @@ static void test_weld_does_not_chain(void **state)
 
 /* Only the distance may decide, whatever cells the search uses: at negative coordinates, at borders
  * of cells, and where a cell is smaller than the step between doubles. */
-static void test_weld_at_any_scale(void **state)
+static void only_distance_decides_what_a_weld_merges_at_any_scale(void **state)
 {
     (void)state;
     static const struct {
@@ -241,7 +241,7 @@ static void test_weld_at_any_scale(void **state)
 
 /* All vertices are in one cell of the search, or each in a cell of its own: neither may take
  * quadratic time. */
-static void test_weld_of_many(void **state)
+static void a_weld_of_100000_vertices_takes_no_quadratic_time(void **state)
 {
     (void)state;
     enum { COUNT = 100000 };
@@ -262,7 +262,7 @@ static void test_weld_of_many(void **state)
     }
 }
 
-static void test_bad_values(void **state)
+static void nan_is_refused_as_tolerance_and_width_without_change(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, NULL), *before = copy_of(m);
@@ -273,7 +273,7 @@ static void test_bad_values(void **state)
     he_mesh_free(m);
 }
 
-static void test_extreme_positions(void **state)
+static void welds_and_bevels_of_huge_positions_leave_a_valid_mesh(void **state)
 {
     (void)state;
     static const he_vec3 far[] = {{1.7e308, 1.7e308, -1.7e308},
@@ -331,7 +331,7 @@ static void edit_end(edit *e)
     he_mesh_free(e->m);
 }
 
-static void test_survivors(void **state)
+static void changes_name_survivors_of_merges_and_parents_of_splits(void **state)
 {
     (void)state;
     /* The edges of the face 012 are 0 (0-1), 1 (1-2) and 2 (2-0), those of 345 are 3 (3-4), 4 (4-5)
@@ -425,7 +425,7 @@ static void assert_corner(const he_mesh *m, uint32_t face, uint32_t vertex, doub
     assert_value(m, HE_HALFEDGE, h.i, expected);
 }
 
-static void test_vertex_values(void **state)
+static void vertex_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     static const struct {
@@ -466,7 +466,7 @@ static void test_vertex_values(void **state)
     he_mesh_free(m);
 }
 
-static void test_edge_and_face_values(void **state)
+static void edge_and_face_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     static const char MEET[] = "vertex_move vertices=2,4 to=5,0,0;"
@@ -498,7 +498,7 @@ static void test_edge_and_face_values(void **state)
 
 /* The half-edges in face 012: 0 (0-1), 2 (1-2), 4 (2-0); in face 345: 6 (3-4), 8 (4-5), 10
  * (5-3). */
-static void test_corner_values(void **state)
+static void corners_keep_values_and_a_bevel_interpolates_new_ones(void **state)
 {
     (void)state;
     static const char MEET[] = "vertex_move vertices=2,4 to=5,0,0;"
@@ -544,20 +544,20 @@ static void test_corner_values(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cf3_split_corners),
-        cmocka_unit_test(test_split_corners_and_collapse),
-        cmocka_unit_test(test_separate_and_weld),
-        cmocka_unit_test(test_poke_and_dissolve),
-        cmocka_unit_test(test_cube_bevel),
-        cmocka_unit_test(test_weld_does_not_chain),
-        cmocka_unit_test(test_weld_at_any_scale),
-        cmocka_unit_test(test_weld_of_many),
-        cmocka_unit_test(test_bad_values),
-        cmocka_unit_test(test_extreme_positions),
-        cmocka_unit_test(test_survivors),
-        cmocka_unit_test(test_vertex_values),
-        cmocka_unit_test(test_edge_and_face_values),
-        cmocka_unit_test(test_corner_values),
+        cmocka_unit_test(collapsing_the_new_edge_undoes_a_split_at_the_boundary),
+        cmocka_unit_test(a_vertex_split_is_undone_by_a_collapse_where_allowed),
+        cmocka_unit_test(welds_undo_the_separation_of_bowties),
+        cmocka_unit_test(face_poke_and_vertex_dissolve_undo_each_other),
+        cmocka_unit_test(a_cube_vertex_bevels_to_a_triangle_of_limited_width),
+        cmocka_unit_test(a_weld_does_not_merge_along_a_chain),
+        cmocka_unit_test(only_distance_decides_what_a_weld_merges_at_any_scale),
+        cmocka_unit_test(a_weld_of_100000_vertices_takes_no_quadratic_time),
+        cmocka_unit_test(nan_is_refused_as_tolerance_and_width_without_change),
+        cmocka_unit_test(welds_and_bevels_of_huge_positions_leave_a_valid_mesh),
+        cmocka_unit_test(changes_name_survivors_of_merges_and_parents_of_splits),
+        cmocka_unit_test(vertex_values_follow_the_rule_of_their_column),
+        cmocka_unit_test(edge_and_face_values_follow_the_rule_of_their_column),
+        cmocka_unit_test(corners_keep_values_and_a_bevel_interpolates_new_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -42,7 +42,7 @@ static he_status apply(const edit_log *log, size_t i, bool *seen, he_mesh *m)
     return HE_OK;
 }
 
-static void test_every_entry_of_a_log_can_be_reached_from_its_beginning(void **state)
+static void every_entry_of_a_log_can_be_reached_from_its_beginning(void **state)
 {
     (void)state;
     md_random random = {seed_of_run()};
@@ -60,7 +60,7 @@ static void test_every_entry_of_a_log_can_be_reached_from_its_beginning(void **s
     }
 }
 
-static void test_without_memory_the_mesh_stays_as_it_was(void **state)
+static void without_memory_the_mesh_stays_as_it_was(void **state)
 {
     (void)state;
     md_random random = {11};
@@ -112,7 +112,7 @@ static void expect_refusal(he_delta *delta, he_mesh *m, const he_mesh *after, si
     he_mesh_free(before);
 }
 
-static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
+static void another_mesh_than_the_edit_was_made_on_is_refused(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,023", NULL), *other = script_mesh("012,023", NULL);
@@ -138,7 +138,7 @@ static void test_another_mesh_than_the_edit_was_made_on_is_refused(void **state)
     he_mesh_free(other);
 }
 
-static void test_an_attribute_does_not_come_twice(void **state)
+static void no_attribute_is_added_over_a_taken_slot_or_name(void **state)
 {
     (void)state;
     md_random random = {3}, same = random;
@@ -166,10 +166,10 @@ static void test_an_attribute_does_not_come_twice(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_entry_of_a_log_can_be_reached_from_its_beginning),
-        cmocka_unit_test(test_without_memory_the_mesh_stays_as_it_was),
-        cmocka_unit_test(test_another_mesh_than_the_edit_was_made_on_is_refused),
-        cmocka_unit_test(test_an_attribute_does_not_come_twice),
+        cmocka_unit_test(every_entry_of_a_log_can_be_reached_from_its_beginning),
+        cmocka_unit_test(without_memory_the_mesh_stays_as_it_was),
+        cmocka_unit_test(another_mesh_than_the_edit_was_made_on_is_refused),
+        cmocka_unit_test(no_attribute_is_added_over_a_taken_slot_or_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

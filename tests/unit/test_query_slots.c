@@ -168,7 +168,7 @@ static void check_changes(const world *w, const uint32_t *before, uint32_t count
     he_ids_clear(&slots);
 }
 
-static void test_runs_of_all_lengths(void **state)
+static void each_face_keeps_its_slots_together_and_changes_are_listed(void **state)
 {
     (void)state;
     uint32_t layouts = 0, reused = 0;
@@ -209,7 +209,7 @@ static void test_runs_of_all_lengths(void **state)
     close_world(&w);
 }
 
-static void test_too_many_steps_change_nothing(void **state)
+static void an_advance_over_its_limit_leaves_the_slots_unchanged(void **state)
 {
     (void)state;
     world w;
@@ -228,7 +228,7 @@ static void test_too_many_steps_change_nothing(void **state)
 
 /* A vertex that becomes live at the origin writes no position, because it has this one already; it
  * must still be noticed that it lies outside the frame of the coordinates. */
-static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
+static void a_vertex_outside_the_frame_ends_the_layout(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012");
@@ -252,7 +252,7 @@ static void test_a_vertex_outside_the_frame_ends_the_layout(void **state)
 }
 
 /* The oldest changes must be forgotten first, and the memory for changes must not grow. */
-static void test_old_changes_are_forgotten(void **state)
+static void the_oldest_changes_are_forgotten_and_memory_stays_bounded(void **state)
 {
     (void)state;
     world w;
@@ -283,7 +283,7 @@ static void test_old_changes_are_forgotten(void **state)
     close_world(&w);
 }
 
-static void test_each_allocation_failing(void **state)
+static void slots_without_memory_stay_as_they_were(void **state)
 {
     (void)state;
     world w;
@@ -313,11 +313,11 @@ static void test_each_allocation_failing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_runs_of_all_lengths),
-        cmocka_unit_test(test_too_many_steps_change_nothing),
-        cmocka_unit_test(test_a_vertex_outside_the_frame_ends_the_layout),
-        cmocka_unit_test(test_old_changes_are_forgotten),
-        cmocka_unit_test(test_each_allocation_failing),
+        cmocka_unit_test(each_face_keeps_its_slots_together_and_changes_are_listed),
+        cmocka_unit_test(an_advance_over_its_limit_leaves_the_slots_unchanged),
+        cmocka_unit_test(a_vertex_outside_the_frame_ends_the_layout),
+        cmocka_unit_test(the_oldest_changes_are_forgotten_and_memory_stays_bounded),
+        cmocka_unit_test(slots_without_memory_stay_as_they_were),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

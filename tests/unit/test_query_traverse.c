@@ -141,7 +141,7 @@ static void try_paths(const he_mesh *m, he_measure by)
     }
 }
 
-static void test_traverse_agrees_with_all_distances(void **state)
+static void walks_and_paths_agree_with_the_distances_of_all_pairs(void **state)
 {
     (void)state;
     for (size_t i = 0; i <= QUERY_SPECIMENS; i++) {
@@ -155,7 +155,7 @@ static void test_traverse_agrees_with_all_distances(void **state)
     }
 }
 
-static void test_traverse_agrees_on_random_positions(void **state)
+static void shortest_paths_are_shortest_at_random_positions(void **state)
 {
     (void)state;
     uint64_t seed = 3;
@@ -175,7 +175,7 @@ static void test_traverse_agrees_on_random_positions(void **state)
     }
 }
 
-static void test_traverse_path(void **state)
+static void a_path_repeats_its_steps_until_count_start_or_boundary(void **state)
 {
     (void)state;
     static const he_step next[] = {HE_STEP_NEXT}, prev[] = {HE_STEP_PREV};
@@ -255,7 +255,7 @@ static void test_traverse_path(void **state)
     he_mesh_free(m);
 }
 
-static void test_traverse_loop(void **state)
+static void a_loop_follows_next_around_a_face_or_a_hole(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -312,7 +312,7 @@ static void expect_chain(const he_mesh *m, bool ring, uint32_t edge, size_t coun
     he_ids_clear(&ids);
 }
 
-static void test_traverse_edge_loops_and_rings(void **state)
+static void edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads(void **state)
 {
     (void)state;
     /* On a torus of quads every loop and every ring must close. */
@@ -371,7 +371,7 @@ static void test_traverse_edge_loops_and_rings(void **state)
     he_mesh_free(m);
 }
 
-static void test_traverse_refuses(void **state)
+static void walks_from_deleted_or_missing_elements_are_refused(void **state)
 {
     (void)state;
     he_mesh *m = query_with_dead_rows();
@@ -410,7 +410,7 @@ static void test_traverse_refuses(void **state)
 }
 
 /* Sums of lengths that overflow a double must be replaced by finite ones. */
-static void test_traverse_shortest_path_of_huge_lengths(void **state)
+static void a_path_of_huge_lengths_has_a_finite_length(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("grid", 3, 1, 1, 1);
@@ -464,7 +464,7 @@ static void walk_all(const he_mesh *m, he_status *worst)
     }
 }
 
-static void test_traverse_ends_on_broken_links(void **state)
+static void every_walk_ends_on_broken_links(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
@@ -495,7 +495,7 @@ static void test_traverse_ends_on_broken_links(void **state)
     assert_true(corrupt > 1000);
 }
 
-static void test_traverse_survives_failing_memory(void **state)
+static void a_walk_without_memory_gives_nothing(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("torus", 9, 10, 2, 1);
@@ -549,7 +549,7 @@ static void test_traverse_survives_failing_memory(void **state)
 }
 
 /* The memory that a local walk needs must not grow with the mesh. */
-static void test_traverse_costs_what_it_touches(void **state)
+static void a_local_walk_allocates_no_more_in_a_larger_mesh(void **state)
 {
     (void)state;
     long calls[2];
@@ -604,17 +604,17 @@ static void a_long_path_can_be_given_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_traverse_agrees_with_all_distances),
-        cmocka_unit_test(test_traverse_agrees_on_random_positions),
-        cmocka_unit_test(test_traverse_path),
+        cmocka_unit_test(walks_and_paths_agree_with_the_distances_of_all_pairs),
+        cmocka_unit_test(shortest_paths_are_shortest_at_random_positions),
+        cmocka_unit_test(a_path_repeats_its_steps_until_count_start_or_boundary),
         cmocka_unit_test(a_long_path_can_be_given_up),
-        cmocka_unit_test(test_traverse_loop),
-        cmocka_unit_test(test_traverse_edge_loops_and_rings),
-        cmocka_unit_test(test_traverse_refuses),
-        cmocka_unit_test(test_traverse_shortest_path_of_huge_lengths),
-        cmocka_unit_test(test_traverse_ends_on_broken_links),
-        cmocka_unit_test(test_traverse_survives_failing_memory),
-        cmocka_unit_test(test_traverse_costs_what_it_touches),
+        cmocka_unit_test(a_loop_follows_next_around_a_face_or_a_hole),
+        cmocka_unit_test(edge_loops_pass_vertices_of_degree_4_and_rings_cross_quads),
+        cmocka_unit_test(walks_from_deleted_or_missing_elements_are_refused),
+        cmocka_unit_test(a_path_of_huge_lengths_has_a_finite_length),
+        cmocka_unit_test(every_walk_ends_on_broken_links),
+        cmocka_unit_test(a_walk_without_memory_gives_nothing),
+        cmocka_unit_test(a_local_walk_allocates_no_more_in_a_larger_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ static void assert_near(double got, double wanted)
     }
 }
 
-static void test_shape_counts(void **state)
+static void shapes_have_their_counts_genus_and_boundary_loops(void **state)
 {
     (void)state;
     static const struct {
@@ -128,7 +128,7 @@ static void test_shape_counts(void **state)
     }
 }
 
-static void test_shape_open_cylinder_has_two_loops_of_six(void **state)
+static void an_open_cylinder_of_six_sides_has_two_loops_of_six(void **state)
 {
     (void)state;
     he_mesh *m = make("cylinder", 6, NAN, NAN, 0);
@@ -143,7 +143,7 @@ static void test_shape_open_cylinder_has_two_loops_of_six(void **state)
 
 /* Requires for every shape that it has the requested size, that it is a valid mesh, and that its
  * faces look outward or up. */
-static void test_shape_every_row(void **state)
+static void each_shape_has_its_stated_size_and_looks_outward_or_up(void **state)
 {
     (void)state;
     for (size_t i = 0; i < he_shape_count(); i++) {
@@ -187,7 +187,7 @@ static void test_shape_every_row(void **state)
     assert_null(he_shape_find("", 0));
 }
 
-static void test_shape_regular_solids(void **state)
+static void regular_solids_have_equal_edges_and_exact_volumes(void **state)
 {
     (void)state;
     static const char *const names[] = {"tetrahedron", "octahedron", "icosahedron", "dodecahedron"};
@@ -222,7 +222,7 @@ static void test_shape_regular_solids(void **state)
     he_mesh_free(m);
 }
 
-static void test_shape_round_ones_fit_their_radius(void **state)
+static void shapes_have_the_radius_volume_and_area_of_their_arguments(void **state)
 {
     (void)state;
     he_mesh *m = make("icosphere", 4, 3, NAN, NAN);
@@ -263,7 +263,7 @@ static void test_shape_round_ones_fit_their_radius(void **state)
     he_mesh_free(m);
 }
 
-static void test_shape_arguments_are_refused(void **state)
+static void bad_arguments_of_a_shape_are_refused_by_name(void **state)
 {
     (void)state;
     static const struct {
@@ -303,7 +303,7 @@ static void test_shape_arguments_are_refused(void **state)
     he_mesh_free(m);
 }
 
-static void test_shape_limits_are_kept_before_memory_is_taken(void **state)
+static void a_shape_over_its_limits_is_refused_before_allocating(void **state)
 {
     (void)state;
     for (size_t i = 0; i < he_shape_count(); i++) {
@@ -369,13 +369,13 @@ static void each_allocation_of_a_shape_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shape_counts),
-        cmocka_unit_test(test_shape_open_cylinder_has_two_loops_of_six),
-        cmocka_unit_test(test_shape_every_row),
-        cmocka_unit_test(test_shape_regular_solids),
-        cmocka_unit_test(test_shape_round_ones_fit_their_radius),
-        cmocka_unit_test(test_shape_arguments_are_refused),
-        cmocka_unit_test(test_shape_limits_are_kept_before_memory_is_taken),
+        cmocka_unit_test(shapes_have_their_counts_genus_and_boundary_loops),
+        cmocka_unit_test(an_open_cylinder_of_six_sides_has_two_loops_of_six),
+        cmocka_unit_test(each_shape_has_its_stated_size_and_looks_outward_or_up),
+        cmocka_unit_test(regular_solids_have_equal_edges_and_exact_volumes),
+        cmocka_unit_test(shapes_have_the_radius_volume_and_area_of_their_arguments),
+        cmocka_unit_test(bad_arguments_of_a_shape_are_refused_by_name),
+        cmocka_unit_test(a_shape_over_its_limits_is_refused_before_allocating),
         cmocka_unit_test(each_allocation_of_a_shape_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
