@@ -111,7 +111,7 @@ PAGE_FILES  = $(shell find web -name node_modules -prune -o -name dist -prune -o
 STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
-        hostile fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
+        hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
         screenshot \
         install uninstall clean ALWAYS
 
@@ -157,6 +157,7 @@ NEEDS.crosscheck    = build $(if $(filter blender,$(PEERS)),blender,crosscheck)
 NEEDS.proof        := build test web browser
 NEEDS.soak         := build node
 NEEDS.hostile      := build hostile
+NEEDS.clients      := build web
 NEEDS.durable      := build durable
 NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
@@ -505,6 +506,17 @@ $(STAMPS)/openapi: .ci/openapi/package.json .ci/openapi/package-lock.json | $(IN
 	cp .ci/openapi/package.json .ci/openapi/package-lock.json build/openapi
 	cd build/openapi && npm ci --no-audit --no-fund --ignore-scripts
 	@touch $@
+
+CLIENTS_FILES := $(wildcard tests/clients/*)
+$(STAMPS)/clients: tests/clients/package.json tests/clients/package-lock.json | $(INSTALLED)
+	@mkdir -p build/clients
+	cp tests/clients/package.json tests/clients/package-lock.json build/clients
+	cd build/clients && npm ci --no-audit --no-fund --ignore-scripts
+	@touch $@
+
+clients: $(HEDGED) $(STAMPS)/clients | $(INSTALLED) ## generated clients compile and do their work; CLIENTS="orval kubb" for some
+	@cp $(CLIENTS_FILES) build/clients
+	@CLIENTS="$(CLIENTS)" sh tests/clients.sh $(HEDGED)
 
 lint: $(LIBRARIES) $(HEDGED) $(STAMPS)/openapi | $(INSTALLED) ## formatting, names, directions of includes, static analysis
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)

@@ -1,0 +1,16 @@
+// Where a body or an answer may be of several media types, kubb is told that JSON is meant.
+import { defineConfig } from '@kubb/core';
+import { pluginClient } from '@kubb/plugin-client';
+import { pluginOas } from '@kubb/plugin-oas';
+import { pluginTs } from '@kubb/plugin-ts';
+
+const contentType = 'application/json';
+export default defineConfig({
+    input: { path: './work/openapi.json' },
+    output: { path: './work/kubb/made', clean: true, format: false },
+    plugins: [
+        pluginOas({ validate: false, contentType }),
+        pluginTs({ contentType }),
+        pluginClient({ client: 'fetch', dataReturnType: 'full', bundle: true, contentType }),
+    ],
+});
