@@ -129,7 +129,19 @@ static void write_files_schema(api_out *out)
         "{\"type\":\"object\",\"description\":\"The mesh's file and those it refers to, by the "
         "names it has for them: of 1 to 64 parts one is of a format that is read.\","
         "\"properties\":{\"files\":{\"type\":\"array\",\"items\":{\"type\":\"string\","
-        "\"contentMediaType\":\"application/octet-stream\"}}}}";
+        "\"format\":\"binary\",\"contentMediaType\":\"application/octet-stream\"}}}}";
+    api_out_key(out, "schema");
+    api_out_raw(out, schema, sizeof schema - 1);
+}
+
+/* Writes the schema of a glTF document, with what the reader requires of it. A schema that allowed
+ * anything would make generated clients allow anything where a mesh as JSON is meant. */
+static void write_gltf_schema(api_out *out)
+{
+    static const char schema[] =
+        "{\"type\":\"object\",\"description\":\"A glTF 2.0 document.\",\"properties\":{\"asset\":"
+        "{\"type\":\"object\",\"properties\":{\"version\":{\"type\":\"string\"}},"
+        "\"required\":[\"version\"]}},\"required\":[\"asset\"]}";
     api_out_key(out, "schema");
     api_out_raw(out, schema, sizeof schema - 1);
 }
@@ -181,11 +193,14 @@ static void write_content(api_out *out, const char *const *types, const char *sc
         if (json && schema != NULL && strncmp(*types, "application/", 12) == 0) {
             api_schema_ref_key(out, "schema", schema);
         } else if (lines && item != NULL) {
+            write_bytes_schema(out, *types);
             write_line_schema(out, item);
         } else if (strcmp(*types, EVENT_STREAM) == 0) {
             write_events_schema(out, item);
         } else if (strcmp(*types, API_MULTIPART) == 0) {
             write_files_schema(out);
+        } else if (strcmp(*types, "model/gltf+json") == 0) {
+            write_gltf_schema(out);
         } else if (json) {
             api_out_key(out, "schema"); /* any JSON: a file of the page */
             api_out_raw(out, "{}", 2);
