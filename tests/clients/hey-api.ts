@@ -1,21 +1,22 @@
 // hey-api.ts - the story by the functions of @hey-api/openapi-ts.
 
 import { client } from './made/client.gen';
-import { applyEdits, createMesh, deleteMesh, getFace, queryMesh, traverseMesh } from './made/sdk.gen';
+import * as made from './made/sdk.gen';
 import { base, known, tell } from './story';
 
 client.setConfig({ baseUrl: base() });
 
 tell({
     async create(vertices, faces) {
-        const { data } = await createMesh({ body: { vertices, faces } });
+        const { data } = await made.createMesh({ body: { vertices, faces } });
         if (data === undefined || !('counts' in data)) {
             throw new Error('no summary');
         }
-        return { id: data.id, vertices: data.counts.vertices, edges: data.counts.edges, faces: data.counts.faces };
+        return data;
     },
     async split(mesh, edge) {
-        const { data } = await applyEdits({ path: { mesh }, body: { op: 'edge_split', edge, t: 0.5 } });
+        const body = { op: 'edge_split' as const, edge, t: 0.5 };
+        const { data } = await made.applyEdits({ path: { mesh }, body });
         if (data === undefined || !('results' in data)) {
             throw new Error('no edit');
         }
@@ -23,18 +24,19 @@ tell({
         if (done.op !== 'edge_split') {
             throw new Error(done.op);
         }
-        return { revision: known(data.revision, 'revision'), vertex: done.vertex, edges: known(done.edges, 'edges') };
+        return { revision: data.revision, vertex: done.vertex, edges: done.edges };
     },
     async loop(mesh, halfedge) {
-        const { data } = await traverseMesh({ path: { mesh }, body: { walk: 'loop', from: { halfedge } } });
+        const body = { walk: 'loop' as const, from: { halfedge } };
+        const { data } = await made.traverseMesh({ path: { mesh }, body });
         if (data === undefined || !('walk' in data) || data.walk !== 'loop') {
             throw new Error('no loop');
         }
-        return { halfedges: data.halfedges, vertices: data.vertices };
+        return data;
     },
     async faces(mesh, vertices) {
-        const body = { queries: [{ relation: 'faces', of: { vertices } }] };
-        const { data } = await queryMesh({ path: { mesh }, body });
+        const body = { queries: [{ relation: 'faces' as const, of: { vertices } }] };
+        const { data } = await made.queryMesh({ path: { mesh }, body });
         if (data === undefined || !('results' in data)) {
             throw new Error('no answers');
         }
@@ -42,13 +44,14 @@ tell({
         if (!('offsets' in answer)) {
             throw new Error('no offsets');
         }
-        return { offsets: answer.offsets, ids: answer.ids };
+        return answer;
     },
     async face(mesh, id) {
-        const { data, response } = await getFace({ path: { mesh, id } });
-        return { status: response.status, halfedge: data?.halfedge };
+        const { data, response } = await made.getFace({ path: { mesh, id } });
+        return { status: known(response, 'answer').status, halfedge: data?.halfedge };
     },
     async remove(mesh) {
-        return (await deleteMesh({ path: { mesh } })).response.status;
+        const { response } = await made.deleteMesh({ path: { mesh } });
+        return known(response, 'answer').status;
     },
 });

@@ -17,10 +17,11 @@ tell({
         if (!('counts' in data)) {
             throw new Error('no summary');
         }
-        return { id: data.id, vertices: data.counts.vertices, edges: data.counts.edges, faces: data.counts.faces };
+        return data;
     },
     async split(mesh, edge) {
-        const { data } = await applyEdits(mesh, { op: 'edge_split', edge, t: 0.5 }, undefined, config);
+        const body = { op: 'edge_split' as const, edge, t: 0.5 };
+        const { data } = await applyEdits(mesh, body, undefined, config);
         if (data === undefined || !('results' in data)) {
             throw new Error('no edit');
         }
@@ -28,17 +29,18 @@ tell({
         if (done.op !== 'edge_split') {
             throw new Error(done.op);
         }
-        return { revision: known(data.revision, 'revision'), vertex: done.vertex, edges: known(done.edges, 'edges') };
+        return { revision: data.revision, vertex: done.vertex, edges: done.edges };
     },
     async loop(mesh, halfedge) {
-        const { data } = await traverseMesh(mesh, { walk: 'loop', from: { halfedge } }, undefined, undefined, config);
+        const body = { walk: 'loop' as const, from: { halfedge } };
+        const { data } = await traverseMesh(mesh, body, undefined, undefined, config);
         if (!('walk' in data) || data.walk !== 'loop') {
             throw new Error('no loop');
         }
-        return { halfedges: data.halfedges, vertices: data.vertices };
+        return data;
     },
     async faces(mesh, vertices) {
-        const body = { queries: [{ relation: 'faces', of: { vertices } }] };
+        const body = { queries: [{ relation: 'faces' as const, of: { vertices } }] };
         const { data } = await queryMesh(mesh, body, undefined, undefined, config);
         if (!('results' in data)) {
             throw new Error('no answers');
@@ -47,7 +49,7 @@ tell({
         if (!('offsets' in answer)) {
             throw new Error('no offsets');
         }
-        return { offsets: answer.offsets, ids: answer.ids };
+        return answer;
     },
     async face(mesh, id) {
         const { data, status } = await getFace(mesh, id, undefined, undefined, config);

@@ -1,6 +1,6 @@
 // orval.ts - the story by the functions of orval, which call fetch with paths alone.
 
-import { applyEdits, createMesh, deleteMesh, getFace, queryMesh, traverseMesh } from './made/api';
+import * as made from './made/api';
 import { base, known, tell } from './story';
 
 const direct = globalThis.fetch;
@@ -8,14 +8,14 @@ globalThis.fetch = (path, options) => direct(`${base()}${String(path)}`, options
 
 tell({
     async create(vertices, faces) {
-        const { data, status } = await createMesh({ vertices, faces });
+        const { data, status } = await made.createMesh({ vertices, faces });
         if (status !== 201 || !('counts' in data)) {
             throw new Error(`${status}`);
         }
-        return { id: data.id, vertices: data.counts.vertices, edges: data.counts.edges, faces: data.counts.faces };
+        return data;
     },
     async split(mesh, edge) {
-        const { data, status } = await applyEdits(mesh, { op: 'edge_split', edge, t: 0.5 });
+        const { data, status } = await made.applyEdits(mesh, { op: 'edge_split', edge, t: 0.5 });
         if (status !== 200) {
             throw new Error(`${status}`);
         }
@@ -23,17 +23,19 @@ tell({
         if (done.op !== 'edge_split') {
             throw new Error(done.op);
         }
-        return { revision: known(data.revision, 'revision'), vertex: done.vertex, edges: known(done.edges, 'edges') };
+        return { revision: data.revision, vertex: done.vertex, edges: done.edges };
     },
     async loop(mesh, halfedge) {
-        const { data, status } = await traverseMesh(mesh, { walk: 'loop', from: { halfedge } });
+        const body = { walk: 'loop' as const, from: { halfedge } };
+        const { data, status } = await made.traverseMesh(mesh, body);
         if (status !== 200 || !('walk' in data) || data.walk !== 'loop') {
             throw new Error(`${status}`);
         }
-        return { halfedges: data.halfedges, vertices: data.vertices };
+        return data;
     },
     async faces(mesh, vertices) {
-        const { data, status } = await queryMesh(mesh, { queries: [{ relation: 'faces', of: { vertices } }] });
+        const body = { queries: [{ relation: 'faces' as const, of: { vertices } }] };
+        const { data, status } = await made.queryMesh(mesh, body);
         if (status !== 200 || !('results' in data)) {
             throw new Error(`${status}`);
         }
@@ -41,13 +43,13 @@ tell({
         if (!('offsets' in answer)) {
             throw new Error('no offsets');
         }
-        return { offsets: answer.offsets, ids: answer.ids };
+        return answer;
     },
     async face(mesh, id) {
-        const { data, status } = await getFace(mesh, id);
+        const { data, status } = await made.getFace(mesh, id);
         return { status, halfedge: status === 200 ? data.halfedge : undefined };
     },
     async remove(mesh) {
-        return (await deleteMesh(mesh)).status;
+        return (await made.deleteMesh(mesh)).status;
     },
 });

@@ -11,7 +11,7 @@ tell({
         if (!('counts' in data)) {
             throw new Error('no summary');
         }
-        return { id: data.id, vertices: data.counts.vertices, edges: data.counts.edges, faces: data.counts.faces };
+        return data;
     },
     async split(mesh, edge) {
         const { data } = await v1.applyEdits(mesh, { op: 'edge_split', edge, t: 0.5 });
@@ -22,17 +22,17 @@ tell({
         if (done.op !== 'edge_split') {
             throw new Error(done.op);
         }
-        return { revision: known(data.revision, 'revision'), vertex: done.vertex, edges: known(done.edges, 'edges') };
+        return { revision: data.revision, vertex: done.vertex, edges: done.edges };
     },
     async loop(mesh, halfedge) {
         const { data } = await v1.traverseMesh(mesh, { walk: 'loop', from: { halfedge } });
         if (!('walk' in data) || data.walk !== 'loop') {
             throw new Error('no loop');
         }
-        return { halfedges: data.halfedges, vertices: data.vertices };
+        return data;
     },
     async faces(mesh, vertices) {
-        const body = { queries: [{ relation: 'faces', of: { vertices } }] };
+        const body = { queries: [{ relation: 'faces' as const, of: { vertices } }] };
         const { data } = await v1.queryMesh(mesh, body);
         if (!('results' in data)) {
             throw new Error('no answers');
@@ -41,7 +41,7 @@ tell({
         if (!('offsets' in answer)) {
             throw new Error('no offsets');
         }
-        return { offsets: answer.offsets, ids: answer.ids };
+        return answer;
     },
     async face(mesh, id) {
         // What is not a success is thrown, as an answer with its status.
