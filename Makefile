@@ -145,7 +145,7 @@ NEEDS.run          := build web
 NEEDS.page         := web
 NEEDS.programs     := build test
 NEEDS.built         = $(NEEDS.test)
-NEEDS.ready         = $(NEEDS.test) lint crosscheck fuzz
+NEEDS.ready         = $(NEEDS.test) lint crosscheck clients fuzz
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
                       $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile) $(if $(WITH_DURABLE),durable)
 NEEDS.asan         := build test
@@ -157,7 +157,7 @@ NEEDS.crosscheck    = build $(if $(filter blender,$(PEERS)),blender,crosscheck)
 NEEDS.proof        := build test web browser
 NEEDS.soak         := build node
 NEEDS.hostile      := build hostile
-NEEDS.clients      := build web
+NEEDS.clients      := build clients
 NEEDS.durable      := build durable
 NEEDS.fuzz         := build test fuzz
 NEEDS.targets      := build test $(if $(filter fuzz,$(CONFIG)),fuzz)
@@ -308,7 +308,7 @@ programs: $(PROGRAMS) ## all test programs, without running them
 
 built: $(CHOSEN) $(TEST_NEEDS)
 
-ready: built $(BUILD)/tests/crosscheck/peers $(STAMPS)/openapi | $(INSTALLED) ## what .ci/run runs, without running it
+ready: built $(BUILD)/tests/crosscheck/peers $(STAMPS)/openapi $(STAMPS)/clients | $(INSTALLED) ## what .ci/run runs, without running it
 	+$(MAKE) CONFIG=asan TESTS="$(ASAN_TESTS)" built
 	+$(MAKE) CONFIG=tsan TESTS="$(TSAN_TESTS)" built
 	+$(MAKE) CONFIG=fuzz targets
@@ -374,6 +374,17 @@ soak: $(HEDGED) | $(INSTALLED) ## MINUTES=60 of everything that clients do: is t
 hostile: $(HEDGED) | $(INSTALLED) ## files and requests made to be slow: what each may hold of the daemon, and what it held
 	@python3 -B tests/hostile/run.py --hedged $(abspath $(HEDGED)) \
 	    --corpus ../shared/corpus/files $(HOSTILE_FLAGS)
+
+# The generators have a lock file of their own, too, of some 700 packages.
+$(STAMPS)/clients: tests/clients/package.json tests/clients/package-lock.json | $(INSTALLED)
+	@mkdir -p build/clients
+	cp tests/clients/package.json tests/clients/package-lock.json build/clients
+	cd build/clients && npm ci --no-audit --no-fund --ignore-scripts
+	@touch $@
+
+clients: $(HEDGED) $(STAMPS)/clients | $(INSTALLED) ## clients that generators make of the OpenAPI document; CLIENTS="orval kubb" for some, JUDGES="spectral prism"
+	@cp tests/clients/* build/clients
+	@CLIENTS="$(CLIENTS)" JUDGES="$(JUDGES)" sh tests/clients.sh $(HEDGED)
 
 # This library is preloaded into a daemon, with whatever flags that daemon was compiled.
 $(FAULTS): $(FAULTS_C) Makefile | $(INSTALLED)
@@ -506,17 +517,6 @@ $(STAMPS)/openapi: .ci/openapi/package.json .ci/openapi/package-lock.json | $(IN
 	cp .ci/openapi/package.json .ci/openapi/package-lock.json build/openapi
 	cd build/openapi && npm ci --no-audit --no-fund --ignore-scripts
 	@touch $@
-
-CLIENTS_FILES := $(wildcard tests/clients/*)
-$(STAMPS)/clients: tests/clients/package.json tests/clients/package-lock.json | $(INSTALLED)
-	@mkdir -p build/clients
-	cp tests/clients/package.json tests/clients/package-lock.json build/clients
-	cd build/clients && npm ci --no-audit --no-fund --ignore-scripts
-	@touch $@
-
-clients: $(HEDGED) $(STAMPS)/clients | $(INSTALLED) ## generated clients compile and do their work; CLIENTS="orval kubb" for some
-	@cp $(CLIENTS_FILES) build/clients
-	@CLIENTS="$(CLIENTS)" sh tests/clients.sh $(HEDGED)
 
 lint: $(LIBRARIES) $(HEDGED) $(STAMPS)/openapi | $(INSTALLED) ## formatting, names, directions of includes, static analysis
 	@sh .ci/lint "$(CPPFLAGS) $(CFLAGS)" $(BUILD) $(HEADERS) $(ALL_C)
