@@ -140,8 +140,9 @@ static void write_gltf_schema(api_out *out)
 {
     static const char schema[] =
         "{\"type\":\"object\",\"description\":\"A glTF 2.0 document.\",\"properties\":{\"asset\":"
-        "{\"type\":\"object\",\"properties\":{\"version\":{\"type\":\"string\"}},"
-        "\"required\":[\"version\"]}},\"required\":[\"asset\"]}";
+        "{\"type\":\"object\",\"properties\":{\"version\":{\"type\":\"string\"}},\"required\":"
+        "[\"version\"],\"additionalProperties\":true}},\"required\":[\"asset\"],"
+        "\"additionalProperties\":true}";
     api_out_key(out, "schema");
     api_out_raw(out, schema, sizeof schema - 1);
 }
