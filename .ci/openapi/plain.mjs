@@ -60,10 +60,15 @@ for (const [path, item] of Object.entries(document.paths)) {
             faults.push(`/paths/${path}/${method}: the operationId is no verb with what it is done to, such as get_mesh`);
         }
         for (const { content = {} } of Object.values(operation.responses ?? {})) {
-            for (const [media, { schema, 'x-item-schema': line }] of Object.entries(content)) {
-                if (schema === undefined && line === undefined) {
+            for (const [media, { schema }] of Object.entries(content)) {
+                if (schema === undefined) {
                     faults.push(`/paths/${path}/${method}: ${media} without a schema`);
                 }
+            }
+        }
+        for (const [media, { schema = {} }] of Object.entries(operation.requestBody?.content ?? {})) {
+            if (Object.keys(schema).length === 0) {
+                faults.push(`/paths/${path}/${method}: a body of ${media} that may be anything`);
             }
         }
     }
