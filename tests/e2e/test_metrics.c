@@ -120,10 +120,18 @@ static void what_happens_is_counted(void **state)
     client *c = client_new(d);
     reply before = read_page(c);
     let_things_happen(c);
-    listener *l = listener_open(d, "/v1/meshes/m/events", NULL, 0);
+    /* Once a second the daemon opens a file of /proc to read its use of memory. The first page may
+     * count it as an open file and the second page not, so one stream would not surely move that
+     * count. */
+    listener *streams[2];
+    for (size_t i = 0; i < 2; i++) {
+        streams[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);
+    }
     reply_done(reply_expect(
         200, client_post(c, "/v1/meshes/m/edits", "{\"op\":\"edge_split\",\"edge\":7}")));
-    listener_next(l, true);
+    for (size_t i = 0; i < 2; i++) {
+        listener_next(streams[i], true);
+    }
     reply after = read_page(c);
     for (size_t i = 0; i < sizeof moved / sizeof *moved; i++) {
         double from = value_of(&before, moved[i]), to = value_of(&after, moved[i]);
@@ -132,7 +140,9 @@ static void what_happens_is_counted(void **state)
         }
     }
     assert_true(value_of(&after, "hedge_mesh_loads_total{result=\"loaded\"}") == 0);
-    listener_close(l);
+    for (size_t i = 0; i < 2; i++) {
+        listener_close(streams[i]);
+    }
     reply_done(before);
     reply_done(after);
     client_free(c);
