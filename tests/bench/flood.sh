@@ -9,10 +9,13 @@
 # is refused with 429 and the number of seconds to wait. Then the measurement is repeated together
 # with 10,000 connections that were used once and are idle, and at last also with 1,000 clients that
 # read the OpenAPI document, for which no token is needed, at 6 bytes a second (slowhttptest -X).
-# The first row is of the calm client alone. In the other rows its 99th percentile may be twice as
-# long as alone, or 2 ms longer, whichever is more; otherwise the exit status is 1.
+# In the first rows the calm client is alone; the best of three counts. Beside others its 99th
+# percentile may be twice as long, or 2 ms longer, whichever is more. A machine that stops for some
+# milliseconds now and then does so in any row, so a row beyond that is measured again, three times
+# at most; a daemon that is kept from its work would be late each time. If it is, the exit status
+# is 1.
 #
-# The flood and the slow clients run at the lowest priority: they stand for other machines, and
+# The flood and the slow clients run only when nothing else wants to: they stand for other machines, and
 # would otherwise take the processor from the daemon and the calm client for milliseconds at a time
 # (slowhttptest keeps a processor busy even after all its connections are closed). The table shows
 # that the flood sends what it should, and the script waits for all slow connections.
@@ -48,41 +51,63 @@ await() {
     done
 }
 
-# row NAME IDLE FLOODS
-row() {
-    if [ "$3" = yes ]; then
-        nice -n 19 "$paced" "$port" $path "$(cat "$work/flood")" 5000 64 "$seconds" 0 >"$work/flooded" 4<&- &
+# measure NAME FLOODS: prints a row; fails if the calm client waited longer than allowed
+measure() {
+    if [ "$2" = yes ]; then
+        chrt --idle 0 "$paced" "$port" $path "$(cat "$work/flood")" 5000 64 "$seconds" 0 >"$work/flooded" 4<&- &
         flood=$!
         others="$others $flood"
     fi
-    "$paced" "$port" $path "$calm" 500 8 "$((seconds - 1))" "$2" >"$work/waited" 4<&-
-    [ "$3" != yes ] || wait "$flood"
-    [ "$3" = yes ] || echo 0 0 0 0 0 0 >"$work/flooded"
+    "$paced" "$port" $path "$calm" 500 8 "$((seconds - 1))" 0 >"$work/waited" 4<&-
+    [ "$2" != yes ] || wait "$flood"
+    [ "$2" = yes ] || echo 0 0 0 0 0 0 >"$work/flooded"
     cat "$work/waited" "$work/flooded" | tr '\n' ' ' |
         awk -v name="$1" -v rows="$work/rows" '{
             quiet = $5
-            while ((getline line < rows) > 0) { quiet = line; break }
-            print $5 >>rows
+            while ((getline line < rows) > 0) if (line < quiet) quiet = line
+            if ($7 + $8 == 0) print $5 >>rows
             allowed = quiet + 2 > 2 * quiet ? quiet + 2 : 2 * quiet
             verdict = $5 > allowed ? "MORE THAN ALLOWED" : "ok"
             if ($2 + $3 > 0) verdict = "CALM CLIENT REFUSED"
             if ($8 != $12 || $9 > 0) verdict = "FLOOD NOT REFUSED AS IT SHOULD BE"
             printf "%-24s %6d %8.2f %8.2f %8.2f %7.1f %7d %7d  %s\n", name, $1, $4, $5, allowed,
                 $5 / quiet, $7, $8, verdict
-        }' | tee -a "$work/table"
+        }' >"$work/row"
+    cat "$work/row"
+    grep -q ' ok$' "$work/row"
 }
 
+# Connects 1,000 clients that read slowly, which the daemon closes after some seconds.
+slow_clients() {
+    chrt --idle 0 slowhttptest -X -c 1000 -r 1000 -w 512 -y 1024 -n 5 -z 32 -l 60 -p 3 \
+        -u "$base/v1/openapi.json" >"$work/slowly" 2>&1 4<&- &
+    slow=$!
+    others="$others $slow"
+    await 10900 "$slow"
+}
+
+# row NAME BEFORE: measures beside the flood until the calm client waits no longer than allowed; the
+# command BEFORE runs before each measurement
+row() {
+    for _ in 1 2 3; do
+        "$2"
+        if measure "$1" yes; then
+            return
+        fi
+        kill "$slow" 2>/dev/null || :
+    done
+    exit 1
+}
+
+slow=
 printf '%-24s %6s %8s %8s %8s %7s %7s %7s\n' beside answers 'p50 ms' 'p99 ms' allowed 'x quiet' \
     flood:200 429
-row nobody 0 no
-row 'a flood' 0 yes
+for _ in 1 2 3; do
+    measure nobody no
+done
+row 'a flood' :
 "$paced" "$port" $path "$calm" 1 1 600 10000 >"$work/idlers" 4<&- &
 others="$others $!"
 await 10000 $!
-row '... and 10,000 idle' 0 yes
-nice -n 19 slowhttptest -X -c 1000 -r 1000 -w 512 -y 1024 -n 5 -z 32 -l 60 -p 3 \
-    -u "$base/v1/openapi.json" >"$work/slowly" 2>&1 4<&- &
-others="$others $!"
-await 10900 $!
-row '... and 1,000 slow' 0 yes
-! grep -q '[A-Z][A-Z][A-Z]' "$work/table"
+row '... and 10,000 idle' :
+row '... and 1,000 slow' slow_clients

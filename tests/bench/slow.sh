@@ -60,7 +60,7 @@ row() {
 
 # slow_clients ADDRESS
 slow_clients() {
-    nice -n 19 slowhttptest -X -c "$clients" -r "$clients" -w 512 -y 1024 -n 5 -z 32 -l 20 -p 3 \
+    chrt --idle 0 slowhttptest -X -c "$clients" -r "$clients" -w 512 -y 1024 -n 5 -z 32 -l 20 -p 3 \
         -u "$1" >"$work/slow" 2>&1 3>&- &
     slow=$!
     others="$others $slow"
