@@ -133,6 +133,16 @@ printf '\n/* Of both ends. */\n' >>api/limits.h
 expect 'such a comment is found outside of core, too' 'names what it is about' plain
 cp "$OLDPWD/api/limits.h" api/limits.h
 
+plain() { sh .ci/lint-words tests/unit/planted.c; }
+mkdir -p tests/unit
+echo 'static void a_hole_is_filled(void **state)' >tests/unit/planted.c
+expect 'a test whose name says what holds passes' '' plain
+for name in test_holes test_cf4_join; do
+    echo "static void $name(void **state)" >tests/unit/planted.c
+    expect "a test that is named $name is found" 'says in its name what holds' plain
+done
+rm -r tests
+
 for n in $(seq 40); do echo "int he_planted_$n;" >"core/op/planted_$n.c"; done
 expect 'a room of too many files is found' 'more than one room' includes
 rm core/op/planted_*.c

@@ -165,7 +165,7 @@ static void try_arrays(api_bench *b, const pg_mesh *pg)
     bench_reply_free(&a.reply);
 }
 
-static void test_each_specimen(void **state)
+static void the_arrays_hold_all_positions_sides_and_areas_of_the_mesh(void **state)
 {
     (void)state;
     for_each_specimen(try_arrays);
@@ -182,7 +182,7 @@ static void edit(api_bench *b, const char *body)
 
 /* Deleting elements must leave a gap in the rows of the vertices, whose ids stay, and none in the
  * triangles. */
-static void test_rows_keep_their_ids_when_others_die(void **state)
+static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state)
 {
     (void)state;
     pg_mesh pg;
@@ -204,7 +204,7 @@ static void test_rows_keep_their_ids_when_others_die(void **state)
 }
 
 /* An edit followed by its undo must give the same rows as before: only the revision may differ. */
-static void test_undo_brings_the_same_rows(void **state)
+static void an_undo_brings_back_the_same_rows(void **state)
 {
     (void)state;
     pg_mesh pg;
@@ -223,7 +223,7 @@ static void test_undo_brings_the_same_rows(void **state)
     bench_free(b);
 }
 
-static void test_not_modified_until_it_is(void **state)
+static void a_tag_holds_until_the_mesh_changes(void **state)
 {
     (void)state;
     pg_mesh pg;
@@ -246,7 +246,7 @@ static void test_not_modified_until_it_is(void **state)
     bench_free(b);
 }
 
-static void test_refusals(void **state)
+static void a_wrong_type_parameter_or_mesh_is_refused(void **state)
 {
     (void)state;
     pg_mesh pg;
@@ -270,7 +270,7 @@ static void test_refusals(void **state)
 /* --- memory --- */
 
 /* Each allocation in turn fails: the service must give the complete answer or a refusal. */
-static void test_each_allocation_failing(void **state)
+static void arrays_without_memory_are_complete_or_refused(void **state)
 {
     (void)state;
     pg_mesh pg;
@@ -310,12 +310,12 @@ static void test_each_allocation_failing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_specimen),
-        cmocka_unit_test(test_rows_keep_their_ids_when_others_die),
-        cmocka_unit_test(test_undo_brings_the_same_rows),
-        cmocka_unit_test(test_not_modified_until_it_is),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_each_allocation_failing),
+        cmocka_unit_test(the_arrays_hold_all_positions_sides_and_areas_of_the_mesh),
+        cmocka_unit_test(rows_of_vertices_keep_their_ids_when_others_are_deleted),
+        cmocka_unit_test(an_undo_brings_back_the_same_rows),
+        cmocka_unit_test(a_tag_holds_until_the_mesh_changes),
+        cmocka_unit_test(a_wrong_type_parameter_or_mesh_is_refused),
+        cmocka_unit_test(arrays_without_memory_are_complete_or_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

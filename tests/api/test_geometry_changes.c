@@ -230,7 +230,7 @@ static void end(world *w)
 
 /* Two clients follow random edits. One requests the changes after nearly every edit, the other
  * after many: both must arrive at the rows that a new client fetches. */
-static void test_patched_arrays_equal_fresh_ones(void **state)
+static void patched_arrays_equal_fresh_ones(void **state)
 {
     (void)state;
     uint64_t seed = from_environment("SEED", (uint64_t)time(NULL));
@@ -294,7 +294,7 @@ static void poke(api_bench *b, int face)
     post(b, "/v1/meshes/m/edits", body);
 }
 
-static void test_nothing_changed_is_a_header(void **state)
+static void an_answer_without_changes_is_only_a_header(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -308,7 +308,7 @@ static void test_nothing_changed_is_a_header(void **state)
     end(&w);
 }
 
-static void test_an_edit_costs_what_it_touched(void **state)
+static void an_answer_lists_only_the_rows_that_an_edit_touched(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -328,7 +328,7 @@ static void test_an_edit_costs_what_it_touched(void **state)
 
 /* The entity tag must contain the revision, the layout, and the revision since which the changes
  * are listed. */
-static void test_tags(void **state)
+static void tags_depend_on_the_revision_and_on_since(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -359,7 +359,7 @@ static void test_tags(void **state)
     end(&w);
 }
 
-static void test_hostile_parameters(void **state)
+static void bad_parameters_are_refused_and_old_layouts_get_all_rows(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -420,7 +420,7 @@ static uint64_t layout_after(world *w, arrays *c, const char *body)
     return c->layout;
 }
 
-static void test_a_layout_ends_when_it_must(void **state)
+static void a_layout_outlives_small_edits_and_ends_when_it_does_not_fit(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -471,7 +471,7 @@ static void test_a_layout_ends_when_it_must(void **state)
 
 /* The mesh is so large that the answer is made in the pool and not by a worker: it must be the
  * same. */
-static void test_a_large_mesh(void **state)
+static void the_pool_answers_a_large_mesh_with_changes(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -494,7 +494,7 @@ static void test_a_large_mesh(void **state)
 
 /* A face with many corners takes long to triangulate, so the pool does it from a snapshot of the
  * mesh. */
-static void test_a_face_of_many_corners(void **state)
+static void changes_of_a_face_of_400_corners_equal_fresh_rows(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -530,7 +530,7 @@ static void test_a_face_of_many_corners(void **state)
 
 /* Each allocation in turn fails: the service must give the complete answer or a refusal, and later
  * answers must be right. */
-static void test_each_allocation_failing(void **state)
+static void changes_without_memory_are_complete_or_refused(void **state)
 {
     (void)state;
     world w = begin(1);
@@ -591,7 +591,7 @@ static void *follow(void *context)
     return last;
 }
 
-static void test_many_bring_forward_at_once(void **state)
+static void concurrent_readers_end_with_the_rows_of_a_new_client(void **state)
 {
     (void)state;
     enum { READERS = 3, WRITES = 300 };
@@ -628,16 +628,16 @@ static void test_many_bring_forward_at_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_patched_arrays_equal_fresh_ones),
-        cmocka_unit_test(test_nothing_changed_is_a_header),
-        cmocka_unit_test(test_an_edit_costs_what_it_touched),
-        cmocka_unit_test(test_tags),
-        cmocka_unit_test(test_hostile_parameters),
-        cmocka_unit_test(test_a_layout_ends_when_it_must),
-        cmocka_unit_test(test_a_large_mesh),
-        cmocka_unit_test(test_a_face_of_many_corners),
-        cmocka_unit_test(test_each_allocation_failing),
-        cmocka_unit_test(test_many_bring_forward_at_once),
+        cmocka_unit_test(patched_arrays_equal_fresh_ones),
+        cmocka_unit_test(an_answer_without_changes_is_only_a_header),
+        cmocka_unit_test(an_answer_lists_only_the_rows_that_an_edit_touched),
+        cmocka_unit_test(tags_depend_on_the_revision_and_on_since),
+        cmocka_unit_test(bad_parameters_are_refused_and_old_layouts_get_all_rows),
+        cmocka_unit_test(a_layout_outlives_small_edits_and_ends_when_it_does_not_fit),
+        cmocka_unit_test(the_pool_answers_a_large_mesh_with_changes),
+        cmocka_unit_test(changes_of_a_face_of_400_corners_equal_fresh_rows),
+        cmocka_unit_test(changes_without_memory_are_complete_or_refused),
+        cmocka_unit_test(concurrent_readers_end_with_the_rows_of_a_new_client),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -460,7 +460,7 @@ static void take_costly_check(api_bench *b)
     take(b, "GET", "/v1/meshes/fan/check?self_intersections=true", 413, NULL, NULL, 0);
 }
 
-static void test_each_declared_status(void **state)
+static void routes_answer_each_status_they_declare_and_no_other(void **state)
 {
     (void)state;
     enum { TOO_BIG = 9 << 20 };
@@ -518,6 +518,7 @@ static void test_each_declared_status(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_declared_status)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(routes_answer_each_status_they_declare_and_no_other)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

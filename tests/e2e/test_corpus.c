@@ -17,7 +17,7 @@
 
 #define CHECKER "../shared/corpus/check_corpus.py"
 
-static void test_files_of_the_corpus(void **state)
+static void each_file_of_the_corpus_is_read_or_refused_as_expected(void **state)
 {
     (void)state;
     if (access(CHECKER, R_OK) != 0) {
@@ -45,6 +45,7 @@ static void test_files_of_the_corpus(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_files_of_the_corpus)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_file_of_the_corpus_is_read_or_refused_as_expected)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,7 +25,7 @@ static void expect_run(const char *const *arguments, int status, const char *wor
     }
 }
 
-static void test_options(void **state)
+static void options_are_obeyed_or_refused_with_a_reason(void **state)
 {
     (void)state;
     expect_run(ARGUMENTS("--version"), 0, "hedged ");
@@ -106,7 +106,7 @@ static void help_is_in_two_columns(void **state)
     assert_true(options > 40 && long_ones > 0);
 }
 
-static void test_port_in_use(void **state)
+static void an_address_in_use_is_named_and_healthcheck_finds_its_daemon(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start(NULL);
@@ -124,7 +124,7 @@ static void test_port_in_use(void **state)
     assert_int_not_equal(daemon_run(ARGUMENTS("--healthcheck", url), output, sizeof output), 0);
 }
 
-static void test_samples_and_log(void **state)
+static void it_offers_samples_keeps_request_ids_and_outlives_sighup(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start(ARGUMENTS("--samples"));
@@ -151,7 +151,7 @@ static void test_samples_and_log(void **state)
 }
 
 /* Each request must leave one line of JSON, which is written before the daemon ends. */
-static void test_log_lines(void **state)
+static void each_request_leaves_a_line_of_json_in_the_log(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start(NULL);
@@ -240,7 +240,7 @@ static void *edit_on(void *context)
     return NULL;
 }
 
-static void test_stop_under_load(void **state)
+static void sigterm_ends_the_daemon_while_clients_write(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start(NULL);
@@ -269,7 +269,7 @@ static void test_stop_under_load(void **state)
     assert_int_equal(daemon_stop(d), 0);
 }
 
-static void test_bounds_of_the_store(void **state)
+static void too_many_meshes_are_507_and_a_large_body_is_413(void **state)
 {
     (void)state;
     daemon_process *d = daemon_start(ARGUMENTS("--max-meshes", "2", "--max-upload", "1024"));
@@ -315,15 +315,15 @@ static void harmless_signals_do_not_end_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_options),
+        cmocka_unit_test(options_are_obeyed_or_refused_with_a_reason),
         cmocka_unit_test(help_and_version_have_short_spellings),
         cmocka_unit_test(help_is_in_two_columns),
-        cmocka_unit_test(test_port_in_use),
-        cmocka_unit_test(test_samples_and_log),
-        cmocka_unit_test(test_log_lines),
+        cmocka_unit_test(an_address_in_use_is_named_and_healthcheck_finds_its_daemon),
+        cmocka_unit_test(it_offers_samples_keeps_request_ids_and_outlives_sighup),
+        cmocka_unit_test(each_request_leaves_a_line_of_json_in_the_log),
         cmocka_unit_test(a_terminal_is_told_what_to_open_and_spared_the_log),
-        cmocka_unit_test(test_stop_under_load),
-        cmocka_unit_test(test_bounds_of_the_store),
+        cmocka_unit_test(sigterm_ends_the_daemon_while_clients_write),
+        cmocka_unit_test(too_many_meshes_are_507_and_a_large_body_is_413),
         cmocka_unit_test(harmless_signals_do_not_end_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

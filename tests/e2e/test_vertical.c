@@ -53,7 +53,7 @@ static const char *below(const char *path, const char *rest)
     return text;
 }
 
-static void test_document_edit_walk_undo(void **state)
+static void a_mesh_is_created_edited_walked_undone_and_deleted(void **state)
 {
     (void)state;
     char mesh[128];
@@ -127,7 +127,7 @@ static void test_document_edit_walk_undo(void **state)
     reply_done(reply_expect(404, client_get(http, mesh)));
 }
 
-static void test_atomic_list(void **state)
+static void a_list_of_edits_is_done_as_a_whole_or_not_at_all(void **state)
 {
     (void)state;
     char mesh[128];
@@ -202,7 +202,7 @@ static void expect_no_effect(const char *mesh, const char *edit)
     reply_done(reply_expect(409, client_post(http, below(mesh, "/undo"), NULL)));
 }
 
-static void test_edits_without_effect_make_no_revision(void **state)
+static void edits_without_effect_make_no_revision(void **state)
 {
     (void)state;
     char mesh[128];
@@ -241,7 +241,7 @@ static void expect_adjacency(const char *mesh)
     }
 }
 
-static void test_file_in_and_out(void **state)
+static void exported_files_come_back_and_a_bad_line_is_named(void **state)
 {
     (void)state;
     static const char obj[] = "# two triangles\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -273,7 +273,7 @@ static void test_file_in_and_out(void **state)
     reply_free(&r);
 }
 
-static void test_every_other_route(void **state)
+static void every_other_route_answers(void **state)
 {
     (void)state;
     char mesh[128], value[256];
@@ -368,11 +368,11 @@ static void test_every_other_route(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_document_edit_walk_undo),
-        cmocka_unit_test(test_atomic_list),
-        cmocka_unit_test(test_edits_without_effect_make_no_revision),
-        cmocka_unit_test(test_file_in_and_out),
-        cmocka_unit_test(test_every_other_route),
+        cmocka_unit_test(a_mesh_is_created_edited_walked_undone_and_deleted),
+        cmocka_unit_test(a_list_of_edits_is_done_as_a_whole_or_not_at_all),
+        cmocka_unit_test(edits_without_effect_make_no_revision),
+        cmocka_unit_test(exported_files_come_back_and_a_bad_line_is_named),
+        cmocka_unit_test(every_other_route_answers),
     };
     return cmocka_run_group_tests(tests, start, stop);
 }

@@ -30,7 +30,7 @@ static void expect_rule(he_mesh *m, int rule)
     he_mesh_free(m);
 }
 
-static void test_each_rule(void **state)
+static void each_broken_rule_is_found_and_named(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -73,7 +73,7 @@ static void test_each_rule(void **state)
 
 /* A vertex has two open fans of faces whose boundary links form two loops, so that turning around
  * the vertex visits only one of the fans (I9). */
-static void test_unchained_fans(void **state)
+static void fans_in_separate_boundary_loops_are_found(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034");
@@ -89,7 +89,7 @@ static void test_unchained_fans(void **state)
 
 /* Two triangles have the same corners, but their sides are linked by different edges: the edge 0-1
  * exists twice. */
-static void test_doubled_edge(void **state)
+static void an_edge_that_exists_twice_is_found(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,345");
@@ -106,8 +106,7 @@ static void test_doubled_edge(void **state)
     he_mesh_free(m);
 }
 
-/* One face has two corners, and another one visits a vertex twice. */
-static void test_bad_faces(void **state)
+static void a_face_that_visits_a_vertex_twice_is_found(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123");
@@ -116,7 +115,7 @@ static void test_bad_faces(void **state)
 }
 
 /* Whatever the links are, the checker must terminate and read nothing out of range. */
-static void test_random_corruption(void **state)
+static void a_check_of_random_links_ends_and_stays_in_range(void **state)
 {
     (void)state;
     uint64_t seed = 7;
@@ -135,7 +134,7 @@ static void test_random_corruption(void **state)
     }
 }
 
-static void test_every_allocation_may_fail(void **state)
+static void a_check_without_memory_is_refused_and_reports_nothing(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -154,9 +153,12 @@ static void test_every_allocation_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_rule),         cmocka_unit_test(test_unchained_fans),
-        cmocka_unit_test(test_doubled_edge),      cmocka_unit_test(test_bad_faces),
-        cmocka_unit_test(test_random_corruption), cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(each_broken_rule_is_found_and_named),
+        cmocka_unit_test(fans_in_separate_boundary_loops_are_found),
+        cmocka_unit_test(an_edge_that_exists_twice_is_found),
+        cmocka_unit_test(a_face_that_visits_a_vertex_twice_is_found),
+        cmocka_unit_test(a_check_of_random_links_ends_and_stays_in_range),
+        cmocka_unit_test(a_check_without_memory_is_refused_and_reports_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static he_mesh *mesh_with_columns(void)
     return m;
 }
 
-static void test_undo_and_redo(void **state)
+static void undo_and_redo_restore_the_mesh_but_ids_stay_issued(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns(), *start = copy_of(m);
@@ -110,7 +110,7 @@ static void test_undo_and_redo(void **state)
     he_mesh_free(end);
 }
 
-static void test_rollback_takes_ids_back(void **state)
+static void a_rollback_takes_issued_ids_back(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns(), *start = copy_of(m);
@@ -139,7 +139,7 @@ static void expect_ids(const he_ids *list, size_t count, const uint32_t *ids)
     }
 }
 
-static void test_changes_are_net(void **state)
+static void changes_that_cancel_out_are_not_reported(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns();
@@ -184,7 +184,7 @@ static void test_changes_are_net(void **state)
     he_mesh_free(m);
 }
 
-static void test_changes_of_many_rows(void **state)
+static void many_created_rows_are_listed_in_order_and_not_as_modified(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -207,7 +207,7 @@ static void test_changes_of_many_rows(void **state)
     he_mesh_free(m);
 }
 
-static void test_columns_are_recorded(void **state)
+static void undo_and_redo_restore_added_and_dropped_columns(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns(), *start = copy_of(m);
@@ -240,7 +240,7 @@ static void test_columns_are_recorded(void **state)
 
 /* Values of the mesh itself, and those of half-edges along a hole, belong to no vertex, edge or
  * face that could be reported as modified; they must still count as changes. */
-static void test_changes_of_no_element(void **state)
+static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
 {
     (void)state;
     static const he_kind domains[] = {HE_MESH_KIND, HE_HALFEDGE};
@@ -283,7 +283,7 @@ static void put_column(he_mesh *m, const char *name, he_kind domain)
 
 /* A column was removed and another one took its slot: a value written to the old column must not be
  * reported as a value of the new one. */
-static void test_changes_when_a_slot_has_another_column(void **state)
+static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **state)
 {
     (void)state;
     static const he_kind domains[] = {HE_FACE, HE_HALFEDGE, HE_EDGE, HE_MESH_KIND};
@@ -324,7 +324,7 @@ static void test_changes_when_a_slot_has_another_column(void **state)
 }
 
 /* he_reserve must reserve space for every word of the widest value, for every kind of element. */
-static void test_the_widest_value_has_room(void **state)
+static void a_reservation_has_room_for_the_widest_value(void **state)
 {
     (void)state;
     for (int kind = 0; kind < HE_KIND_COUNT; kind++) {
@@ -354,7 +354,7 @@ static void test_the_widest_value_has_room(void **state)
     }
 }
 
-static void test_compact_renumbers_and_undoes(void **state)
+static void compact_renumbers_elements_and_can_be_undone(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns();
@@ -394,7 +394,7 @@ static void test_compact_renumbers_and_undoes(void **state)
     he_mesh_free(before);
 }
 
-static void test_every_allocation_may_fail(void **state)
+static void edits_without_memory_are_rolled_back_and_copies_not_made(void **state)
 {
     (void)state;
     he_mesh *m = mesh_with_columns(), *start = copy_of(m);
@@ -428,7 +428,7 @@ static void test_every_allocation_may_fail(void **state)
     he_mesh_free(start);
 }
 
-static void test_carry_follows_rules(void **state)
+static void carried_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,023");
@@ -469,17 +469,17 @@ static void test_carry_follows_rules(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_undo_and_redo),
-        cmocka_unit_test(test_rollback_takes_ids_back),
-        cmocka_unit_test(test_changes_are_net),
-        cmocka_unit_test(test_changes_of_many_rows),
-        cmocka_unit_test(test_columns_are_recorded),
-        cmocka_unit_test(test_changes_of_no_element),
-        cmocka_unit_test(test_changes_when_a_slot_has_another_column),
-        cmocka_unit_test(test_the_widest_value_has_room),
-        cmocka_unit_test(test_compact_renumbers_and_undoes),
-        cmocka_unit_test(test_every_allocation_may_fail),
-        cmocka_unit_test(test_carry_follows_rules),
+        cmocka_unit_test(undo_and_redo_restore_the_mesh_but_ids_stay_issued),
+        cmocka_unit_test(a_rollback_takes_issued_ids_back),
+        cmocka_unit_test(changes_that_cancel_out_are_not_reported),
+        cmocka_unit_test(many_created_rows_are_listed_in_order_and_not_as_modified),
+        cmocka_unit_test(undo_and_redo_restore_added_and_dropped_columns),
+        cmocka_unit_test(values_of_no_vertex_edge_or_face_count_as_changes),
+        cmocka_unit_test(changes_of_a_dropped_column_are_not_those_of_its_successor),
+        cmocka_unit_test(a_reservation_has_room_for_the_widest_value),
+        cmocka_unit_test(compact_renumbers_elements_and_can_be_undone),
+        cmocka_unit_test(edits_without_memory_are_rolled_back_and_copies_not_made),
+        cmocka_unit_test(carried_values_follow_the_rule_of_their_column),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,7 +70,7 @@ static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char
     return m;
 }
 
-static void test_vertices(void **state)
+static void vertex_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     static const struct {
@@ -103,7 +103,7 @@ static void test_vertices(void **state)
     }
 }
 
-static void test_edges_and_faces(void **state)
+static void edge_and_face_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     he_mesh *m = after("012,023", HE_EDGE, HE_COPY, "edge_split edge=#2");
@@ -164,7 +164,7 @@ static void test_edges_and_faces(void **state)
 
 /* The half-edges of the mesh 012,103: 0 runs from 0 to 1, 2 from 1 to 2 and 4 from 2 to 0 in face
  * 0; 1 runs from 1 to 0, 6 from 0 to 3 and 8 from 3 to 1 in face 1. */
-static void test_corners(void **state)
+static void corner_values_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     he_mesh *m = after("012,103", HE_HALFEDGE, HE_INTERPOLATE, "edge_bisect edge=#0 t=0.25");
@@ -266,7 +266,7 @@ static void assert_normal(const he_mesh *m, he_kind domain, uint32_t row, double
     }
 }
 
-static void test_normals(void **state)
+static void a_transform_turns_the_normals_of_what_it_moves(void **state)
 {
     (void)state;
     /* The matrix doubles the height: the normal of a plane with slope 3:4 becomes that of slope
@@ -393,7 +393,7 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
 }
 
 /* If an element is divided, both parts must have its mark; new elements must not. */
-static void test_marks_are_copied(void **state)
+static void both_parts_of_a_divided_element_have_its_mark(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,103", NULL);
@@ -422,7 +422,7 @@ static void test_marks_are_copied(void **state)
     he_mesh_free(m);
 }
 
-static void test_bad_values(void **state)
+static void bad_numbers_points_and_matrices_are_refused_without_change(void **state)
 {
     (void)state;
     static const double bad[] = {0, 1, -0.5, 1.5, NAN, INFINITY};
@@ -457,7 +457,7 @@ static void test_bad_values(void **state)
 }
 
 /* Positions near the largest double must stay finite. */
-static void test_extreme_positions(void **state)
+static void positions_near_the_largest_double_stay_finite(void **state)
 {
     (void)state;
     static const he_vec3 far[] = {{1.7e308, 1.7e308, -1.7e308},
@@ -480,7 +480,7 @@ static void test_extreme_positions(void **state)
 #define CF4       "023,321,031,647,675,745"
 #define BIPYRAMID "013,123,203,104,214,024"
 
-static void test_loops(void **state)
+static void values_follow_their_rule_when_loops_are_joined_or_split(void **state)
 {
     (void)state;
     static const char join[] = "loop_join a=2-0 b=4-6";
@@ -533,16 +533,16 @@ static void test_loops(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_vertices),
-        cmocka_unit_test(test_edges_and_faces),
-        cmocka_unit_test(test_normals),
+        cmocka_unit_test(vertex_values_follow_the_rule_of_their_column),
+        cmocka_unit_test(edge_and_face_values_follow_the_rule_of_their_column),
+        cmocka_unit_test(a_transform_turns_the_normals_of_what_it_moves),
         cmocka_unit_test(nothing_is_mixed_into_what_is_locked),
         cmocka_unit_test(a_lock_does_not_spread_to_a_vertex_between),
-        cmocka_unit_test(test_marks_are_copied),
-        cmocka_unit_test(test_corners),
-        cmocka_unit_test(test_bad_values),
-        cmocka_unit_test(test_extreme_positions),
-        cmocka_unit_test(test_loops),
+        cmocka_unit_test(both_parts_of_a_divided_element_have_its_mark),
+        cmocka_unit_test(corner_values_follow_the_rule_of_their_column),
+        cmocka_unit_test(bad_numbers_points_and_matrices_are_refused_without_change),
+        cmocka_unit_test(positions_near_the_largest_double_stay_finite),
+        cmocka_unit_test(values_follow_their_rule_when_loops_are_joined_or_split),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,7 +45,7 @@ static void store_like(he_mesh *m, const he_mesh *like)
 
 /* --- edge_cut and edge_weld --- */
 
-static void test_weld_undoes_cut(void **state)
+static void edge_weld_undoes_edge_cut(void **state)
 {
     (void)state;
     static const char *const meshes[] = {
@@ -83,7 +83,7 @@ static void test_weld_undoes_cut(void **state)
     assert_true(cut > 20);
 }
 
-static void test_a_cube_cut_along_all_edges_falls_apart(void **state)
+static void a_cube_cut_along_all_edges_falls_apart(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
@@ -99,7 +99,7 @@ static void test_a_cube_cut_along_all_edges_falls_apart(void **state)
     he_mesh_free(m);
 }
 
-static void test_cut_leaves_other_fans_alone(void **state)
+static void a_cut_leaves_other_fans_unchanged(void **state)
 {
     (void)state;
     /* Vertex 0 has two fans, of two and of three faces; the second one is cut. */
@@ -117,7 +117,7 @@ static void test_cut_leaves_other_fans_alone(void **state)
     he_mesh_free(m);
 }
 
-static void test_weld_places_the_ends(void **state)
+static void edge_weld_places_the_ends_as_keep_chooses(void **state)
 {
     (void)state;
     static const he_vec3 places[] = {{0, 0, 0}, {0, 2, 0}, {-2, 0, 0},
@@ -141,7 +141,7 @@ static void test_weld_places_the_ends(void **state)
     }
 }
 
-static void test_welds_at_a_bowtie_in_every_order(void **state)
+static void fans_of_a_bowtie_can_be_welded_in_every_order(void **state)
 {
     (void)state;
     static const char *const welds[] = {"edge_weld a=0-2 b=0-3", "edge_weld a=0-4 b=0-5",
@@ -169,7 +169,7 @@ static void test_welds_at_a_bowtie_in_every_order(void **state)
 
 /* --- edge_extrude --- */
 
-static void test_deleting_the_walls_undoes_extrude(void **state)
+static void deleting_the_walls_undoes_edge_extrude(void **state)
 {
     (void)state;
     static const struct {
@@ -216,7 +216,7 @@ static void test_deleting_the_walls_undoes_extrude(void **state)
     }
 }
 
-static void test_extrude_shares_corners(void **state)
+static void extruded_edges_that_meet_share_a_new_corner(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123", cube);
@@ -242,7 +242,7 @@ static void test_extrude_shares_corners(void **state)
 
 /* --- edge_bevel --- */
 
-static void test_bevel_of_a_cube(void **state)
+static void a_cube_edge_bevels_to_a_quadrilateral(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
@@ -267,7 +267,7 @@ static void test_bevel_of_a_cube(void **state)
     he_mesh_free(m);
 }
 
-static void test_bevel_is_clamped(void **state)
+static void a_bevel_is_narrower_than_the_edges_it_cuts(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, cube);
@@ -282,7 +282,7 @@ static void test_bevel_is_clamped(void **state)
     he_mesh_free(m);
 }
 
-static void test_both_bevels_cut_an_edge_without_length_halfway(void **state)
+static void both_bevels_cut_an_edge_without_length_halfway(void **state)
 {
     (void)state;
     static const char *const bevels[] = {"edge_bevel edge=0-1 width=0.25",
@@ -315,7 +315,7 @@ static void test_both_bevels_cut_an_edge_without_length_halfway(void **state)
     }
 }
 
-static void test_bevel_beside_a_hole_keeps_the_end(void **state)
+static void a_bevel_beside_a_hole_keeps_the_ends_of_its_edge(void **state)
 {
     (void)state;
     static const he_vec3 square[] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
@@ -333,7 +333,7 @@ static void test_bevel_beside_a_hole_keeps_the_end(void **state)
     he_mesh_free(m);
 }
 
-static void test_bevel_at_the_ends_of_doubles(void **state)
+static void bevels_of_tiny_and_huge_edges_have_finite_positions(void **state)
 {
     (void)state;
     static const double scales[] = {1e-320, 1e-300, 1e300, 1.5e308};
@@ -380,7 +380,7 @@ static double value_of(const he_mesh *m, he_kind domain, uint32_t id)
     return value;
 }
 
-static void test_values_follow(void **state)
+static void values_of_new_elements_follow_the_rule_of_their_column(void **state)
 {
     (void)state;
     static const struct {
@@ -441,7 +441,7 @@ static void assert_pairs(const he_ids *list, const char *expected)
     assert_string_equal(text, expected);
 }
 
-static void test_descent(void **state)
+static void changes_name_parents_of_new_elements_and_survivors_of_welds(void **state)
 {
     (void)state;
     static const struct {
@@ -496,7 +496,7 @@ static he_mesh *wheel(void)
     return m;
 }
 
-static void test_a_wheel_of_a_thousand_spokes(void **state)
+static void a_wheel_of_1000_spokes_is_extruded_bevelled_and_cut(void **state)
 {
     (void)state;
     uint32_t spokes[SPOKES], rim[SPOKES];
@@ -523,21 +523,21 @@ static void test_a_wheel_of_a_thousand_spokes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_weld_undoes_cut),
-        cmocka_unit_test(test_a_cube_cut_along_all_edges_falls_apart),
-        cmocka_unit_test(test_cut_leaves_other_fans_alone),
-        cmocka_unit_test(test_weld_places_the_ends),
-        cmocka_unit_test(test_welds_at_a_bowtie_in_every_order),
-        cmocka_unit_test(test_deleting_the_walls_undoes_extrude),
-        cmocka_unit_test(test_extrude_shares_corners),
-        cmocka_unit_test(test_bevel_of_a_cube),
-        cmocka_unit_test(test_bevel_is_clamped),
-        cmocka_unit_test(test_both_bevels_cut_an_edge_without_length_halfway),
-        cmocka_unit_test(test_bevel_beside_a_hole_keeps_the_end),
-        cmocka_unit_test(test_bevel_at_the_ends_of_doubles),
-        cmocka_unit_test(test_values_follow),
-        cmocka_unit_test(test_descent),
-        cmocka_unit_test(test_a_wheel_of_a_thousand_spokes),
+        cmocka_unit_test(edge_weld_undoes_edge_cut),
+        cmocka_unit_test(a_cube_cut_along_all_edges_falls_apart),
+        cmocka_unit_test(a_cut_leaves_other_fans_unchanged),
+        cmocka_unit_test(edge_weld_places_the_ends_as_keep_chooses),
+        cmocka_unit_test(fans_of_a_bowtie_can_be_welded_in_every_order),
+        cmocka_unit_test(deleting_the_walls_undoes_edge_extrude),
+        cmocka_unit_test(extruded_edges_that_meet_share_a_new_corner),
+        cmocka_unit_test(a_cube_edge_bevels_to_a_quadrilateral),
+        cmocka_unit_test(a_bevel_is_narrower_than_the_edges_it_cuts),
+        cmocka_unit_test(both_bevels_cut_an_edge_without_length_halfway),
+        cmocka_unit_test(a_bevel_beside_a_hole_keeps_the_ends_of_its_edge),
+        cmocka_unit_test(bevels_of_tiny_and_huge_edges_have_finite_positions),
+        cmocka_unit_test(values_of_new_elements_follow_the_rule_of_their_column),
+        cmocka_unit_test(changes_name_parents_of_new_elements_and_survivors_of_welds),
+        cmocka_unit_test(a_wheel_of_1000_spokes_is_extruded_bevelled_and_cut),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,7 +23,7 @@ static int euler(const he_mesh *m)
     return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
 }
 
-static void test_empty(void **state)
+static void an_empty_mesh_takes_a_vertex_and_is_empty_again(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("", NULL);
@@ -33,7 +33,7 @@ static void test_empty(void **state)
     he_mesh_free(m);
 }
 
-static void test_triangle(void **state)
+static void three_vertices_make_a_triangle_with_one_boundary_loop(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("+++", NULL);
@@ -53,7 +53,7 @@ static void assert_joins(const he_mesh *m, he_edge e, uint32_t a, uint32_t b)
     assert_true((from == a && to == b) || (from == b && to == a));
 }
 
-static void test_ring10_flip(void **state)
+static void an_edge_flipped_twice_joins_its_old_ends_again(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(RING10, NULL);
@@ -69,7 +69,7 @@ static void test_ring10_flip(void **state)
     he_mesh_free(m);
 }
 
-static void test_ring10_hole(void **state)
+static void deleting_an_edge_or_its_two_faces_leaves_the_same_hole(void **state)
 {
     (void)state;
     for (unsigned i = 0; i < 2; i++) {
@@ -84,7 +84,7 @@ static void test_ring10_hole(void **state)
     }
 }
 
-static void test_strange(void **state)
+static void a_face_joins_two_fans_but_may_not_close_one_beside_others(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(STRANGE, NULL);
@@ -108,7 +108,7 @@ static void test_strange(void **state)
     he_mesh_free(m);
 }
 
-static void test_cube_holes(void **state)
+static void deleted_faces_leave_one_hole_and_hole_fill_closes_it(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(QCUBE, NULL);
@@ -128,7 +128,7 @@ static void test_cube_holes(void **state)
     he_mesh_free(m);
 }
 
-static void test_checkerboard(void **state)
+static void a_checkerboard_has_bowties_and_can_be_rebuilt(void **state)
 {
     (void)state;
     /* From a grid of three by three squares the white squares of a checkerboard are deleted: five
@@ -148,7 +148,7 @@ static void test_checkerboard(void **state)
     he_mesh_free(m);
 }
 
-static void test_tetrahedron_does_not_collapse(void **state)
+static void no_edge_of_a_tetrahedron_collapses(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("021,013,032,123", NULL), *before = copy_of(m);
@@ -162,7 +162,7 @@ static void test_tetrahedron_does_not_collapse(void **state)
     he_mesh_free(m);
 }
 
-static void test_cf1_join(void **state)
+static void face_join_makes_a_quadrilateral_of_two_triangles(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("021,123,134", NULL);
@@ -174,7 +174,7 @@ static void test_cf1_join(void **state)
     he_mesh_free(m);
 }
 
-static void test_cf3_split_corners(void **state)
+static void collapsing_the_new_edge_undoes_vertex_split_corners(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,3245", NULL), *before = copy_of(m);
@@ -194,7 +194,7 @@ static void test_cf3_split_corners(void **state)
     he_mesh_free(m);
 }
 
-static void test_cf4_join(void **state)
+static void loop_join_makes_a_closed_mesh_of_two_open_tetrahedra(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("023,321,031,647,675,745", NULL);
@@ -206,7 +206,7 @@ static void test_cf4_join(void **state)
     he_mesh_free(m);
 }
 
-static void test_quad_and_triangle(void **state)
+static void face_extrude_adds_a_side_face_for_each_edge(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0123,214", NULL);
@@ -215,7 +215,7 @@ static void test_quad_and_triangle(void **state)
     he_mesh_free(m);
 }
 
-static void test_cube_corner(void **state)
+static void each_cube_vertex_bevels_to_a_triangle(void **state)
 {
     (void)state;
     for (unsigned v = 0; v < 8; v++) {
@@ -259,7 +259,7 @@ static bool is_inner(const he_mesh *m, he_face f)
     return true;
 }
 
-static void test_grid_of_quads(void **state)
+static void an_inner_face_of_a_grid_collapses_to_a_vertex(void **state)
 {
     (void)state;
     static const double cells[] = {4, 4};
@@ -279,7 +279,7 @@ static void test_grid_of_quads(void **state)
     assert_int_equal(inner, 4);
 }
 
-static void test_torus_and_cylinder(void **state)
+static void a_torus_has_genus_1_and_a_cylinder_has_two_boundary_loops(void **state)
 {
     (void)state;
     static const double torus[] = {3, 3}, sides[] = {6, 1, 2, 0};
@@ -298,7 +298,7 @@ static void test_torus_and_cylinder(void **state)
     he_mesh_free(m);
 }
 
-static void test_solids(void **state)
+static void solids_have_their_known_counts_and_euler_number_2(void **state)
 {
     (void)state;
     static const double three[] = {3};
@@ -322,7 +322,7 @@ static void test_solids(void **state)
 
 /* After a refusal every bit must be as before: rows of deleted elements, issued ids and every
  * attribute. */
-static void test_a_refusal_leaves_everything(void **state)
+static void a_refusal_leaves_the_mesh_as_it_was(void **state)
 {
     (void)state;
     static const struct {
@@ -359,7 +359,7 @@ static void test_a_refusal_leaves_everything(void **state)
     }
 }
 
-static void test_sb(void **state)
+static void an_edge_of_a_quadrilateral_can_be_flipped_and_split(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0341,142", NULL);
@@ -384,7 +384,7 @@ static void test_sb(void **state)
 
 /* Loop's subdivision made of splits and flips: all edges are split, and then each new edge between
  * an old and a new vertex is flipped. */
-static void test_split_and_flip(void **state)
+static void splits_and_flips_make_a_loop_subdivision(void **state)
 {
     (void)state;
     /* The mesh is an octahedron. */
@@ -417,7 +417,7 @@ static void test_split_and_flip(void **state)
 }
 
 /* vertex_split followed by the collapse of its edge must give the same mesh, link by link. */
-static void test_vertex_split_is_inverse(void **state)
+static void edge_collapse_undoes_vertex_split_link_by_link(void **state)
 {
     (void)state;
     static const struct {
@@ -457,7 +457,7 @@ static void test_vertex_split_is_inverse(void **state)
     }
 }
 
-static void test_inverses(void **state)
+static void edge_join_undoes_edge_bisect_and_face_join_undoes_face_split(void **state)
 {
     (void)state;
     static const char *const pairs[][2] = {
@@ -480,7 +480,7 @@ static void test_inverses(void **state)
     }
 }
 
-static void test_plane_split(void **state)
+static void a_square_is_cut_only_if_corners_lie_on_both_sides(void **state)
 {
     (void)state;
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -504,7 +504,7 @@ static void test_plane_split(void **state)
     he_mesh_free(m);
 }
 
-static void test_pillow(void **state)
+static void two_faces_back_to_back_make_a_closed_mesh(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012", NULL);
@@ -519,29 +519,29 @@ static void test_pillow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_triangle),
-        cmocka_unit_test(test_ring10_flip),
-        cmocka_unit_test(test_ring10_hole),
-        cmocka_unit_test(test_strange),
-        cmocka_unit_test(test_cube_holes),
-        cmocka_unit_test(test_checkerboard),
-        cmocka_unit_test(test_tetrahedron_does_not_collapse),
-        cmocka_unit_test(test_cf1_join),
-        cmocka_unit_test(test_sb),
-        cmocka_unit_test(test_split_and_flip),
-        cmocka_unit_test(test_vertex_split_is_inverse),
-        cmocka_unit_test(test_inverses),
-        cmocka_unit_test(test_pillow),
-        cmocka_unit_test(test_plane_split),
-        cmocka_unit_test(test_cf3_split_corners),
-        cmocka_unit_test(test_cf4_join),
-        cmocka_unit_test(test_quad_and_triangle),
-        cmocka_unit_test(test_cube_corner),
-        cmocka_unit_test(test_grid_of_quads),
-        cmocka_unit_test(test_solids),
-        cmocka_unit_test(test_torus_and_cylinder),
-        cmocka_unit_test(test_a_refusal_leaves_everything),
+        cmocka_unit_test(an_empty_mesh_takes_a_vertex_and_is_empty_again),
+        cmocka_unit_test(three_vertices_make_a_triangle_with_one_boundary_loop),
+        cmocka_unit_test(an_edge_flipped_twice_joins_its_old_ends_again),
+        cmocka_unit_test(deleting_an_edge_or_its_two_faces_leaves_the_same_hole),
+        cmocka_unit_test(a_face_joins_two_fans_but_may_not_close_one_beside_others),
+        cmocka_unit_test(deleted_faces_leave_one_hole_and_hole_fill_closes_it),
+        cmocka_unit_test(a_checkerboard_has_bowties_and_can_be_rebuilt),
+        cmocka_unit_test(no_edge_of_a_tetrahedron_collapses),
+        cmocka_unit_test(face_join_makes_a_quadrilateral_of_two_triangles),
+        cmocka_unit_test(an_edge_of_a_quadrilateral_can_be_flipped_and_split),
+        cmocka_unit_test(splits_and_flips_make_a_loop_subdivision),
+        cmocka_unit_test(edge_collapse_undoes_vertex_split_link_by_link),
+        cmocka_unit_test(edge_join_undoes_edge_bisect_and_face_join_undoes_face_split),
+        cmocka_unit_test(two_faces_back_to_back_make_a_closed_mesh),
+        cmocka_unit_test(a_square_is_cut_only_if_corners_lie_on_both_sides),
+        cmocka_unit_test(collapsing_the_new_edge_undoes_vertex_split_corners),
+        cmocka_unit_test(loop_join_makes_a_closed_mesh_of_two_open_tetrahedra),
+        cmocka_unit_test(face_extrude_adds_a_side_face_for_each_edge),
+        cmocka_unit_test(each_cube_vertex_bevels_to_a_triangle),
+        cmocka_unit_test(an_inner_face_of_a_grid_collapses_to_a_vertex),
+        cmocka_unit_test(solids_have_their_known_counts_and_euler_number_2),
+        cmocka_unit_test(a_torus_has_genus_1_and_a_cylinder_has_two_boundary_loops),
+        cmocka_unit_test(a_refusal_leaves_the_mesh_as_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

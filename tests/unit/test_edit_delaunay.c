@@ -91,7 +91,7 @@ static void assert_delaunay_in_plane(const he_mesh *m)
 
 static const he_vec3 KITE[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {2, -1, 0}, {9, 9, 9}};
 
-static void test_kite(void **state)
+static void the_long_diagonal_of_a_kite_is_flipped_once(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,103", KITE);
@@ -111,7 +111,7 @@ static void test_kite(void **state)
 }
 
 /* If four points are on a circle, both diagonals are equally good, and neither may be flipped. */
-static void test_circle_is_left_alone(void **state)
+static void neither_diagonal_of_four_points_on_a_circle_is_flipped(void **state)
 {
     (void)state;
     static const he_vec3 square[] = {
@@ -126,7 +126,7 @@ static void test_circle_is_left_alone(void **state)
     }
 }
 
-static void test_what_is_never_flipped(void **state)
+static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
 {
     (void)state;
     static const he_vec3 pentagon[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0}, {1, -1, 0}, {3, -1, 0}};
@@ -161,7 +161,7 @@ static void mark_features(he_mesh *m, he_type type, const unsigned char *marks)
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
 
-static void test_features_stay(void **state)
+static void edges_marked_as_features_are_not_flipped(void **state)
 {
     (void)state;
     static const unsigned char marks[] = {1, 0, 0, 0, 0};
@@ -182,7 +182,7 @@ static void test_features_stay(void **state)
 }
 
 /* The mesh is tried small and far from the origin, huge, and tiny. */
-static void test_any_scale(void **state)
+static void a_kite_is_flipped_at_any_scale(void **state)
 {
     (void)state;
     static const double scales[] = {1e305, 1e150, 1e-150, 1e-305};
@@ -235,7 +235,7 @@ static he_mesh *random_points(md_random *r, uint32_t n)
     return m;
 }
 
-static void test_random_points(void **state)
+static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **state)
 {
     (void)state;
     uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 200);
@@ -277,7 +277,7 @@ static void test_random_points(void **state)
 }
 
 /* Edges with a feature mark must be unchanged; all others must be Delaunay. */
-static void test_random_features(void **state)
+static void all_edges_but_features_become_delaunay(void **state)
 {
     (void)state;
     uint64_t seed = number_from("SEED", 1);
@@ -310,7 +310,7 @@ static void test_random_features(void **state)
 
 /* After a point is inserted into a Delaunay triangulation, it must suffice to name the sides of its
  * triangle: the flips spread from there (Lawson's insertion). */
-static void test_flips_spread_from_the_list(void **state)
+static void flips_spread_from_the_listed_edges(void **state)
 {
     (void)state;
     md_random r = {number_from("SEED", 1)};
@@ -340,7 +340,7 @@ static void test_flips_spread_from_the_list(void **state)
 }
 
 /* An edge that is neither in the list nor beside a flip must not be tested. */
-static void test_only_the_list(void **state)
+static void edges_neither_listed_nor_beside_a_flip_are_not_flipped(void **state)
 {
     (void)state;
     static const he_vec3 two[] = {{0, 0, 0}, {4, 0, 0}, {2, 1, 0},  {2, -1, 0},
@@ -377,7 +377,7 @@ static bool random_triangles(md_random *r, he_mesh **out)
     return true;
 }
 
-static void test_triangles_in_space(void **state)
+static void flips_in_space_end_and_never_enlarge_the_area(void **state)
 {
     (void)state;
     uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 2000), all = 0;
@@ -436,7 +436,7 @@ static he_mesh *two_rows(uint32_t n)
     return m;
 }
 
-static void test_work_is_limited(void **state)
+static void too_many_flips_are_refused_without_change(void **state)
 {
     (void)state;
     he_ids flips = {0};
@@ -459,7 +459,7 @@ static void test_work_is_limited(void **state)
 
 /* However many flips there are, the delta must not be longer than the number of words in the mesh,
  * and must undo and redo them. */
-static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
+static void the_record_of_many_flips_is_no_larger_than_the_mesh(void **state)
 {
     (void)state;
     he_ids flips = {0};
@@ -485,7 +485,7 @@ static void test_many_flips_are_recorded_in_the_size_of_the_mesh(void **state)
 }
 
 /* A vertex has ten thousand edges: no flip may visit all of them. */
-static void test_hub(void **state)
+static void a_vertex_of_10000_edges_takes_no_quadratic_time(void **state)
 {
     (void)state;
     enum { SPOKES = 10000 };
@@ -514,7 +514,7 @@ static void test_hub(void **state)
     he_mesh_free(m);
 }
 
-static void test_memory_runs_out(void **state)
+static void delaunay_without_memory_leaves_the_mesh_unchanged(void **state)
 {
     (void)state;
     md_random r = {7};
@@ -550,20 +550,20 @@ static void test_memory_runs_out(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kite),
-        cmocka_unit_test(test_circle_is_left_alone),
-        cmocka_unit_test(test_what_is_never_flipped),
-        cmocka_unit_test(test_features_stay),
-        cmocka_unit_test(test_any_scale),
-        cmocka_unit_test(test_random_points),
-        cmocka_unit_test(test_random_features),
-        cmocka_unit_test(test_flips_spread_from_the_list),
-        cmocka_unit_test(test_only_the_list),
-        cmocka_unit_test(test_triangles_in_space),
-        cmocka_unit_test(test_work_is_limited),
-        cmocka_unit_test(test_many_flips_are_recorded_in_the_size_of_the_mesh),
-        cmocka_unit_test(test_hub),
-        cmocka_unit_test(test_memory_runs_out),
+        cmocka_unit_test(the_long_diagonal_of_a_kite_is_flipped_once),
+        cmocka_unit_test(neither_diagonal_of_four_points_on_a_circle_is_flipped),
+        cmocka_unit_test(an_edge_is_kept_where_a_flip_is_impossible),
+        cmocka_unit_test(edges_marked_as_features_are_not_flipped),
+        cmocka_unit_test(a_kite_is_flipped_at_any_scale),
+        cmocka_unit_test(random_points_become_delaunay_by_flips_that_can_be_repeated),
+        cmocka_unit_test(all_edges_but_features_become_delaunay),
+        cmocka_unit_test(flips_spread_from_the_listed_edges),
+        cmocka_unit_test(edges_neither_listed_nor_beside_a_flip_are_not_flipped),
+        cmocka_unit_test(flips_in_space_end_and_never_enlarge_the_area),
+        cmocka_unit_test(too_many_flips_are_refused_without_change),
+        cmocka_unit_test(the_record_of_many_flips_is_no_larger_than_the_mesh),
+        cmocka_unit_test(a_vertex_of_10000_edges_takes_no_quadratic_time),
+        cmocka_unit_test(delaunay_without_memory_leaves_the_mesh_unchanged),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     or_free(shapes);

@@ -41,7 +41,7 @@ static void assert_same_links(he_mesh *m, const he_mesh *other)
     assert_true(he_mesh_equal_live(m, other));
 }
 
-static void test_cf4(void **state)
+static void loop_join_makes_a_closed_mesh_of_two_open_tetrahedra(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(CF4, NULL);
@@ -53,7 +53,7 @@ static void test_cf4(void **state)
     he_mesh_free(m);
 }
 
-static void test_cylinders(void **state)
+static void a_bridge_and_a_join_make_a_torus_of_two_cylinders(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("0176,1287,2398,34a9,45ba,506b", NULL);
@@ -77,7 +77,7 @@ static void test_cylinders(void **state)
     he_mesh_free(m);
 }
 
-static void test_who_survives(void **state)
+static void the_first_loop_survives_loop_join(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(CF4, NULL);
@@ -110,7 +110,7 @@ static void test_who_survives(void **state)
     he_mesh_free(m);
 }
 
-static void test_split_parts(void **state)
+static void loop_split_reports_the_new_vertices_edges_and_faces(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(BIPYRAMID, NULL);
@@ -140,7 +140,7 @@ static void test_split_parts(void **state)
 
 /* --- inverses --- */
 
-static void test_split_then_join(void **state)
+static void loop_join_undoes_loop_split(void **state)
 {
     (void)state;
     static const struct {
@@ -186,7 +186,7 @@ static void test_split_then_join(void **state)
     }
 }
 
-static void test_join_then_split(void **state)
+static void loop_split_undoes_loop_join_once_its_faces_are_deleted(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh(CF4, NULL);
@@ -201,7 +201,7 @@ static void test_join_then_split(void **state)
     he_mesh_free(m);
 }
 
-static void test_bridge_then_delete(void **state)
+static void deleting_the_new_faces_undoes_loop_bridge(void **state)
 {
     (void)state;
     static const char *const cases[][2] = {{CYLINDERS, "loop_bridge a=6-7 b=13-12"},
@@ -285,7 +285,7 @@ static double bridge_disks(he_mesh *m, uint32_t n, uint32_t k)
     return most;
 }
 
-static void test_equal_loops_are_not_twisted(void **state)
+static void a_bridge_of_equal_loops_is_not_twisted(void **state)
 {
     (void)state;
     static const uint32_t sizes[] = {3, 4, 7, 12, 255, 256, 257, 300, 1000};
@@ -301,7 +301,7 @@ static void test_equal_loops_are_not_twisted(void **state)
     }
 }
 
-static void test_unequal_loops_are_not_twisted(void **state)
+static void a_bridge_of_unequal_loops_is_not_twisted(void **state)
 {
     (void)state;
     for (uint32_t n = 3; n < 60; n += 1 + n / 4) {
@@ -316,7 +316,7 @@ static void test_unequal_loops_are_not_twisted(void **state)
 
 /* The corners of one loop are all nearest to the same corner of the other loop, so that many
  * triangles of the bridge meet there. */
-static void test_a_crowd_is_bridged(void **state)
+static void a_small_loop_at_one_corner_of_a_large_one_is_bridged(void **state)
 {
     (void)state;
     for (uint32_t n = 3; n < 9; n++) {
@@ -339,7 +339,7 @@ static void test_a_crowd_is_bridged(void **state)
 }
 
 /* The loop visits vertex 0 twice, and both gaps there are filled, so that its fans become one. */
-static void test_bowties(void **state)
+static void a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,034,56789a", NULL);
@@ -364,17 +364,17 @@ static void test_bowties(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cf4),
-        cmocka_unit_test(test_cylinders),
-        cmocka_unit_test(test_who_survives),
-        cmocka_unit_test(test_split_parts),
-        cmocka_unit_test(test_split_then_join),
-        cmocka_unit_test(test_join_then_split),
-        cmocka_unit_test(test_bridge_then_delete),
-        cmocka_unit_test(test_equal_loops_are_not_twisted),
-        cmocka_unit_test(test_unequal_loops_are_not_twisted),
-        cmocka_unit_test(test_a_crowd_is_bridged),
-        cmocka_unit_test(test_bowties),
+        cmocka_unit_test(loop_join_makes_a_closed_mesh_of_two_open_tetrahedra),
+        cmocka_unit_test(a_bridge_and_a_join_make_a_torus_of_two_cylinders),
+        cmocka_unit_test(the_first_loop_survives_loop_join),
+        cmocka_unit_test(loop_split_reports_the_new_vertices_edges_and_faces),
+        cmocka_unit_test(loop_join_undoes_loop_split),
+        cmocka_unit_test(loop_split_undoes_loop_join_once_its_faces_are_deleted),
+        cmocka_unit_test(deleting_the_new_faces_undoes_loop_bridge),
+        cmocka_unit_test(a_bridge_of_equal_loops_is_not_twisted),
+        cmocka_unit_test(a_bridge_of_unequal_loops_is_not_twisted),
+        cmocka_unit_test(a_small_loop_at_one_corner_of_a_large_one_is_bridged),
+        cmocka_unit_test(a_bridge_joins_the_fans_of_a_bowtie_and_loop_join_does_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

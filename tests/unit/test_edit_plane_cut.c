@@ -118,7 +118,7 @@ static size_t check_halves(const he_mesh *m, he_vec3 at, he_vec3 normal)
     return caps[0];
 }
 
-static void test_halves_make_up_the_whole(void **state)
+static void the_halves_of_a_cut_make_up_the_whole(void **state)
 {
     (void)state;
     static const char *const names[] = {"cube", "dodecahedron", "icosahedron", "icosphere",
@@ -140,7 +140,7 @@ static void test_halves_make_up_the_whole(void **state)
 }
 
 /* A face that lies in the plane belongs to the part of which it is an outer face. */
-static void test_faces_in_the_plane(void **state)
+static void a_face_in_the_plane_goes_to_the_part_it_bounds(void **state)
 {
     (void)state;
     he_mesh *m = shape("cube");
@@ -175,7 +175,7 @@ static void test_faces_in_the_plane(void **state)
     he_mesh_free(m);
 }
 
-static void test_caps_of_open_meshes(void **state)
+static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **state)
 {
     (void)state;
     /* A hole that the plane does not meet must be unchanged. */
@@ -215,7 +215,7 @@ static void test_caps_of_open_meshes(void **state)
     he_mesh_free(m);
 }
 
-static void test_refusals_of_the_plane(void **state)
+static void a_plane_without_normal_or_finite_numbers_is_refused(void **state)
 {
     (void)state;
     he_mesh *m = shape("cube"), *before = copy_of(m);
@@ -232,7 +232,7 @@ static void test_refusals_of_the_plane(void **state)
     he_mesh_free(m);
 }
 
-static void test_tolerance(void **state)
+static void corners_within_the_tolerance_lie_in_the_plane(void **state)
 {
     (void)state;
     const double near = 0.1, none = 0, less = -1, no_number = (double)NAN;
@@ -261,11 +261,11 @@ static void test_tolerance(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tolerance),
-        cmocka_unit_test(test_halves_make_up_the_whole),
-        cmocka_unit_test(test_faces_in_the_plane),
-        cmocka_unit_test(test_caps_of_open_meshes),
-        cmocka_unit_test(test_refusals_of_the_plane),
+        cmocka_unit_test(corners_within_the_tolerance_lie_in_the_plane),
+        cmocka_unit_test(the_halves_of_a_cut_make_up_the_whole),
+        cmocka_unit_test(a_face_in_the_plane_goes_to_the_part_it_bounds),
+        cmocka_unit_test(a_hole_off_the_plane_stays_and_one_across_it_forbids_caps),
+        cmocka_unit_test(a_plane_without_normal_or_finite_numbers_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,7 +228,7 @@ static uint64_t number_from(const char *name, uint64_t fallback)
     return text != NULL ? strtoull(text, NULL, 10) : fallback;
 }
 
-static void test_random_edits(void **state)
+static void random_edits_keep_every_promise_of_their_row(void **state)
 {
     (void)state;
     uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 300);
@@ -263,6 +263,7 @@ static void test_random_edits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random_edits)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_edits_keep_every_promise_of_their_row)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

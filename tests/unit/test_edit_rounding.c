@@ -37,7 +37,7 @@ static or_mesh *oracle_of(const he_mesh *m)
     return o;
 }
 
-static void test_a_target_that_rounding_leaves_in_place_does_not_move(void **state)
+static void a_target_that_rounding_leaves_in_place_does_not_move(void **state)
 {
     (void)state;
     static const char *const marks[2] = {"mark feature edge=1-2", "mark locked vertex=1"};
@@ -78,7 +78,7 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
 
 /* face_collapse merges the corners of a face in several steps; if hedge refuses one, the oracle
  * must go back to before all of them. */
-static void test_the_oracle_goes_back_before_all_steps_of_a_face(void **state)
+static void the_oracle_goes_back_before_all_steps_of_a_face(void **state)
 {
     (void)state;
     char text[OR_TEXT] = "";
@@ -93,7 +93,7 @@ static void test_the_oracle_goes_back_before_all_steps_of_a_face(void **state)
     he_mesh_free(m);
 }
 
-static void test_the_oracle_refuses_where_the_target_surely_moves(void **state)
+static void the_oracle_refuses_where_the_target_surely_moves(void **state)
 {
     (void)state;
     char text[OR_TEXT] = "";
@@ -109,11 +109,11 @@ static void test_the_oracle_refuses_where_the_target_surely_moves(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_target_that_rounding_leaves_in_place_does_not_move),
+        cmocka_unit_test(a_target_that_rounding_leaves_in_place_does_not_move),
         cmocka_unit_test(
             test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves),
-        cmocka_unit_test(test_the_oracle_goes_back_before_all_steps_of_a_face),
-        cmocka_unit_test(test_the_oracle_refuses_where_the_target_surely_moves),
+        cmocka_unit_test(the_oracle_goes_back_before_all_steps_of_a_face),
+        cmocka_unit_test(the_oracle_refuses_where_the_target_surely_moves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,7 @@ static void assert_ids(const he_ids *list, const char *expected)
     assert_string_equal(text, expected);
 }
 
-static void test_edge_bisect(void **state)
+static void edge_bisect_keeps_the_id_for_the_part_at_the_origin(void **state)
 {
     (void)state;
     edit e = edit_begin("0123");
@@ -73,7 +73,7 @@ static void test_edge_bisect(void **state)
     edit_end(&e);
 }
 
-static void test_edge_join(void **state)
+static void edge_join_keeps_the_lower_id_of_the_two_edges(void **state)
 {
     (void)state;
     edit e = edit_begin("01234");
@@ -87,7 +87,7 @@ static void test_edge_join(void **state)
     edit_end(&e);
 }
 
-static void test_edge_split(void **state)
+static void edge_split_keeps_the_ids_of_the_edge_and_both_faces(void **state)
 {
     (void)state;
     edit e = edit_begin("012,103");
@@ -115,7 +115,7 @@ static void test_edge_split(void **state)
     edit_end(&e);
 }
 
-static void test_edge_collapse(void **state)
+static void edge_collapse_keeps_the_target_and_the_edges_at_it(void **state)
 {
     (void)state;
     edit e = edit_begin(HEXAGON);
@@ -140,7 +140,7 @@ static void test_edge_collapse(void **state)
     edit_end(&e);
 }
 
-static void test_collapse_position(void **state)
+static void edge_collapse_places_the_vertex_at_t_or_at_to(void **state)
 {
     (void)state;
     static const struct {
@@ -160,7 +160,7 @@ static void test_collapse_position(void **state)
     }
 }
 
-static void test_vertex_split(void **state)
+static void vertex_split_keeps_old_ids_and_reports_parents(void **state)
 {
     (void)state;
     edit e = edit_begin(HEXAGON);
@@ -181,7 +181,7 @@ static void test_vertex_split(void **state)
     edit_end(&e);
 }
 
-static void test_face_split_and_join(void **state)
+static void face_split_and_face_join_keep_the_id_of_the_first_face(void **state)
 {
     (void)state;
     edit e = edit_begin("01234");
@@ -200,7 +200,7 @@ static void test_face_split_and_join(void **state)
     edit_end(&e);
 }
 
-static void test_face_poke(void **state)
+static void face_poke_keeps_the_id_for_the_first_triangle(void **state)
 {
     (void)state;
     edit e = edit_begin("0123");
@@ -213,7 +213,7 @@ static void test_face_poke(void **state)
     edit_end(&e);
 }
 
-static void test_face_triangulate(void **state)
+static void face_triangulate_reports_the_face_as_parent_of_each_part(void **state)
 {
     (void)state;
     edit e = edit_begin("0123456");
@@ -226,7 +226,7 @@ static void test_face_triangulate(void **state)
     edit_end(&e);
 }
 
-static void test_edge_flip(void **state)
+static void edge_flip_turns_the_edge_and_keeps_all_ids(void **state)
 {
     (void)state;
     edit e = edit_begin("012,103");
@@ -243,7 +243,7 @@ static void test_edge_flip(void **state)
     edit_end(&e);
 }
 
-static void test_delete_leftovers(void **state)
+static void deleting_removes_only_the_vertices_that_it_isolates(void **state)
 {
     (void)state;
     edit e = edit_begin("0123,3245");
@@ -265,7 +265,7 @@ static void test_delete_leftovers(void **state)
     edit_end(&e);
 }
 
-static void test_nothing_happens(void **state)
+static void edits_without_effect_report_no_changes(void **state)
 {
     (void)state;
     static const char *const operations[] = {
@@ -287,12 +287,18 @@ static void test_nothing_happens(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_edge_bisect),         cmocka_unit_test(test_edge_join),
-        cmocka_unit_test(test_edge_split),          cmocka_unit_test(test_edge_collapse),
-        cmocka_unit_test(test_collapse_position),   cmocka_unit_test(test_vertex_split),
-        cmocka_unit_test(test_face_split_and_join), cmocka_unit_test(test_face_poke),
-        cmocka_unit_test(test_face_triangulate),    cmocka_unit_test(test_edge_flip),
-        cmocka_unit_test(test_delete_leftovers),    cmocka_unit_test(test_nothing_happens),
+        cmocka_unit_test(edge_bisect_keeps_the_id_for_the_part_at_the_origin),
+        cmocka_unit_test(edge_join_keeps_the_lower_id_of_the_two_edges),
+        cmocka_unit_test(edge_split_keeps_the_ids_of_the_edge_and_both_faces),
+        cmocka_unit_test(edge_collapse_keeps_the_target_and_the_edges_at_it),
+        cmocka_unit_test(edge_collapse_places_the_vertex_at_t_or_at_to),
+        cmocka_unit_test(vertex_split_keeps_old_ids_and_reports_parents),
+        cmocka_unit_test(face_split_and_face_join_keep_the_id_of_the_first_face),
+        cmocka_unit_test(face_poke_keeps_the_id_for_the_first_triangle),
+        cmocka_unit_test(face_triangulate_reports_the_face_as_parent_of_each_part),
+        cmocka_unit_test(edge_flip_turns_the_edge_and_keeps_all_ids),
+        cmocka_unit_test(deleting_removes_only_the_vertices_that_it_isolates),
+        cmocka_unit_test(edits_without_effect_report_no_changes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

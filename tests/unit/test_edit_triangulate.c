@@ -80,7 +80,7 @@ static void check_polygon(const point *points, uint32_t n, double scale)
     he_mesh_free(m);
 }
 
-static void test_small(void **state)
+static void small_concave_polygons_are_triangulated(void **state)
 {
     (void)state;
     static const point dart[] = {{0, 0}, {4, 4}, {0, 1}, {-4, 4}};
@@ -97,7 +97,7 @@ static void test_small(void **state)
     check_polygon(flat, 7, 1);
 }
 
-static void test_any_scale(void **state)
+static void a_dart_is_triangulated_at_any_scale(void **state)
 {
     (void)state;
     static const point dart[] = {{0, 0}, {400, 400}, {0, 100}, {-400, 400}};
@@ -108,7 +108,7 @@ static void test_any_scale(void **state)
 }
 
 /* Polygons with more than HE_EXACT_CORNERS corners are cut by ear clipping. */
-static void test_long(void **state)
+static void stars_combs_and_spirals_of_600_corners_are_triangulated(void **state)
 {
     (void)state;
     enum { N = 600 };
@@ -133,7 +133,7 @@ static void test_long(void **state)
     check_polygon(points, N, 1);
 }
 
-static void test_convex_is_fast(void **state)
+static void a_convex_face_of_20000_corners_takes_no_quadratic_time(void **state)
 {
     (void)state;
     enum { N = 20000 };
@@ -148,7 +148,7 @@ static void test_convex_is_fast(void **state)
 }
 
 /* Faces without area, and faces whose sides cross, must be triangulated and reported. */
-static void test_degenerate(void **state)
+static void degenerate_faces_are_triangulated_and_reported(void **state)
 {
     (void)state;
     static const point line[] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}};
@@ -192,7 +192,7 @@ static he_mesh *flat_mesh(const char *faces, const point *points, uint32_t n)
 
 /* A diagonal that exists as an edge elsewhere must be avoided if another one is possible; otherwise
  * the edit must be refused. */
-static void test_existing_edges(void **state)
+static void diagonals_avoid_existing_edges_or_the_edit_is_refused(void **state)
 {
     (void)state;
     static const point square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {5, 5}, {6, 6}};
@@ -243,7 +243,7 @@ static he_mesh *blocked_star(double inner, uint32_t blocked)
     return m;
 }
 
-static void test_blocked_ears(void **state)
+static void blocked_ears_are_passed_over_or_the_edit_is_refused(void **state)
 {
     (void)state;
     he_mesh *m = blocked_star(1, 33);
@@ -262,7 +262,7 @@ static void test_blocked_ears(void **state)
 /* Many faces share two corners of very high degree, and the last face would prefer a diagonal
  * between these: that the edge exists must be found in few steps, even if it is a diagonal made by
  * the same edit. */
-static void test_hubs(void **state)
+static void faces_that_share_two_hubs_take_no_quadratic_time(void **state)
 {
     (void)state;
     enum { FACES = 20000, LAST = 100 };
@@ -291,7 +291,7 @@ static void test_hubs(void **state)
 }
 
 /* Two faces with equal corners must not both get the same diagonal. */
-static void test_list_sees_its_own_diagonals(void **state)
+static void two_faces_of_a_list_do_not_get_the_same_diagonal(void **state)
 {
     (void)state;
     static const point square[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -301,7 +301,7 @@ static void test_list_sees_its_own_diagonals(void **state)
     he_mesh_free(m);
 }
 
-static void test_holes(void **state)
+static void a_hole_is_filled_by_each_method(void **state)
 {
     (void)state;
     static const point angle[] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
@@ -322,7 +322,7 @@ static void test_holes(void **state)
     }
 }
 
-static void test_same_every_time(void **state)
+static void equal_faces_are_triangulated_equally(void **state)
 {
     (void)state;
     static const point angle[] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
@@ -345,7 +345,7 @@ static he_triangulation triangulation_of(const he_mesh *m, uint32_t face, unsign
 
 /* If any diagonals will do, a star is cut in few steps; a polygon whose sides cross is cut as it is
  * when the best diagonals are wanted. */
-static void test_any_diagonals_take_few_steps(void **state)
+static void any_diagonals_take_fewer_steps_than_the_best_ones(void **state)
 {
     (void)state;
     enum { N = HE_EXACT_CORNERS };
@@ -378,7 +378,7 @@ static void test_any_diagonals_take_few_steps(void **state)
 
 /* Every face visits the same two vertices, so each diagonal has to be looked up among many edges,
  * and this must count toward the limit of work. */
-static void test_searching_for_edges_counts(void **state)
+static void searching_for_edges_counts_as_work(void **state)
 {
     (void)state;
     enum { FACES = 2000 };
@@ -404,19 +404,19 @@ static void test_searching_for_edges_counts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small),
-        cmocka_unit_test(test_any_scale),
-        cmocka_unit_test(test_long),
-        cmocka_unit_test(test_convex_is_fast),
-        cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_existing_edges),
-        cmocka_unit_test(test_blocked_ears),
-        cmocka_unit_test(test_list_sees_its_own_diagonals),
-        cmocka_unit_test(test_holes),
-        cmocka_unit_test(test_hubs),
-        cmocka_unit_test(test_same_every_time),
-        cmocka_unit_test(test_any_diagonals_take_few_steps),
-        cmocka_unit_test(test_searching_for_edges_counts),
+        cmocka_unit_test(small_concave_polygons_are_triangulated),
+        cmocka_unit_test(a_dart_is_triangulated_at_any_scale),
+        cmocka_unit_test(stars_combs_and_spirals_of_600_corners_are_triangulated),
+        cmocka_unit_test(a_convex_face_of_20000_corners_takes_no_quadratic_time),
+        cmocka_unit_test(degenerate_faces_are_triangulated_and_reported),
+        cmocka_unit_test(diagonals_avoid_existing_edges_or_the_edit_is_refused),
+        cmocka_unit_test(blocked_ears_are_passed_over_or_the_edit_is_refused),
+        cmocka_unit_test(two_faces_of_a_list_do_not_get_the_same_diagonal),
+        cmocka_unit_test(a_hole_is_filled_by_each_method),
+        cmocka_unit_test(faces_that_share_two_hubs_take_no_quadratic_time),
+        cmocka_unit_test(equal_faces_are_triangulated_equally),
+        cmocka_unit_test(any_diagonals_take_fewer_steps_than_the_best_ones),
+        cmocka_unit_test(searching_for_edges_counts_as_work),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -479,7 +479,7 @@ static void run_short_of_memory(const scenario *s, bool columns, bool record)
     }
 }
 
-static void test_scenarios(void **state)
+static void each_scenario_succeeds_or_is_refused_as_its_row_declares(void **state)
 {
     (void)state;
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
@@ -494,7 +494,7 @@ static void test_scenarios(void **state)
     }
 }
 
-static void test_limit(void **state)
+static void too_much_work_is_refused_without_change(void **state)
 {
     (void)state;
     static const char *const operations[] = {
@@ -516,7 +516,7 @@ static void test_limit(void **state)
 
 /* This test runs after all others: each operation must declare exactly the refusals that the
  * scenarios have produced. */
-static void test_every_refusal_was_produced(void **state)
+static void each_declared_refusal_occurs_and_no_other(void **state)
 {
     (void)state;
     unsigned missing = 0;
@@ -538,7 +538,7 @@ static void test_every_refusal_was_produced(void **state)
     assert_int_equal(missing, 0);
 }
 
-static void test_rows_are_sound(void **state)
+static void rows_are_complete_and_found_by_name(void **state)
 {
     (void)state;
     for (size_t i = 0; i < he_op_count(); i++) {
@@ -569,7 +569,7 @@ static void test_rows_are_sound(void **state)
     assert_null(he_op_find("", 0));
 }
 
-static void test_results(void **state)
+static void results_are_reported_and_a_refusal_leaves_them_empty(void **state)
 {
     (void)state;
     he_mesh *m = script_mesh("012,023", NULL);
@@ -597,9 +597,11 @@ static void test_results(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rows_are_sound), cmocka_unit_test(test_scenarios),
-        cmocka_unit_test(test_limit),          cmocka_unit_test(test_every_refusal_was_produced),
-        cmocka_unit_test(test_results),
+        cmocka_unit_test(rows_are_complete_and_found_by_name),
+        cmocka_unit_test(each_scenario_succeeds_or_is_refused_as_its_row_declares),
+        cmocka_unit_test(too_much_work_is_refused_without_change),
+        cmocka_unit_test(each_declared_refusal_occurs_and_no_other),
+        cmocka_unit_test(results_are_reported_and_a_refusal_leaves_them_empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

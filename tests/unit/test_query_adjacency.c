@@ -224,7 +224,7 @@ static void try_common_faces(const he_mesh *m)
     }
 }
 
-static void test_relations_agree_with_a_search(void **state)
+static void relations_agree_with_a_search(void **state)
 {
     (void)state;
     for (size_t i = 0; i <= QUERY_SPECIMENS; i++) {
@@ -249,7 +249,7 @@ static void assert_ids(he_ids ids, const char *wanted)
     he_ids_clear(&ids);
 }
 
-static void test_relations_by_hand(void **state)
+static void relations_of_known_meshes_list_each_id_once_in_order(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056");
@@ -279,7 +279,7 @@ static void test_relations_by_hand(void **state)
 
 /* The face has more neighbours than are compared one by one, and shares two edges with each of
  * them. */
-static void test_faces_of_a_large_face_appear_once(void **state)
+static void neighbours_of_a_large_face_are_listed_once(void **state)
 {
     (void)state;
     enum { PAIRS = 50 };
@@ -310,7 +310,7 @@ static void test_faces_of_a_large_face_appear_once(void **state)
     he_mesh_free(m);
 }
 
-static void test_relations_refuse(void **state)
+static void relations_refuse_elements_that_do_not_exist(void **state)
 {
     (void)state;
     he_mesh *m = query_with_dead_rows();
@@ -353,7 +353,7 @@ static void test_relations_refuse(void **state)
 
 /* The links of the mesh are broken: a turn around a vertex never closes, and links lead out of the
  * mesh. The queries must still end. */
-static void test_relations_end_on_broken_links(void **state)
+static void relations_end_on_broken_links(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("0123,7654,1045,2156,3267,0374");
@@ -391,7 +391,7 @@ static void test_relations_end_on_broken_links(void **state)
     }
 }
 
-static void test_relations_survive_failing_memory(void **state)
+static void relations_without_memory_are_refused_and_give_no_ids(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("cone", 40, 1, 1, 1);
@@ -414,7 +414,7 @@ static void test_relations_survive_failing_memory(void **state)
     he_mesh_free(m);
 }
 
-static void test_idmap_numbers_in_order_of_arrival(void **state)
+static void an_idmap_numbers_ids_in_order_of_arrival(void **state)
 {
     (void)state;
     he_idmap map = {0};
@@ -453,13 +453,13 @@ static void test_idmap_numbers_in_order_of_arrival(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_relations_agree_with_a_search),
-        cmocka_unit_test(test_relations_by_hand),
-        cmocka_unit_test(test_faces_of_a_large_face_appear_once),
-        cmocka_unit_test(test_relations_refuse),
-        cmocka_unit_test(test_relations_end_on_broken_links),
-        cmocka_unit_test(test_relations_survive_failing_memory),
-        cmocka_unit_test(test_idmap_numbers_in_order_of_arrival),
+        cmocka_unit_test(relations_agree_with_a_search),
+        cmocka_unit_test(relations_of_known_meshes_list_each_id_once_in_order),
+        cmocka_unit_test(neighbours_of_a_large_face_are_listed_once),
+        cmocka_unit_test(relations_refuse_elements_that_do_not_exist),
+        cmocka_unit_test(relations_end_on_broken_links),
+        cmocka_unit_test(relations_without_memory_are_refused_and_give_no_ids),
+        cmocka_unit_test(an_idmap_numbers_ids_in_order_of_arrival),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

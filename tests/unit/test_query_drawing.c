@@ -200,7 +200,7 @@ static void an_isolated_vertex_that_is_near_is_drawn_where_it_is(void **state)
     he_mesh_free(m);
 }
 
-static void test_specimens(void **state)
+static void triangles_of_a_face_sum_up_to_its_area(void **state)
 {
     (void)state;
     for (int i = 0; i < QUERY_SPECIMENS; i++) {
@@ -211,7 +211,7 @@ static void test_specimens(void **state)
     }
 }
 
-static void test_shapes_are_covered(void **state)
+static void triangles_cover_the_faces_of_shapes_exactly(void **state)
 {
     (void)state;
     static const struct {
@@ -260,7 +260,7 @@ static he_mesh *face_of(const polygon *p, uint32_t turn, double size, double awa
     return m;
 }
 
-static void test_concave_faces_from_every_corner(void **state)
+static void triangles_cover_concave_faces_from_every_first_corner(void **state)
 {
     (void)state;
     static double arrow[][2] = {{0, 0}, {4, 2}, {0, 4}, {1, 2}};
@@ -290,7 +290,7 @@ static void test_concave_faces_from_every_corner(void **state)
 }
 
 /* The polygons are star-shaped around the origin, so that they never cross themselves. */
-static void test_random_polygons(void **state)
+static void triangles_cover_random_polygons_exactly(void **state)
 {
     (void)state;
     uint64_t seed = 20261121;
@@ -312,7 +312,7 @@ static void test_random_polygons(void **state)
 }
 
 /* The faces are not planar, and one is a pentagram: the number of triangles must still be right. */
-static void test_faces_without_a_plane(void **state)
+static void faces_without_a_plane_have_all_their_triangles(void **state)
 {
     (void)state;
     static double line[][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}};
@@ -328,7 +328,7 @@ static void test_faces_without_a_plane(void **state)
     }
 }
 
-static void test_a_comb_of_many_teeth_is_covered_once(void **state)
+static void triangles_cover_a_comb_of_20000_teeth_in_linear_time(void **state)
 {
     (void)state;
     enum { TEETH = 20000, N = 2 * TEETH + 2 };
@@ -364,7 +364,7 @@ static void test_a_comb_of_many_teeth_is_covered_once(void **state)
 
 /* --- rows of dead elements, and of unchanged ones --- */
 
-static void test_dead_rows(void **state)
+static void deleted_elements_are_not_drawn(void **state)
 {
     (void)state;
     he_mesh *m = query_with_dead_rows();
@@ -376,7 +376,7 @@ static void test_dead_rows(void **state)
     he_mesh_free(m);
 }
 
-static void test_moving_a_vertex_changes_only_faces_at_it(void **state)
+static void moving_a_vertex_changes_only_faces_at_it(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("grid", 6, 6, 1, 1);
@@ -406,7 +406,7 @@ static void test_moving_a_vertex_changes_only_faces_at_it(void **state)
     he_mesh_free(m);
 }
 
-static void test_frames(void **state)
+static void a_frame_fits_the_mesh_closely_at_any_scale(void **state)
 {
     (void)state;
     static const double low[][3] = {{0, 0, 0},       {-DBL_MAX, -1, 0},       {1e300, 0, 0},
@@ -435,7 +435,7 @@ static void test_frames(void **state)
     he_mesh_free(m);
 }
 
-static void test_each_allocation_failing(void **state)
+static void a_drawing_without_memory_is_refused(void **state)
 {
     (void)state;
     static double ell[][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
@@ -457,7 +457,7 @@ static void test_each_allocation_failing(void **state)
 
 /* A single face must have the same triangles as among all faces; that it takes long must be
  * announced before the work begins. */
-static void test_one_face_alone(void **state)
+static void a_face_alone_has_the_triangles_it_has_among_all(void **state)
 {
     (void)state;
     static double ell[][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
@@ -484,19 +484,19 @@ static void test_one_face_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_specimens),
+        cmocka_unit_test(triangles_of_a_face_sum_up_to_its_area),
         cmocka_unit_test(a_far_isolated_vertex_leaves_the_frame_alone),
         cmocka_unit_test(an_isolated_vertex_that_is_near_is_drawn_where_it_is),
-        cmocka_unit_test(test_shapes_are_covered),
-        cmocka_unit_test(test_concave_faces_from_every_corner),
-        cmocka_unit_test(test_random_polygons),
-        cmocka_unit_test(test_faces_without_a_plane),
-        cmocka_unit_test(test_a_comb_of_many_teeth_is_covered_once),
-        cmocka_unit_test(test_dead_rows),
-        cmocka_unit_test(test_moving_a_vertex_changes_only_faces_at_it),
-        cmocka_unit_test(test_frames),
-        cmocka_unit_test(test_one_face_alone),
-        cmocka_unit_test(test_each_allocation_failing),
+        cmocka_unit_test(triangles_cover_the_faces_of_shapes_exactly),
+        cmocka_unit_test(triangles_cover_concave_faces_from_every_first_corner),
+        cmocka_unit_test(triangles_cover_random_polygons_exactly),
+        cmocka_unit_test(faces_without_a_plane_have_all_their_triangles),
+        cmocka_unit_test(triangles_cover_a_comb_of_20000_teeth_in_linear_time),
+        cmocka_unit_test(deleted_elements_are_not_drawn),
+        cmocka_unit_test(moving_a_vertex_changes_only_faces_at_it),
+        cmocka_unit_test(a_frame_fits_the_mesh_closely_at_any_scale),
+        cmocka_unit_test(a_face_alone_has_the_triangles_it_has_among_all),
+        cmocka_unit_test(a_drawing_without_memory_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static uint32_t edge_between(const he_mesh *m, uint32_t a, uint32_t b)
     return h.i >> 1;
 }
 
-static void test_geometry_of_a_cube(void **state)
+static void a_cube_has_its_known_areas_angles_normals_and_volume(void **state)
 {
     (void)state;
     he_mesh *m = cube();
@@ -84,7 +84,7 @@ static void test_geometry_of_a_cube(void **state)
     he_mesh_free(m);
 }
 
-static void test_geometry_weights_differ(void **state)
+static void normals_of_vertices_depend_on_their_weights(void **state)
 {
     (void)state;
     /* At the corner of a box of 1 x 2 x 3, faces with the areas 6, 3 and 2 meet at right angles. */
@@ -115,7 +115,7 @@ static void test_geometry_weights_differ(void **state)
     he_mesh_free(m);
 }
 
-static void test_geometry_dihedral_has_a_sign(void **state)
+static void dihedral_angles_tell_ridges_from_valleys(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,103");
@@ -206,7 +206,7 @@ static void dihedrals_are_refused_where_memory_is_out(void **state)
 
 /* The theorem of Gauss and Bonnet: the sum over all vertices of 2 pi minus the angles there is 2 pi
  * times the Euler number. */
-static void test_geometry_angle_defects_sum_to_euler(void **state)
+static void angle_defects_sum_to_two_pi_euler(void **state)
 {
     (void)state;
     static const struct {
@@ -226,7 +226,7 @@ static void test_geometry_angle_defects_sum_to_euler(void **state)
     }
 }
 
-static void test_geometry_degenerate_faces(void **state)
+static void a_degenerate_face_has_no_normal(void **state)
 {
     (void)state;
     static const struct {
@@ -273,7 +273,7 @@ static void test_geometry_degenerate_faces(void **state)
 
 /* Scaling by a power of two must change no bit of a normal, and no bit of a length or area that
  * does not overflow. */
-static void test_geometry_does_not_depend_on_scale(void **state)
+static void geometry_does_not_depend_on_scale(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("icosphere", 1, 0.7, 0, 0);
@@ -329,7 +329,7 @@ static bool finite_and_at_most_one(he_vec3 n)
     return he_vec3_is_finite(n) && he_vec3_length(n) < 1 + 1e-12;
 }
 
-static void test_geometry_of_extreme_coordinates_is_finite(void **state)
+static void geometry_of_extreme_coordinates_is_finite(void **state)
 {
     (void)state;
     static const double odd[] = {0,      1,      -1,     DBL_MAX, -DBL_MAX, DBL_MIN,
@@ -381,7 +381,7 @@ static void test_geometry_of_extreme_coordinates_is_finite(void **state)
 
 /* Functions for the whole mesh must give the results of those for one element; the area vector is
  * compared with the other form of Newell's sum. */
-static void test_geometry_whole_and_single_agree(void **state)
+static void geometry_of_a_whole_mesh_agrees_with_single_elements(void **state)
 {
     (void)state;
     uint64_t seed = 8;
@@ -439,7 +439,7 @@ static void test_geometry_whole_and_single_agree(void **state)
 
 /* The volume is compared with a sum of tetrahedra with a point far away; it must be negative if the
  * mesh is inside out. */
-static void test_geometry_volume(void **state)
+static void volumes_agree_with_a_sum_of_tetrahedra_and_have_a_sign(void **state)
 {
     (void)state;
     he_mesh *meshes[] = {query_shape("torus", 12, 7, 3, 1), query_shape("icosphere", 2, 2, 0, 0),
@@ -603,7 +603,7 @@ static void volume_is_of_closed_meshes_with_faces_only(void **state)
     he_mesh_free(m);
 }
 
-static void test_geometry_of_nothing_and_of_dead_rows(void **state)
+static void an_empty_mesh_and_deleted_elements_have_no_geometry(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("");
@@ -630,7 +630,7 @@ static void test_geometry_of_nothing_and_of_dead_rows(void **state)
     he_mesh_free(m);
 }
 
-static void test_geometry_ends_on_broken_links(void **state)
+static void geometry_ends_on_broken_links(void **state)
 {
     (void)state;
     uint64_t seed = 9;
@@ -673,25 +673,25 @@ static void test_geometry_ends_on_broken_links(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_geometry_of_a_cube),
-        cmocka_unit_test(test_geometry_weights_differ),
-        cmocka_unit_test(test_geometry_dihedral_has_a_sign),
+        cmocka_unit_test(a_cube_has_its_known_areas_angles_normals_and_volume),
+        cmocka_unit_test(normals_of_vertices_depend_on_their_weights),
+        cmocka_unit_test(dihedral_angles_tell_ridges_from_valleys),
         cmocka_unit_test(dihedrals_of_a_mesh_are_those_of_its_edges_one_by_one),
         cmocka_unit_test(dihedrals_measure_a_face_of_many_corners_once),
         cmocka_unit_test(dihedrals_are_refused_where_memory_is_out),
-        cmocka_unit_test(test_geometry_angle_defects_sum_to_euler),
-        cmocka_unit_test(test_geometry_degenerate_faces),
-        cmocka_unit_test(test_geometry_does_not_depend_on_scale),
-        cmocka_unit_test(test_geometry_of_extreme_coordinates_is_finite),
-        cmocka_unit_test(test_geometry_whole_and_single_agree),
-        cmocka_unit_test(test_geometry_volume),
+        cmocka_unit_test(angle_defects_sum_to_two_pi_euler),
+        cmocka_unit_test(a_degenerate_face_has_no_normal),
+        cmocka_unit_test(geometry_does_not_depend_on_scale),
+        cmocka_unit_test(geometry_of_extreme_coordinates_is_finite),
+        cmocka_unit_test(geometry_of_a_whole_mesh_agrees_with_single_elements),
+        cmocka_unit_test(volumes_agree_with_a_sum_of_tetrahedra_and_have_a_sign),
         cmocka_unit_test(a_far_vertex_does_not_change_the_area),
         cmocka_unit_test(a_far_face_without_size_does_not_change_area_and_volume),
         cmocka_unit_test(sizes_in_one_mesh_are_summed_as_far_as_a_double_reaches),
         cmocka_unit_test(a_small_face_far_from_the_origin_has_its_area),
         cmocka_unit_test(volume_is_of_closed_meshes_with_faces_only),
-        cmocka_unit_test(test_geometry_of_nothing_and_of_dead_rows),
-        cmocka_unit_test(test_geometry_ends_on_broken_links),
+        cmocka_unit_test(an_empty_mesh_and_deleted_elements_have_no_geometry),
+        cmocka_unit_test(geometry_ends_on_broken_links),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -166,7 +166,7 @@ static void try_all(const he_mesh *m)
     he_topology_clear(&t);
 }
 
-static void test_topology_agrees_with_counting(void **state)
+static void topology_agrees_with_counting(void **state)
 {
     (void)state;
     for (size_t i = 0; i <= QUERY_SPECIMENS; i++) {
@@ -179,7 +179,7 @@ static void test_topology_agrees_with_counting(void **state)
 
 /* The meshes are random squares of a grid, with holes, bow-ties, and islands that touch at
  * corners. */
-static void test_topology_agrees_on_random_holes(void **state)
+static void topology_agrees_with_counting_on_random_holes(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -205,7 +205,7 @@ static void test_topology_agrees_on_random_holes(void **state)
     }
 }
 
-static void test_topology_by_hand(void **state)
+static void known_meshes_have_the_expected_topology(void **state)
 {
     (void)state;
     static const struct {
@@ -243,7 +243,7 @@ static void test_topology_by_hand(void **state)
     }
 }
 
-static void test_topology_of_a_large_face(void **state)
+static void a_face_of_100000_corners_takes_no_quadratic_time(void **state)
 {
     (void)state;
     he_mesh *m = query_shape("cylinder", 100000, 1, 1, 1);
@@ -257,7 +257,7 @@ static void test_topology_of_a_large_face(void **state)
     he_mesh_free(m);
 }
 
-static void test_topology_ends_on_broken_links(void **state)
+static void topology_ends_on_broken_links(void **state)
 {
     (void)state;
     uint64_t seed = 4;
@@ -302,7 +302,7 @@ static void test_topology_ends_on_broken_links(void **state)
     assert_true(corrupt > 1000);
 }
 
-static void test_topology_survives_failing_memory(void **state)
+static void topology_without_memory_is_refused_and_reports_nothing(void **state)
 {
     (void)state;
     he_mesh *m = fixture_mesh("012,034,056,7890");
@@ -347,12 +347,12 @@ static void test_topology_survives_failing_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_topology_agrees_with_counting),
-        cmocka_unit_test(test_topology_agrees_on_random_holes),
-        cmocka_unit_test(test_topology_by_hand),
-        cmocka_unit_test(test_topology_of_a_large_face),
-        cmocka_unit_test(test_topology_ends_on_broken_links),
-        cmocka_unit_test(test_topology_survives_failing_memory),
+        cmocka_unit_test(topology_agrees_with_counting),
+        cmocka_unit_test(topology_agrees_with_counting_on_random_holes),
+        cmocka_unit_test(known_meshes_have_the_expected_topology),
+        cmocka_unit_test(a_face_of_100000_corners_takes_no_quadratic_time),
+        cmocka_unit_test(topology_ends_on_broken_links),
+        cmocka_unit_test(topology_without_memory_is_refused_and_reports_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,7 +30,7 @@ static he_status cross(const edit_log *h, he_replay *replay, size_t at, bool bac
     return he_replay_cross(replay, &crossing, NULL);
 }
 
-static void test_every_point_of_a_log_can_be_reached(void **state)
+static void every_point_of_a_log_can_be_reached(void **state)
 {
     (void)state;
     md_random random = {seed_of_run()};
@@ -60,7 +60,7 @@ static void test_every_point_of_a_log_can_be_reached(void **state)
 
 /* A column that was added belongs to the mesh alone while it is there: a copy made before cannot
  * get it from the delta. */
-static void test_what_the_mesh_holds_cannot_be_had_from_the_delta(void **state)
+static void a_column_that_only_the_mesh_holds_cannot_be_replayed(void **state)
 {
     (void)state;
     edit_log *h = edit_log_new(script_mesh("012,023", NULL));
@@ -78,7 +78,7 @@ static void test_what_the_mesh_holds_cannot_be_had_from_the_delta(void **state)
     edit_log_free(h);
 }
 
-static void test_every_allocation_may_fail(void **state)
+static void a_replay_without_memory_is_refused_and_keeps_the_mesh(void **state)
 {
     (void)state;
     md_random random = {7};
@@ -107,9 +107,9 @@ static void test_every_allocation_may_fail(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_point_of_a_log_can_be_reached),
-        cmocka_unit_test(test_what_the_mesh_holds_cannot_be_had_from_the_delta),
-        cmocka_unit_test(test_every_allocation_may_fail),
+        cmocka_unit_test(every_point_of_a_log_can_be_reached),
+        cmocka_unit_test(a_column_that_only_the_mesh_holds_cannot_be_replayed),
+        cmocka_unit_test(a_replay_without_memory_is_refused_and_keeps_the_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ static bool read_words(srv_config *config, const char *const *words)
 
 #define READ(config, ...) read_words(config, (const char *const[]){__VA_ARGS__, NULL})
 
-static void test_defaults(void **state)
+static void options_that_are_not_given_have_defaults(void **state)
 {
     (void)state;
     srv_config config;
@@ -48,7 +48,7 @@ static void test_defaults(void **state)
     srv_config_clear(&config);
 }
 
-static void test_flag_over_environment(void **state)
+static void options_override_the_environment(void **state)
 {
     (void)state;
     static const char *const set[] = {
@@ -74,7 +74,7 @@ static void test_flag_over_environment(void **state)
     srv_config_clear(&config);
 }
 
-static void test_numbers(void **state)
+static void numbers_take_a_unit_and_bad_ones_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -111,7 +111,7 @@ static void test_numbers(void **state)
     }
 }
 
-static void test_refusals(void **state)
+static void bad_options_are_refused_by_name(void **state)
 {
     (void)state;
     static const struct {
@@ -169,7 +169,7 @@ static void test_refusals(void **state)
     srv_config_clear(&config);
 }
 
-static void test_actions(void **state)
+static void actions_are_taken_from_the_command_line_only(void **state)
 {
     (void)state;
     srv_config config;
@@ -197,7 +197,7 @@ static void test_actions(void **state)
 
 /* The output of --print-config must be a valid file that gives the same settings; --help must name
  * every option in it. */
-static void test_print_and_help(void **state)
+static void printed_settings_read_back_the_same_and_help_names_them_all(void **state)
 {
     (void)state;
     srv_config config, again;
@@ -321,7 +321,7 @@ static void a_line_that_is_wrong_is_named(void **state)
     assert_non_null(strstr(message, "longer than the 65536 bytes"));
 }
 
-static void test_addresses(void **state)
+static void addresses_are_parsed_and_shown_or_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -390,13 +390,13 @@ static void the_format_of_the_log_outlives_a_refusal(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_flag_over_environment),
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_actions),
-        cmocka_unit_test(test_print_and_help),
-        cmocka_unit_test(test_addresses),
+        cmocka_unit_test(options_that_are_not_given_have_defaults),
+        cmocka_unit_test(options_override_the_environment),
+        cmocka_unit_test(numbers_take_a_unit_and_bad_ones_are_refused),
+        cmocka_unit_test(bad_options_are_refused_by_name),
+        cmocka_unit_test(actions_are_taken_from_the_command_line_only),
+        cmocka_unit_test(printed_settings_read_back_the_same_and_help_names_them_all),
+        cmocka_unit_test(addresses_are_parsed_and_shown_or_refused),
         cmocka_unit_test(a_file_weighs_less_than_variables_and_flags),
         cmocka_unit_test(a_line_that_is_wrong_is_named),
         cmocka_unit_test(a_choice_is_one_of_its_words),

@@ -159,7 +159,7 @@ static void headers_ask_for_memory_only_where_lines_are_joined(void **state)
     assert_null(joined);
 }
 
-static void test_hosts(void **state)
+static void hosts_are_allowed_only_if_local_or_listed(void **state)
 {
     (void)state;
     static const srv_policy policy = {.hosts = {{"mesh.example", "10.1.2.3"}, 2}};
@@ -215,7 +215,7 @@ static void test_hosts(void **state)
     assert_true(srv_policy_host(&policy, NULL, 0, &problem));
 }
 
-static void test_origins(void **state)
+static void writes_are_allowed_only_from_own_or_listed_origins(void **state)
 {
     (void)state;
     static const srv_policy policy = {.origins = {{"https://app.example", "null"}, 2}};
@@ -332,8 +332,8 @@ int main(void)
         cmocka_unit_test(a_body_is_announced_by_a_length_or_by_chunks),
         cmocka_unit_test(lines_of_a_list_are_joined_and_the_first_of_others_counts),
         cmocka_unit_test(headers_ask_for_memory_only_where_lines_are_joined),
-        cmocka_unit_test(test_hosts),
-        cmocka_unit_test(test_origins),
+        cmocka_unit_test(hosts_are_allowed_only_if_local_or_listed),
+        cmocka_unit_test(writes_are_allowed_only_from_own_or_listed_origins),
         cmocka_unit_test(the_origin_has_the_scheme_by_which_the_request_came),
         cmocka_unit_test(browsers_are_told_of_names_and_not_of_addresses_or_localhost),
     };

@@ -167,7 +167,7 @@ static void assert_held(int fd)
     }
 }
 
-static void test_answers_wait_until_durable(void **state)
+static void answers_wait_until_what_they_show_is_durable(void **state)
 {
     (void)state;
     char text[8192];
@@ -394,7 +394,7 @@ static void an_answer_that_shows_what_was_lost_is_503(void **state)
     close(listener);
 }
 
-static void test_events_wait_until_durable(void **state)
+static void events_wait_until_what_they_show_is_durable(void **state)
 {
     char text[8192];
     int writer = connect_client(), listener = connect_client(), late = connect_client();
@@ -439,7 +439,7 @@ static void test_events_wait_until_durable(void **state)
 
 /* The refusal is known before the body of the request arrives, but must be sent only when the state
  * that it shows is durable. */
-static void test_early_refusals_wait_too(void **state)
+static void early_refusals_wait_until_what_they_show_is_durable(void **state)
 {
     (void)state;
     static const char put[] = "PUT /v1/meshes/m HTTP/1.1\r\nHost: localhost\r\n"
@@ -458,7 +458,7 @@ static void test_early_refusals_wait_too(void **state)
     close(other);
 }
 
-static void test_a_stop_ends_what_waits(void **state)
+static void a_stop_answers_503_to_requests_that_wait(void **state)
 {
     char text[8192];
     int writer = connect_client();
@@ -509,7 +509,7 @@ static void open_gate(void)
     pthread_mutex_unlock(&gate);
 }
 
-static void test_full_queue_is_503(void **state)
+static void a_full_queue_is_503_and_keeps_the_connection(void **state)
 {
     (void)state;
     slow_journal_advance(&slow, UINT64_MAX);
@@ -548,7 +548,7 @@ static void hang_up(int fd)
 
 /* A client disconnects while its request is suspended to wait for the journal: a stop must not wait
  * for it. */
-static void test_a_stop_after_a_held_client_hung_up(void **state)
+static void a_stop_does_not_wait_for_a_held_client_that_hung_up(void **state)
 {
     int writer = connect_client();
     ask(writer, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}");
@@ -561,7 +561,7 @@ static void test_a_stop_after_a_held_client_hung_up(void **state)
     start(state);
 }
 
-static void test_a_stop_after_a_working_client_hung_up(void **state)
+static void a_stop_does_not_wait_for_work_of_a_client_that_hung_up(void **state)
 {
     slow_journal_advance(&slow, UINT64_MAX);
     shut_gate();
@@ -575,7 +575,7 @@ static void test_a_stop_after_a_working_client_hung_up(void **state)
 }
 
 /* If a client disconnects, the work for its request must be cancelled. */
-static void test_work_of_who_hung_up_is_given_up(void **state)
+static void work_is_cancelled_when_its_client_hangs_up(void **state)
 {
     (void)state;
     static const char large[] = "{\"shape\":\"icosphere\",\"subdivisions\":6}";
@@ -684,7 +684,7 @@ static void a_client_that_ends_with_its_request_is_answered_and_closed(void **st
     }
 }
 
-static void test_too_many_connections(void **state)
+static void too_many_connections_are_503(void **state)
 {
     (void)state;
     int fds[CONNECTIONS + 1];
@@ -711,7 +711,7 @@ static void test_too_many_connections(void **state)
 
 /* The body of a refused request is skipped if it is small, and the connection stays open; if it is
  * large or endless, the connection is closed after the refusal is sent. */
-static void test_refused_bodies(void **state)
+static void a_small_refused_body_is_skipped_and_a_large_one_cut_off(void **state)
 {
     (void)state;
     enum { LARGE = 8 << 20 };
@@ -775,22 +775,22 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
     const struct CMUnitTest tests[] = {
-        TEST(test_answers_wait_until_durable),
-        TEST(test_early_refusals_wait_too),
+        TEST(answers_wait_until_what_they_show_is_durable),
+        TEST(early_refusals_wait_until_what_they_show_is_durable),
         TEST(lists_and_absence_wait_until_durable),
         TEST(an_idle_mesh_never_waits),
         TEST(every_kind_of_answer_waits),
         TEST(an_answer_that_shows_what_was_lost_is_503),
-        TEST(test_events_wait_until_durable),
-        TEST(test_a_stop_ends_what_waits),
-        TEST(test_a_stop_after_a_held_client_hung_up),
-        TEST(test_a_stop_after_a_working_client_hung_up),
-        TEST(test_work_of_who_hung_up_is_given_up),
-        TEST(test_full_queue_is_503),
+        TEST(events_wait_until_what_they_show_is_durable),
+        TEST(a_stop_answers_503_to_requests_that_wait),
+        TEST(a_stop_does_not_wait_for_a_held_client_that_hung_up),
+        TEST(a_stop_does_not_wait_for_work_of_a_client_that_hung_up),
+        TEST(work_is_cancelled_when_its_client_hangs_up),
+        TEST(a_full_queue_is_503_and_keeps_the_connection),
         TEST(a_client_that_ends_with_its_request_is_answered_and_closed),
         TEST(a_read_beyond_its_time_is_refused_and_sent_to_a_job_if_it_can_be_one),
-        TEST(test_too_many_connections),
-        TEST(test_refused_bodies),
+        TEST(too_many_connections_are_503),
+        TEST(a_small_refused_body_is_skipped_and_a_large_one_cut_off),
         TEST(a_request_that_was_not_checked_is_not_served),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -27,7 +27,7 @@ static void note(void *context)
     pthread_mutex_unlock(&lock);
 }
 
-static void test_jobs_run_in_order_and_to_the_end(void **state)
+static void jobs_run_in_order_and_to_the_end(void **state)
 {
     (void)state;
     int numbers[JOBS];
@@ -83,7 +83,7 @@ static bool find(srv_assets *assets, const char *path, found *f)
     return asset != NULL;
 }
 
-static void test_assets(void **state)
+static void assets_are_found_by_path_but_not_hidden_files_or_links(void **state)
 {
     (void)state;
     char folder[] = "/tmp/srv-assets-XXXXXX", inner[64], path[128], message[320];
@@ -160,7 +160,7 @@ static void test_assets(void **state)
 
 #define SECONDS(n) ((uint64_t)(n)*1000000)
 
-static void test_deadlines(void **state)
+static void a_connection_is_late_after_the_limit_of_its_stage(void **state)
 {
     (void)state;
     static const srv_deadline_options o = {
@@ -192,7 +192,7 @@ static void test_deadlines(void **state)
     srv_connection_moved(NULL, 1);
 }
 
-static void test_slow_readers(void **state)
+static void a_reader_is_stuck_only_if_it_reads_too_slowly(void **state)
 {
     (void)state;
     static const srv_deadline_options o = {.grace = 5, .min_rate = 1000};
@@ -286,7 +286,7 @@ static void a_client_that_was_reset_does_not_wait(void **state)
     assert_false(srv_connection_is_left(NULL, SECONDS(200)));
 }
 
-static void test_random_ids(void **state)
+static void random_ids_are_all_different(void **state)
 {
     (void)state;
     enum { IDS = 200, LENGTH = 10 };
@@ -304,14 +304,14 @@ static void test_random_ids(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_jobs_run_in_order_and_to_the_end),
-        cmocka_unit_test(test_assets),
-        cmocka_unit_test(test_deadlines),
-        cmocka_unit_test(test_slow_readers),
+        cmocka_unit_test(jobs_run_in_order_and_to_the_end),
+        cmocka_unit_test(assets_are_found_by_path_but_not_hidden_files_or_links),
+        cmocka_unit_test(a_connection_is_late_after_the_limit_of_its_stage),
+        cmocka_unit_test(a_reader_is_stuck_only_if_it_reads_too_slowly),
         cmocka_unit_test(a_client_that_closed_its_side_waits_for_a_second),
         cmocka_unit_test(a_last_answer_fits_beside_those_not_read_yet),
         cmocka_unit_test(a_client_that_was_reset_does_not_wait),
-        cmocka_unit_test(test_random_ids),
+        cmocka_unit_test(random_ids_are_all_different),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

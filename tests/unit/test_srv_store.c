@@ -89,7 +89,7 @@ static st_status step(st_mesh *mesh, st_action which)
     return writing_step(mesh, which, 1);
 }
 
-static void test_ids(void **state)
+static void ids_are_unique_and_listed_in_order(void **state)
 {
     (void)state;
     st_mesh *a = create("b"), *b = create(NULL), *found = NULL, *list[4];
@@ -129,7 +129,7 @@ static void test_ids(void **state)
     assert_int_equal(st_store_count(store), 4);
 }
 
-static void test_removed_mesh_stays_for_its_readers(void **state)
+static void a_removed_mesh_stays_for_its_readers(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m"), *found = NULL;
@@ -145,7 +145,7 @@ static void test_removed_mesh_stays_for_its_readers(void **state)
     st_release(again);
 }
 
-static void test_too_many(void **state)
+static void too_many_meshes_are_refused(void **state)
 {
     (void)state;
     st_store_free(store);
@@ -158,7 +158,7 @@ static void test_too_many(void **state)
     st_release(mesh);
 }
 
-static void test_undo_and_redo(void **state)
+static void undo_and_redo_make_revisions_and_history_entries(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -214,7 +214,7 @@ static void test_undo_and_redo(void **state)
     st_release(mesh);
 }
 
-static void test_abort_leaves_nothing(void **state)
+static void an_aborted_write_leaves_the_mesh_as_it_was(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -240,7 +240,7 @@ static void test_abort_leaves_nothing(void **state)
     st_release(mesh);
 }
 
-static void test_barrier_and_replace_end_undo(void **state)
+static void a_barrier_and_a_replacement_end_the_undo_history(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -277,7 +277,7 @@ static void test_barrier_and_replace_end_undo(void **state)
     st_release(mesh);
 }
 
-static void test_undo_budget(void **state)
+static void the_undo_history_stays_within_its_budget(void **state)
 {
     (void)state;
     st_store_free(store);
@@ -317,7 +317,7 @@ static void test_undo_budget(void **state)
     st_release(mesh);
 }
 
-static void test_long_names_of_operations_are_cut(void **state)
+static void long_names_of_operations_are_cut(void **state)
 {
     (void)state;
     char ops[1000];
@@ -341,7 +341,7 @@ static void test_long_names_of_operations_are_cut(void **state)
     st_release(mesh);
 }
 
-static void test_snapshots(void **state)
+static void a_held_snapshot_does_not_change_and_a_new_one_is_current(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -394,7 +394,7 @@ static void test_snapshots(void **state)
     st_snapshot_release(a);
 }
 
-static void test_cache(void **state)
+static void a_cached_value_lasts_until_the_mesh_changes(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -416,7 +416,7 @@ static void test_cache(void **state)
 
 /* Each call of the store is made with each of its allocations failing in turn: it must be refused,
  * and the mesh be unchanged. */
-static void test_every_allocation_may_fail(void **state)
+static void calls_without_memory_are_refused_and_change_nothing(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -497,7 +497,7 @@ static void memory_is_short_before_it_is_full(void **state)
     open_store(BUDGET, MESHES);
 }
 
-static void test_memory_budget(void **state)
+static void memory_beyond_the_budget_is_refused_and_caches_make_room(void **state)
 {
     (void)state;
     st_store_free(store);
@@ -570,7 +570,7 @@ static void derive(st_mesh *mesh)
     }
 }
 
-static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
+static void derived_values_are_freed_by_shedding_and_with_the_mesh(void **state)
 {
     (void)state;
     atomic_store(&destroyed, 0);
@@ -591,7 +591,7 @@ static void test_what_is_derived_goes_with_shedding_and_the_mesh(void **state)
 
 /* Each revision must have its delta as long as the history keeps it; a barrier (an edit that cannot
  * be undone) ends what came before. */
-static void test_deltas_by_revision(void **state)
+static void each_revision_has_its_delta_until_a_barrier(void **state)
 {
     (void)state;
     st_mesh *mesh = create("a");
@@ -700,7 +700,7 @@ static void *come_and_go(void *context)
     return NULL;
 }
 
-static void test_threads(void **state)
+static void concurrent_readers_see_only_whole_writes(void **state)
 {
     (void)state;
     st_mesh *mesh = create("m");
@@ -736,22 +736,22 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
     const struct CMUnitTest tests[] = {
-        TEST(test_ids),
-        TEST(test_removed_mesh_stays_for_its_readers),
-        TEST(test_too_many),
-        TEST(test_undo_and_redo),
-        TEST(test_abort_leaves_nothing),
-        TEST(test_barrier_and_replace_end_undo),
-        TEST(test_undo_budget),
-        TEST(test_long_names_of_operations_are_cut),
-        TEST(test_snapshots),
-        TEST(test_cache),
-        TEST(test_every_allocation_may_fail),
+        TEST(ids_are_unique_and_listed_in_order),
+        TEST(a_removed_mesh_stays_for_its_readers),
+        TEST(too_many_meshes_are_refused),
+        TEST(undo_and_redo_make_revisions_and_history_entries),
+        TEST(an_aborted_write_leaves_the_mesh_as_it_was),
+        TEST(a_barrier_and_a_replacement_end_the_undo_history),
+        TEST(the_undo_history_stays_within_its_budget),
+        TEST(long_names_of_operations_are_cut),
+        TEST(a_held_snapshot_does_not_change_and_a_new_one_is_current),
+        TEST(a_cached_value_lasts_until_the_mesh_changes),
+        TEST(calls_without_memory_are_refused_and_change_nothing),
         TEST(memory_is_short_before_it_is_full),
-        TEST(test_memory_budget),
-        TEST(test_what_is_derived_goes_with_shedding_and_the_mesh),
-        TEST(test_deltas_by_revision),
-        TEST(test_threads),
+        TEST(memory_beyond_the_budget_is_refused_and_caches_make_room),
+        TEST(derived_values_are_freed_by_shedding_and_with_the_mesh),
+        TEST(each_revision_has_its_delta_until_a_barrier),
+        TEST(concurrent_readers_see_only_whole_writes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

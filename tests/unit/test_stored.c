@@ -80,7 +80,7 @@ static void free_all(stored_bytes *coded, he_delta **deltas)
     }
 }
 
-static void test_a_log_is_the_same_after_a_restart(void **state)
+static void a_log_is_the_same_after_a_restart(void **state)
 {
     (void)state;
     md_random random = {seed_of_run()};
@@ -103,7 +103,7 @@ static void test_a_log_is_the_same_after_a_restart(void **state)
     }
 }
 
-static void test_without_memory_nothing_is_read_and_nothing_changes(void **state)
+static void without_memory_nothing_is_read_and_nothing_changes(void **state)
 {
     (void)state;
     md_random random = {5};
@@ -270,7 +270,7 @@ static void run_clear(specimen_run *run)
     free(run->edit.bytes);
 }
 
-static void test_columns_and_contents_come_back(void **state)
+static void contents_and_edits_come_back_from_their_bytes(void **state)
 {
     (void)state;
     for (size_t i = 0; i < SPECIMENS; i++) {
@@ -299,7 +299,7 @@ static size_t golden_of(const specimen *s, unsigned char *to)
 
 /* The golden files must stay readable, and their contents must be encoded to the same bytes. This
  * does not depend on the operations. */
-static void test_golden_files_are_read_and_written_again(void **state)
+static void golden_files_are_read_and_written_again(void **state)
 {
     (void)state;
     unsigned char *bytes = malloc(GOLDEN_MOST);
@@ -399,7 +399,7 @@ static void read_damaged(const specimen_run *run, stored_bytes damaged, tally *s
     free(exact);
 }
 
-static void test_a_damaged_edit_is_refused_or_can_be_undone(void **state)
+static void a_damaged_edit_is_refused_or_can_be_undone(void **state)
 {
     (void)state;
     tally cuts = {0}, bits = {0};
@@ -422,7 +422,7 @@ static void test_a_damaged_edit_is_refused_or_can_be_undone(void **state)
            bits.other);
 }
 
-static void test_a_damaged_content_is_refused_or_another_mesh(void **state)
+static void a_damaged_content_is_refused_or_is_another_mesh(void **state)
 {
     (void)state;
     tally bits = {0};
@@ -468,7 +468,7 @@ static void expect_text(const he_error *err, he_status status, uint64_t at, cons
     assert_string_equal(err->text, text);
 }
 
-static void test_a_newer_version_is_refused_with_both(void **state)
+static void a_newer_version_is_refused_and_both_versions_are_named(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
@@ -492,7 +492,7 @@ static void test_a_newer_version_is_refused_with_both(void **state)
     run_clear(&run);
 }
 
-static void test_an_edit_names_the_change_that_does_not_fit(void **state)
+static void a_refused_edit_names_the_change_that_does_not_fit(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
@@ -514,7 +514,7 @@ static void test_an_edit_names_the_change_that_does_not_fit(void **state)
 }
 
 /* A few bytes declare counts that would need gigabytes: no memory must be allocated for them. */
-static void test_a_small_content_gets_no_large_memory(void **state)
+static void a_small_content_gets_no_large_memory(void **state)
 {
     (void)state;
     specimen_run run = run_of(&specimens[0]);
@@ -577,7 +577,7 @@ static he_status read_parts(const he_mesh *m, uint64_t less, he_mesh **out, he_e
     return status;
 }
 
-static void test_a_large_mesh_is_read_part_by_part(void **state)
+static void a_large_mesh_is_read_part_by_part(void **state)
 {
     (void)state;
     he_mesh *m = large_mesh(), *read = NULL;
@@ -602,7 +602,7 @@ static void test_a_large_mesh_is_read_part_by_part(void **state)
     free(block.bytes);
 }
 
-static void test_an_empty_mesh_has_a_content(void **state)
+static void an_empty_mesh_comes_back_from_its_bytes(void **state)
 {
     (void)state;
     he_mesh *m = he_mesh_new();
@@ -620,17 +620,17 @@ int main(int argc, char **argv)
         return write_golden_files(argv[2]);
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_log_is_the_same_after_a_restart),
-        cmocka_unit_test(test_without_memory_nothing_is_read_and_nothing_changes),
-        cmocka_unit_test(test_columns_and_contents_come_back),
-        cmocka_unit_test(test_golden_files_are_read_and_written_again),
-        cmocka_unit_test(test_a_damaged_edit_is_refused_or_can_be_undone),
-        cmocka_unit_test(test_a_damaged_content_is_refused_or_another_mesh),
-        cmocka_unit_test(test_a_newer_version_is_refused_with_both),
-        cmocka_unit_test(test_an_edit_names_the_change_that_does_not_fit),
-        cmocka_unit_test(test_a_small_content_gets_no_large_memory),
-        cmocka_unit_test(test_a_large_mesh_is_read_part_by_part),
-        cmocka_unit_test(test_an_empty_mesh_has_a_content),
+        cmocka_unit_test(a_log_is_the_same_after_a_restart),
+        cmocka_unit_test(without_memory_nothing_is_read_and_nothing_changes),
+        cmocka_unit_test(contents_and_edits_come_back_from_their_bytes),
+        cmocka_unit_test(golden_files_are_read_and_written_again),
+        cmocka_unit_test(a_damaged_edit_is_refused_or_can_be_undone),
+        cmocka_unit_test(a_damaged_content_is_refused_or_is_another_mesh),
+        cmocka_unit_test(a_newer_version_is_refused_and_both_versions_are_named),
+        cmocka_unit_test(a_refused_edit_names_the_change_that_does_not_fit),
+        cmocka_unit_test(a_small_content_gets_no_large_memory),
+        cmocka_unit_test(a_large_mesh_is_read_part_by_part),
+        cmocka_unit_test(an_empty_mesh_comes_back_from_its_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
