@@ -1,4 +1,4 @@
-// A torus of a million quads can be opened, picked in, edited and undone.
+// Tests that a torus of a million quadrilaterals can be opened, picked in, edited and undone.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -59,7 +59,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     await waitForStatistics(page, { faces: counts.faces + 3, revision: 2 });
     console.log(`note: an edit of ${counts.faces} faces: ${bytes()} bytes`);
     assert.ok(bytes() > 100 && bytes() < 65536, `${bytes()} bytes`);
-    // The last of the new faces must be where the server has it.
+    // The last of the new faces must have the members that the server says.
     const made = counts.faces + 2;
     await goTo(page, 'face', made);
     await checkInspector({ daemon, mesh, page }, 'face', made);
