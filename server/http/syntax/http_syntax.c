@@ -35,8 +35,10 @@ static const char version[] = "HTTP/1.1\r\n\r\n";
 
 enum { MAJOR = 5, MINOR = 7, VERSION_END = 8, TLS_HANDSHAKE = 0x16 };
 
-/* --- the moves: each reads from `at`, before `end`, and returns where it stopped. There the next
- *     move goes on, or the fault is. --- */
+/* --- reading one part of a request --- */
+
+/* Each of these functions reads from `at`, at most to `end`, and returns the position where it
+ * stopped: there the next function continues, or s->fault is set and the byte there is faulty. */
 
 static char *fail(srv_syntax *s, char *at, srv_fault fault)
 {
@@ -44,8 +46,8 @@ static char *fail(srv_syntax *s, char *at, srv_fault fault)
     return at;
 }
 
-/* Returns the fault for a character where a line should go on: a line feed in the wrong place is a
- * fault of its own. */
+/* Returns the fault of a character that is not allowed where it stands in a line: SRV_FAULT_BARE_LF
+ * for a line feed, `otherwise` for any other character. */
 static srv_fault line_fault(char c, srv_fault otherwise)
 {
     return c == '\n' ? SRV_FAULT_BARE_LF : otherwise;
@@ -79,7 +81,7 @@ static char *begin(srv_syntax *s, char *at)
     return at;
 }
 
-/* METHOD --> TARGET */
+/* Reads the method. State METHOD --> TARGET. */
 static char *read_method(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_token(*at); at++) {
@@ -98,7 +100,7 @@ static char *read_method(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* TARGET --> VERSION */
+/* Reads the request target. State TARGET --> VERSION. */
 static char *read_target(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_target(*at); at++) {
@@ -137,7 +139,7 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
         if (s->digits == MINOR ? !is_digit : *at != version[s->digits]) {
             return fail(s, at, line_fault(*at, SRV_FAULT_VERSION));
         }
-        s->old = *at == '0'; /* its last digit stays */
+        s->old = *at == '0'; /* decided by the last character, the minor version */
         s->digits++;
     }
     if (at == end) {
@@ -150,7 +152,7 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* FIELD --> NAME or HEAD_LF */
+/* Begins a header line, or ends the headers at an empty line. State FIELD --> NAME or HEAD_LF. */
 static char *begin_field(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -181,7 +183,8 @@ static bool is_named(const srv_syntax *s, const char *name)
     return s->text_length == strlen(name) && memcmp(s->text, name, s->text_length) == 0;
 }
 
-/* Identifies the header at its colon. Returns false if it must not appear again. */
+/* Called at the colon after the name of a header: sets s->field. Returns false if the header may
+ * occur only once and has occurred before. */
 static bool choose_field(srv_syntax *s)
 {
     s->field = OTHER;
@@ -203,14 +206,15 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
-/* Returns how far headers may be read: to the end of these bytes, or to the limit for headers. */
+/* Returns the position up to which a header may be read: the end of the bytes that have arrived, or
+ * the limit for the bytes of all headers. */
 static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
 {
     size_t room = s->limit > s->head ? s->limit - s->head : 0;
     return (size_t)(end - at) > room ? at + room : end;
 }
 
-/* NAME --> VALUE */
+/* Reads the name of a header. State NAME --> VALUE. */
 static char *read_name(srv_syntax *s, char *at, const char *end)
 {
     static const char cookie[] = "cookie";
@@ -262,8 +266,8 @@ static srv_fault add_host(const srv_syntax *s, char c)
     return srv_is_host(c) && s->phase != AFTER ? SRV_FAULT_NONE : SRV_FAULT_HOST;
 }
 
-/* Collects the names of transfer codings, with one blank in place of several. A text that does not
- * fit into the buffer is certainly not "chunked". */
+/* Appends a character to the value of Transfer-Encoding in s->text, with one blank in place of
+ * several. A value that does not fit into s->text is cut; it is certainly not "chunked". */
 static srv_fault add_coding(srv_syntax *s, char c)
 {
     if (s->phase == AFTER && s->text_length < SRV_SYNTAX_TEXT) {
@@ -292,8 +296,9 @@ static srv_fault add_character(srv_syntax *s, char c)
     return SRV_FAULT_NONE;
 }
 
-/* Returns the fault of a list of transfer codings (RFC 9112, 6.1 and 6.3). A coding before chunked
- * is not supported. If chunked is not last, or is given twice, the end of the body is unknown. */
+/* Returns the fault of the value of Transfer-Encoding (RFC 9112, 6.1 and 6.3). Codings before
+ * "chunked" are not supported. If "chunked" is not the last coding or occurs twice, the end of the
+ * body is unknown. */
 static srv_fault coding_fault(const srv_syntax *s)
 {
     static const char chunked[] = "chunked";
@@ -315,7 +320,7 @@ static srv_fault coding_fault(const srv_syntax *s)
     return is_last ? SRV_FAULT_OTHER_CODING : SRV_FAULT_CODING;
 }
 
-/* Reads the value of a header that is checked, up to its CR. */
+/* Reads the value of Host, Content-Length or Transfer-Encoding, which is checked, up to the CR. */
 static char *read_known_value(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -337,7 +342,7 @@ static char *read_known_value(srv_syntax *s, char *at, const char *end)
     return at;
 }
 
-/* Reads the value of any other header, up to its CR. */
+/* Reads the value of any other header, up to the CR. */
 static char *read_other_value(srv_syntax *s, char *at, const char *end)
 {
     const char *stop = stop_of(s, at, end);
@@ -350,7 +355,7 @@ static char *read_other_value(srv_syntax *s, char *at, const char *end)
     return full ? fail(s, at, SRV_FAULT_LARGE_HEAD) : at;
 }
 
-/* VALUE --> VALUE_LF */
+/* Reads the value of a header. State VALUE --> VALUE_LF. */
 static char *read_value(srv_syntax *s, char *at, const char *end)
 {
     bool known = s->field == HOST || s->field == LENGTH || s->field == CODING;
@@ -410,7 +415,7 @@ static char *end_head(srv_syntax *s, char *at)
     return at + 1;
 }
 
-/* Passes data of a body on. State BODY or CHUNK_DATA --> `next`. */
+/* Skips data of a body, which need no check. State BODY or CHUNK_DATA --> `next`. */
 static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
 {
     uint64_t here = (uint64_t)(end - at);
@@ -453,8 +458,8 @@ static char *read_size(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the extensions of a chunk. State CHUNK_EXTENSION --> CHUNK_LF. The phase is BEFORE up to
- * the first semicolon. */
+/* Reads the extensions of a chunk. State CHUNK_EXTENSION --> CHUNK_LF. s->phase is BEFORE until the
+ * first semicolon was read. */
 static char *read_extension(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -484,7 +489,8 @@ static char *read_extension(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Ends the line with a chunk's size. State CHUNK_LF --> CHUNK_DATA, or FIELD of the trailers. */
+/* Ends the line with the size of a chunk. State CHUNK_LF --> CHUNK_DATA, or FIELD if the size is 0,
+ * which is followed by trailers. */
 static char *end_size(srv_syntax *s, char *at)
 {
     s->trailers = s->left == 0;
@@ -546,9 +552,9 @@ static char *move(srv_syntax *s, char *at, const char *end)
 
 /* --- faults --- */
 
-/* Returns the bytes that end a faulty request for libmicrohttpd (rule S3). If a chunk was
- * announced, one byte of data follows: more would make libmicrohttpd wait, and with the first byte
- * it calls the handler. */
+/* Returns the bytes that libmicrohttpd gets in place of the rest of a faulty request (rule S3). If
+ * the size of a chunk was read, they include one byte of data, with which libmicrohttpd calls the
+ * handler. */
 static const char *ending_of(const srv_syntax *s)
 {
     switch ((state)s->state) {
@@ -563,7 +569,7 @@ static const char *ending_of(const srv_syntax *s)
     case VERSION:
         return version + s->digits;
     case NAME:
-        return "-: \r\n\r\n"; /* a name without a meaning */
+        return "-: \r\n\r\n"; /* makes the name one that means nothing */
     case VALUE:
         return s->field == LENGTH && s->phase == BEFORE ? "0\r\n\r\n" : "\r\n\r\n";
     case LINE_LF:
