@@ -184,7 +184,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         {MHD_OPTION_END, 0, NULL},
     };
     struct MHD_OptionItem *last = numbers + sizeof numbers / sizeof *numbers - 3;
-    if (o->workers > 1) { /* the library does not accept a pool of one */
+    if (o->workers > 1) { /* libmicrohttpd does not accept a pool of one thread */
         *last++ = (struct MHD_OptionItem){MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)o->workers, NULL};
     }
     if (o->listening >= 0) {
@@ -195,7 +195,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         MHD_OPTION_SOCK_ADDR, &o->address.socket.any, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes,
         NULL, MHD_OPTION_URI_LOG_CALLBACK, request_begin, http, MHD_OPTION_NOTIFY_COMPLETED,
         request_completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http,
-        /* These options come last, because without TLS the list ends here. */
+        /* The options for TLS come last, because without TLS the list ends here. */
         tls ? MHD_OPTION_HTTPS_CERT_CALLBACK2 : MHD_OPTION_END, show_certificate,
         MHD_OPTION_HTTPS_PRIORITIES, srv_tls_priorities, MHD_OPTION_END);
 }

@@ -33,7 +33,7 @@ typedef struct srv_http_options {
     size_t max_sockets; /* connections above deadlines.max_connections, up to this, get a 503 */
     size_t address_connections; /* maximum of connections per address; 0: no limit */
     size_t workers;             /* number of worker threads, at least 1 */
-    uint64_t read_seconds;      /* maximum duration of reads that the client waits for */
+    uint64_t read_seconds;      /* longest time for a read while its client waits */
     uint64_t heartbeat_micros;  /* time without an event after which a stream sends a comment */
 } srv_http_options;
 

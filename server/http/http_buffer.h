@@ -7,15 +7,17 @@
  * defines mmap(), munmap() and epoll_wait() for the whole program. The dynamic linker binds
  * libmicrohttpd's calls to these definitions, as it does for a replaced malloc().
  *
- *   B1  An mmap() of exactly SRV_BUFFER_BYTES, rounded up to pages, takes a buffer from one
- * reserved range, and munmap() of a buffer puts it back; both save the system call. All other calls
- * go to the system unchanged. B2  A worker that is about to wait in epoll_wait() returns the pages
- * of those of its connections that have been idle for a second (at once when memory is full). It
- * does this for a few connections each time, so that its clients need not wait. It is the only
- * thread that reads and writes these pages. B3  Only pages that are all zeros are returned. When
- * libmicrohttpd uses such a page again, the system provides a page of zeros, so that the library
- * cannot notice. B4  st_memory_count counts what a buffer occupies: during a request all of it, and
- * while the connection is idle the pages that were not returned. */
+ *   B1  An mmap() of exactly SRV_BUFFER_BYTES, rounded up to pages, takes a buffer from a reserved
+ *       range, and munmap() of a buffer puts it back; both save the system call. All other calls go
+ *       to the system unchanged.
+ *   B2  A worker that is about to wait in epoll_wait() returns the pages of those connections of
+ *       its own that have been idle for a second (at once when memory is full). It does this for a
+ *       few connections each time, so that its clients need not wait. It is the only thread that
+ *       reads and writes these pages.
+ *   B3  Only pages that are all zeros are returned. When libmicrohttpd uses such a page again, the
+ *       system provides a page of zeros, so that the library cannot notice.
+ *   B4  st_memory_count counts what a buffer occupies: during a request all of it, and while the
+ *       connection is idle the pages that were not returned. */
 #ifndef HE_SERVER_HTTP_HTTP_BUFFER_H
 #define HE_SERVER_HTTP_HTTP_BUFFER_H
 

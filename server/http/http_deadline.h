@@ -82,32 +82,32 @@ typedef struct srv_connection {
     struct srv_connection *next, *previous;
     int socket;
     _Atomic int stage;
-    _Atomic uint64_t since;   /* start of the stage, microseconds of the monotonic clock */
+    _Atomic uint64_t since;   /* when the stage began, in microseconds of the monotonic clock */
     _Atomic uint64_t bytes;   /* bytes received in this stage */
     bool drain;               /* whether the connection is to be drained when it is closed */
     gnutls_session_t session; /* NULL if the connection does not use TLS */
-    api_metrics *metrics;     /* count its handshake; NULL: not counted */
+    api_metrics *metrics;     /* count the handshake; NULL: not counted */
     srv_certificates *certificates;
-    srv_certificate *certificate; /* the one shown in the handshake, by reference; NULL before */
-    bool is_proxy;                /* whether it comes from a trusted proxy: proxy.h */
+    srv_certificate *certificate; /* reference to what the handshake shows; NULL before it */
+    bool is_proxy;                /* whether the peer is a trusted proxy: proxy.h */
     api_rate_key client;          /* key of the peer's address, by srv_address_key */
-    uint32_t of_peer;             /* what srv_peers_enter returned for it */
-    _Atomic bool beyond;          /* its address already had the maximum of connections */
-    uint32_t buffer;              /* number of its buffer in http_buffer.h */
+    uint32_t of_peer;             /* what srv_peers_enter returned for the connection */
+    _Atomic bool beyond;          /* the peer's address has more connections than allowed */
+    uint32_t buffer;              /* number of the connection's buffer in http_buffer.h */
     /* The members from here on are used by the worker only. */
     srv_syntax syntax;
-    uint64_t requests;   /* number of requests that libmicrohttpd has begun on it */
+    uint64_t requests;   /* number of requests of the connection that libmicrohttpd has begun */
     bool widened;        /* the socket has SRV_SEND_BUFFER rather than SRV_FIRST_SEND_BUFFER */
     bool tells_end;      /* the kernel reports with each read whether there is more: http_recv.h */
     bool may_have_ended; /* the client's stream may have ended after the bytes of the last read */
-    bool counts_sent;    /* bytes sent are counted, because a Unix socket does not report them */
+    bool counts_sent;    /* `sent` is used, because a Unix socket does not report bytes sent */
     _Atomic uint64_t sent; /* bytes sent, if they are counted; the thread reads it, too */
     /* The members from here on are used by the thread only, except `peer`. */
-    uint64_t acked;                /* the most bytes found acknowledged so far */
+    uint64_t acked;                /* number of bytes that the client had received when checked */
     uint64_t window, window_acked; /* time and `acked` when measuring the rate began; 0: not yet */
     uint64_t taken;  /* `since` of an IDLE stage in which all of the answer was read; 0: none */
     uint64_t kept;   /* bytes in the kernel's buffer at the last check */
-    bool late;       /* whether it was counted as closed for being too slow */
+    bool late;       /* whether the connection was counted as closed for being too slow */
     uint64_t closed; /* `since` of the stage in which the client closed its side; 0: none */
     uint64_t closed_bytes;       /* `bytes` when `closed` was set */
     char peer[SRV_ADDRESS_TEXT]; /* the peer's address, without a port */

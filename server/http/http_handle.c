@@ -12,7 +12,7 @@
 #include <strings.h>
 
 enum {
-    SWALLOW = 256 * 1024, /* most bytes of a refused body that are skipped to keep a connection */
+    SWALLOW = 256 * 1024, /* if more of a refused body is to come, the connection is closed */
     WORKER_MICROS = 20000 /* time for a read on a worker, before the read moves to the pool */
 };
 

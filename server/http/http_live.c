@@ -251,8 +251,8 @@ int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
     return got;
 }
 
-/* Leaves a stream to the thread until there is something to send. If the source has called wake
- * while the worker read from the stream, the stream is resumed at once. */
+/* Leaves a stream to the thread of this module until there is something to send. If the source has
+ * called wake while the worker read from the stream, the stream is resumed at once. */
 void srv_live_aside(srv_stream *stream)
 {
     srv_live *live = stream->live;

@@ -4,8 +4,8 @@
  * A stream belongs to the worker (PULLED) while the worker reads events from its source and sends
  * them. When the source has nothing to send, the worker suspends the connection and puts the stream
  * aside (ASIDE). From then on the stream belongs to this module, whose thread has the connection
- * resumed, exactly once: when the source calls wake, when nothing was sent for the time of a
- * heartbeat, when the client has closed its side, or when the server stops.
+ * resumed, exactly once: when the source calls wake, when a heartbeat is due because nothing was
+ * sent for some time, when the client has closed its side, or when the server stops.
  *
  *     PULLED --srv_live_read returns API_READ_WAIT, then srv_live_aside--> ASIDE
  *       ^                                                                    |

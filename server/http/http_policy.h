@@ -3,10 +3,11 @@
  * Configured names are those of --allow-host, configured origins those of --allow-origin.
  *
  * P1  The header Host must name localhost, a loopback address or a configured name, with any port;
- *     otherwise the answer is 421. So a page whose own name resolves to 127.0.0.1 (DNS rebinding)
- * is refused. P2  If a write has the header Origin, its value must be this server's own origin
- * (http or https, and the host and port of Host) or a configured origin; otherwise, and always for
- * `null`, the answer is 403. Requests with two Origin headers are refused before, by http_syntax.h.
+ *     otherwise the answer is 421. So a page whose own name resolves to 127.0.0.1 (DNS
+ *     rebinding) is refused.
+ * P2  If a write has the header Origin, its value must be this server's own origin (http or https,
+ *     and the host and port of Host) or a configured origin; otherwise, and always for `null`, the
+ *     answer is 403. Requests with two Origin headers are refused before, by http_syntax.h.
  * P3  A write whose header Sec-Fetch-Site is cross-site is answered 403, unless its Origin is a
  *     configured one. A write whose Sec-Fetch-Site is same-site and that has no Origin is answered
  *     403, too: a page on another port or subdomain sent it, and it is unknown which. Reads that
@@ -17,7 +18,7 @@
  *     unknown, as behind a proxy that is not trusted, the origins of both schemes count as the
  *     server's own.
  * P6  If a request came over TLS and its Host is a configured name, the answer tells browsers to
- * use only TLS from now on (RFC 6797). It does not for localhost, because other servers on that
+ *     use only TLS from now on (RFC 6797). It does not for localhost, because other servers on that
  *     machine may speak HTTP, nor for addresses, for which browsers ignore the header. */
 #ifndef HE_SERVER_HTTP_HTTP_POLICY_H
 #define HE_SERVER_HTTP_HTTP_POLICY_H

@@ -26,7 +26,7 @@
  *       read (TCP_INQ), and counts the end of the stream as more. Over TLS libmicrohttpd itself
  *       reads until there is no more, and finds the end.
  *   R6  A connection enters SRV_STAGE_HEAD with the first byte of a request. A TLS connection
- * enters SRV_STAGE_IDLE when bytes are first read from it, which libmicrohttpd does after the
+ *       enters SRV_STAGE_IDLE when bytes are first read from it, which libmicrohttpd does after the
  *       handshake.
  *
  * The module also defines send() and sendmsg(), which make the system call and count the bytes:

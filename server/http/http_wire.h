@@ -24,7 +24,7 @@ typedef struct srv_wire {
 } srv_wire;
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value);
-/* Fills `wire` with an answer of api. */
+/* Fills `wire` with the answer of an exchange (api/request/api.h). */
 void srv_wire_answer(srv_wire *wire, const api_answer *answer);
 /* Fills `wire` with a problem that was found outside of api. The problem is written as JSON into
  * `text`, which `wire` then borrows. If `problem` is NULL, the answer is 204 without a body. */

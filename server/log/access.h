@@ -33,7 +33,7 @@ typedef enum srv_part {
 /* What is logged about one request. The query of its URL is not logged, because it may contain a
  * ticket, which grants access, or private data. */
 typedef struct srv_access {
-    double time; /* when it ended, in seconds since 1970 */
+    double time; /* when the request ended, in seconds since 1970 */
     char request_id[SRV_REQUEST_ID + 1];
     char method[SRV_METHOD + 1];
     char path[SRV_LOG_PATH];      /* as the client sent it; truncated if long */

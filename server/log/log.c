@@ -44,7 +44,7 @@ struct srv_log {
     size_t capacity, first, count;
     uint64_t dropped; /* dropped lines that no line in the log has reported yet */
     _Atomic uint64_t all_dropped;
-    int waited; /* polls without success since `ending` is true; used by the log's thread only */
+    int waited; /* polls in vain since `ending` became true; used by the log's thread only */
     pthread_t thread;
 };
 

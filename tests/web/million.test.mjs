@@ -45,7 +45,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     assert.ok(isChosen(canvas.colour(width / 2, height / 2)));
     assert.ok(canvas.countOf(isChosen) > 1000);
 
-    // After an edit the page must fetch only what the edit changed, and the statistics.
+    // After an edit the page must fetch only the changed parts of the arrays, and the statistics.
     const bytes = await countBytes(page);
     const whole = [];
     page.on('request', (request) => {

@@ -301,8 +301,8 @@ export function edit(mesh, operation, revision, work = null) {
     return postJson(`${meshPath(mesh)}/edits`, body, work);
 }
 
-// Returns what an edit of the present mesh would do, without changing anything; null if that takes
-// long.
+// Returns what an edit of the present mesh would change, without changing anything; null if the
+// server needs long to find out.
 export async function tryEdit(mesh, operation, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',

@@ -77,8 +77,8 @@ export class Direct {
         }
     }
 
-    // Called when the mesh has changed: a selected tool, and a drag with it, go on with the changed
-    // mesh and the present selection. Cancels a tool that no longer fits the selection.
+    // Called when the mesh has changed. A selected tool stays selected, and a drag continues on the
+    // changed mesh; but if the tool no longer fits the selection, it is cancelled.
     refresh() {
         const gesture = this.#gesture && this.#acts.begin(this.#tool);
         if (gesture === null) {

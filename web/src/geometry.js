@@ -182,8 +182,8 @@ function firstsOf(triangles, count) {
     return firstOf;
 }
 
-// Updates `firstOf` after some triangles were written; `places` are their indices in ascending
-// order.
+// Updates geometry.firstOf after some triangles of the array were written; `places` are the indices
+// of these triangles in ascending order.
 export function findFaces(geometry, places) {
     const { triangles, triangleCount } = geometry;
     let done = -1; // index of the last triangle processed

@@ -17,8 +17,8 @@ import {
     readField,
 } from './fields.js';
 
-// Functions by kind of element, which return the ids of elements of this kind that a selected
-// element of another kind refers to.
+// By kind of element: the function that returns the ids of those elements of this kind to which a
+// selected element of another kind refers.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
     edge: (element) => (element.edge === undefined ? [] : [element.edge]),

@@ -29,7 +29,7 @@ typedef struct srv_framing {
     const char *path; /* points into the target, up to '?' or the end */
     size_t path_length;
     const char *query;     /* points into the target, or to "" if there is no query */
-    const char *authority; /* that of a target with a scheme, overriding Host; NULL if none */
+    const char *authority; /* host and port in a target like http://HOST/PATH; NULL if none */
     size_t authority_length;
     const char *host; /* the value of the header Host, NULL if absent */
     bool chunked;

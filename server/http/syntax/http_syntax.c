@@ -62,7 +62,7 @@ static char *read_lf(srv_syntax *s, char *at, state next)
     return at + 1;
 }
 
-/* Begins a request. State START --> METHOD or START_LF. */
+/* Begins a request. The state changes from START to METHOD or START_LF. */
 static char *begin(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -81,7 +81,7 @@ static char *begin(srv_syntax *s, char *at)
     return at;
 }
 
-/* Reads the method. State METHOD --> TARGET. */
+/* Reads the method. The state changes from METHOD to TARGET. */
 static char *read_method(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_token(*at); at++) {
@@ -100,7 +100,7 @@ static char *read_method(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the request target. State TARGET --> VERSION. */
+/* Reads the request target. The state changes from TARGET to VERSION. */
 static char *read_target(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_target(*at); at++) {
@@ -128,7 +128,8 @@ static char *read_target(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the version. State VERSION --> LINE_LF. `digits` counts the characters of "HTTP/1.1". */
+/* Reads the version. The state changes from VERSION to LINE_LF. `digits` counts the characters of
+ * "HTTP/1.1". */
 static char *read_version(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && s->digits < VERSION_END; at++) {
@@ -152,7 +153,8 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Begins a header line, or ends the headers at an empty line. State FIELD --> NAME or HEAD_LF. */
+/* Begins a header line, or ends the headers at an empty line. The state changes from FIELD to NAME
+ * or HEAD_LF. */
 static char *begin_field(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -214,7 +216,7 @@ static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
     return (size_t)(end - at) > room ? at + room : end;
 }
 
-/* Reads the name of a header. State NAME --> VALUE. */
+/* Reads the name of a header. The state changes from NAME to VALUE. */
 static char *read_name(srv_syntax *s, char *at, const char *end)
 {
     static const char cookie[] = "cookie";
@@ -355,7 +357,7 @@ static char *read_other_value(srv_syntax *s, char *at, const char *end)
     return full ? fail(s, at, SRV_FAULT_LARGE_HEAD) : at;
 }
 
-/* Reads the value of a header. State VALUE --> VALUE_LF. */
+/* Reads the value of a header. The state changes from VALUE to VALUE_LF. */
 static char *read_value(srv_syntax *s, char *at, const char *end)
 {
     bool known = s->field == HOST || s->field == LENGTH || s->field == CODING;
@@ -394,7 +396,8 @@ static srv_fault head_fault(const srv_syntax *s)
     return !has(s, HOST) && !s->old ? SRV_FAULT_NO_HOST : SRV_FAULT_NONE;
 }
 
-/* Ends the headers. State HEAD_LF --> BODY, CHUNK_SIZE, or START of the next request. */
+/* Ends the headers. The state changes from HEAD_LF to BODY, CHUNK_SIZE, or START of the next
+ * request. */
 static char *end_head(srv_syntax *s, char *at)
 {
     srv_fault fault = s->trailers ? SRV_FAULT_NONE : head_fault(s);
@@ -415,7 +418,8 @@ static char *end_head(srv_syntax *s, char *at)
     return at + 1;
 }
 
-/* Skips data of a body, which need no check. State BODY or CHUNK_DATA --> `next`. */
+/* Skips data of a body, which need no check. The state changes from BODY or CHUNK_DATA to `next`.
+ */
 static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
 {
     uint64_t here = (uint64_t)(end - at);
@@ -429,7 +433,7 @@ static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
     return at;
 }
 
-/* Reads the size of a chunk. State CHUNK_SIZE --> CHUNK_EXTENSION or CHUNK_LF. */
+/* Reads the size of a chunk. The state changes from CHUNK_SIZE to CHUNK_EXTENSION or CHUNK_LF. */
 static char *read_size(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_hexadecimal(*at) >= 0; at++) {
@@ -458,8 +462,8 @@ static char *read_size(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the extensions of a chunk. State CHUNK_EXTENSION --> CHUNK_LF. s->phase is BEFORE until the
- * first semicolon was read. */
+/* Reads the extensions of a chunk. The state changes from CHUNK_EXTENSION to CHUNK_LF. s->phase is
+ * BEFORE until the first semicolon was read. */
 static char *read_extension(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -489,8 +493,8 @@ static char *read_extension(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Ends the line with the size of a chunk. State CHUNK_LF --> CHUNK_DATA, or FIELD if the size is 0,
- * which is followed by trailers. */
+/* Ends the line with the size of a chunk. The state changes from CHUNK_LF to CHUNK_DATA, or FIELD
+ * if the size is 0, which is followed by trailers. */
 static char *end_size(srv_syntax *s, char *at)
 {
     s->trailers = s->left == 0;
@@ -498,7 +502,7 @@ static char *end_size(srv_syntax *s, char *at)
     return read_lf(s, at, s->trailers ? FIELD : CHUNK_DATA);
 }
 
-/* Ends the data of a chunk. State CHUNK_END --> CHUNK_END_LF. */
+/* Ends the data of a chunk. The state changes from CHUNK_END to CHUNK_END_LF. */
 static char *end_chunk(srv_syntax *s, char *at)
 {
     if (*at != '\r') {
@@ -569,7 +573,7 @@ static const char *ending_of(const srv_syntax *s)
     case VERSION:
         return version + s->digits;
     case NAME:
-        return "-: \r\n\r\n"; /* makes the name one that means nothing */
+        return "-: \r\n\r\n"; /* the '-' makes the name one that no known header has */
     case VALUE:
         return s->field == LENGTH && s->phase == BEFORE ? "0\r\n\r\n" : "\r\n\r\n";
     case LINE_LF:

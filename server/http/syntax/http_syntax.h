@@ -51,8 +51,9 @@
  *   F3  Header names are tokens, followed at once by a colon. Values have no control character
  *       except tab. No header continues on a second line.
  *   F4  There are at most SRV_MAX_FIELDS headers, with at most SRV_MAX_HEAD bytes, including
- *       trailers; headers and target together fit into libmicrohttpd's buffer, SRV_MAX_POOLED
- * (431). F5  Authorization, Content-Length, Host, Transfer-Encoding and Origin appear at most once.
+ *       trailers; headers and target together fit into SRV_MAX_POOLED bytes of libmicrohttpd's
+ *       buffer (otherwise: 431).
+ *   F5  Authorization, Content-Length, Host, Transfer-Encoding and Origin appear at most once.
  *   F6  Content-Length consists of digits, below 2^63 (413). Transfer-Encoding is chunked (gzip and
  *       others before chunked: 501), in HTTP/1.1, without Content-Length.
  *   F7  A request of HTTP/1.1 has a header Host. Its value has only characters of hosts and ports.
