@@ -15,7 +15,7 @@
 
 enum {
     GATHER_MILLIS = 20, /* longest time that the line of a request waits for others */
-    BATCH = 16,         /* entries that are formatted and then written together */
+    BATCH = 16,         /* most entries that are formatted and then written together */
     POLL_MILLIS = 100,
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,

@@ -22,7 +22,7 @@ typedef struct srv_timing {
 /* Begins the measurement at `now`, with the part SRV_PART_RECEIVE. */
 void srv_timing_begin(srv_timing *timing, uint64_t now);
 void srv_timing_enter(srv_timing *timing, srv_part part);
-/* Ends the measurement at `now`; the last interval belongs to the present part. */
+/* Ends the measurement at `now`; the time since the last call counts for the present part. */
 void srv_timing_end(srv_timing *timing, uint64_t now);
 
 #endif

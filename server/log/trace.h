@@ -30,7 +30,7 @@ typedef struct srv_trace {
     char answered[SRV_TRACEPARENT + 1]; /* the value of traceparent in the answer */
 } srv_trace;
 
-/* A generator of span ids: it starts at a random place, and never repeats an id. */
+/* A generator of span ids: it starts from a random number, and never repeats an id. */
 typedef struct srv_spans {
     uint64_t seed;
     _Atomic uint64_t next;

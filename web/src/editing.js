@@ -215,7 +215,7 @@ export class Editing {
         }
     }
 
-    // Called to stop waiting for the click that is to fill a field of the form.
+    // If a field of the form waits for a click, ends the wait.
     stopPicking() {
         this.#tools.disarm();
     }

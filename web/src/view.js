@@ -80,8 +80,7 @@ function toScreen(clip, width, height) {
     ];
 }
 
-// The least distance from the plane through the camera that a point must have in front of it to be
-// on the screen.
+// A point is on the screen only if it is at least this far in front of the camera.
 const NEAREST = 1e-6;
 
 // Returns the distance in pixels from (x, y) to a point; Infinity if it is behind the camera.
