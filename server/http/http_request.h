@@ -90,7 +90,7 @@ typedef struct srv_request {
     api_rate_fields rate_fields; /* the fields of an exchange that was replaced by the refusal */
     bool preflight;              /* whether it is a CORS preflight request */
     st_wait hold;                /* the wait for durability in the state HELD */
-    uint64_t work_until;         /* microseconds of the monotonic clock; UINT64_MAX: no limit */
+    uint64_t work_until; /* when the work must end, by st_clock_micros; UINT64_MAX: no limit */
     srv_stream stream;
     srv_ahead ahead;
     size_t block; /* bytes that libmicrohttpd allocated to send a download; 0: none */
