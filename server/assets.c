@@ -73,7 +73,8 @@ static bool carries_hash(const char *name)
            strspn(dash + 1, "abcdef0123456789") >= length;
 }
 
-/* Adds a file. Returns false when memory is out. */
+/* Adds a file of the page: its bytes are served under `path`, its media type follows from `name`.
+ * Returns false when memory is out. */
 static bool add(srv_assets *assets, const char *path, const char *name, const char *bytes,
                 size_t length)
 {
@@ -106,7 +107,8 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
-/* Reads a file of the page into memory. Skips it if it is not a regular file. */
+/* Reads a file of the page into memory and adds it, or skips it if it is not a regular file.
+ * Returns false, with a sentence in `message`, if the file cannot be added. */
 static bool add_file(srv_assets *assets, int folder, const char *name, const char *prefix,
                      char *message, size_t size)
 {
@@ -138,7 +140,7 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     return ok;
 }
 
-/* Adds an HTML page, which is served under a name without a suffix. */
+/* Adds an HTML file, which is served under `path`, without the suffix .html. */
 static bool add_page(srv_assets *assets, int folder, const char *name, const char *path,
                      char *message, size_t size)
 {

@@ -8,15 +8,17 @@
 
 #include <stdatomic.h>
 
-/* The backups of a daemon, of which only one exists at a time. */
+/* What backups share. Only one backup exists at a time, and `taken` is true while it does. */
 typedef struct srv_backups {
-    const char *folder; /* of the store */
+    const char *folder; /* folder of the store */
     _Atomic bool taken;
 } srv_backups;
 
-/* Makes a backup, as the `backup` of api_options; `context` is an srv_backups, which outlives the
- * blob. The file is made in the store's folder, where space is most likely, and unlinked when it is
- * complete, so that it disappears with the blob or with the process. */
+/* Makes a backup; the function is the `backup` of api_options. `context` is an srv_backups, which
+ * must outlive the blob. The file is made in the store's folder, where free space is most likely.
+ * It is unlinked when it is complete, so that its space is freed with the blob, or when the process
+ * ends. Returns ST_BUSY while another backup exists, and ST_FAILED, with a sentence in `message`,
+ * if the backup could not be made. */
 st_status srv_backup_make(void *context, api_blob *out, char *message, size_t size);
 
 #endif

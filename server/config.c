@@ -243,8 +243,8 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
     return false;
 }
 
-/* Finds the index of a word that an option allows. The words are separated by '|' in the
- * placeholder that --help shows. */
+/* Finds the index of a word that an option allows. The words are those of the option's placeholder
+ * in --help, separated by '|'. */
 bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out)
 {
     const size_t length = strlen(text);
@@ -290,7 +290,8 @@ bool srv_option_is_switch(const srv_option *row)
     return row->kind == SRV_FLAG || row->kind == SRV_ACTION;
 }
 
-/* The first item of a list from one source replaces the items of a source that it overrides. */
+/* Prepares an option for a value of the present source: before the first item of a list, the items
+ * of the sources that the present one overrides are removed. */
 static void begin_list(srv_config *config, const srv_option *row, bool *seen)
 {
     size_t i = (size_t)(row - srv_options);
@@ -328,7 +329,8 @@ static bool read_environment(srv_config *config, char *(*environment)(const char
     return true;
 }
 
-/* Returns the long form of an argument: it accepts "-h" and "-V", which are customary. */
+/* Returns the long form of "-h" and "-V", which are the only short options, and any other argument
+ * unchanged. */
 static const char *spelled_out(const char *argument)
 {
     return strcmp(argument, "-h") == 0   ? "--help"
@@ -478,8 +480,8 @@ static bool read_places(srv_config *config, const char *file, int argc, char *co
            read_flags(config, argc, argv, message, size);
 }
 
-/* Reads the configuration. Flags and environment are read twice: first because they name the file,
- * and again because they override it. */
+/* Reads the configuration. Flags and environment are read twice: once because they name the
+ * configuration file, and once after the file, because they override it. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size)
 {

@@ -1,4 +1,4 @@
-/* config.h - the settings of the daemon: THE table of options.
+/* config.h - the settings of the daemon, which are read by the one table of all options.
  *
  * A flag overrides its environment variable, which overrides a line of the configuration file,
  * which overrides the default. --help, --print-config and parsing are driven by one row per option;
@@ -16,8 +16,8 @@
 /* The largest total number of times that all list options together may be given. */
 enum { SRV_MAX_LISTS = 3 * SRV_MAX_NAMES };
 
-/* The values of options that are one of several words, in the order in which the options' rows name
- * them.
+/* The values of --log and --log-format, in the order in which the rows of these options name the
+ * words.
  *
  * SRV_LOG_AUTO logs requests unless stderr is a terminal, where the lines would bury more important
  * ones. SRV_FORMAT_AUTO is text on a terminal and JSON elsewhere. */
@@ -25,14 +25,14 @@ typedef enum srv_log_kind { SRV_LOG_AUTO, SRV_LOG_ACCESS, SRV_LOG_OFF } srv_log_
 typedef enum srv_log_format { SRV_FORMAT_AUTO, SRV_FORMAT_TEXT, SRV_FORMAT_JSON } srv_log_format;
 
 typedef struct srv_config {
-    const char *config; /* a file; "": none */
+    const char *config; /* the configuration file; "" if there is none */
     const char *listen;
     bool insecure;
-    const char *tokens;             /* a file; "": requests need no token */
-    const char *tls_cert, *tls_key; /* files; both "": plain HTTP */
+    const char *tokens;             /* the file of tokens; "" if requests need no token */
+    const char *tls_cert, *tls_key; /* files; both are "" if the daemon uses no TLS */
     srv_policy policy; /* which requests browsers may send; `trusted_proxies` fills its proxies */
     srv_names trusted_proxies;
-    const char *web;   /* "": search beside the executable */
+    const char *web;   /* folder of the page; "": it is searched beside the executable */
     const char *store; /* "memory", or "sqlite:" and a folder: see srv_config_folder */
     bool samples;
     uint64_t log;        /* srv_log_kind */
@@ -52,34 +52,35 @@ typedef struct srv_config {
     uint64_t max_connections;
     uint64_t max_listeners, max_mesh_listeners;
 
-    api_limits token_limits, address_limits; /* limits by api/limit/limit.h */
+    api_limits token_limits, address_limits; /* of each token and each address: api/limit/limit.h */
     uint64_t limit_burst;                    /* seconds */
 
     uint64_t heartbeat;                                                 /* seconds */
     uint64_t idle_timeout, header_timeout, body_grace, request_timeout; /* seconds */
     uint64_t min_rate;                                                  /* bytes a second */
 
-    const char *backup, *restore, *dump; /* files, and a folder; NULL: not given */
+    const char *backup, *restore, *dump; /* two files and a folder; NULL if not given */
     bool help, version, print_config, healthcheck, verify, new_token;
     const char *healthcheck_url;         /* NULL: /livez at the address of `listen` */
-    const char *verified;                /* a file; NULL: verify the store */
-    const char *token_name, *token_role; /* arguments of new_token; NULL: not given */
+    const char *verified;                /* the file that --verify reads; NULL: the store */
+    const char *token_name, *token_role; /* arguments of --new-token; NULL if not given */
 
-    /* Texts that the configuration owns: those that list members point into, and the configuration
-     * file. */
+    /* Texts that the configuration owns: copies of lists, into which the items of srv_names point,
+     * and the contents of the configuration file. */
     char *owned[SRV_MAX_LISTS];
     unsigned owned_count;
     char *file_text;
 } srv_config;
 
 /* Fills `config` from arguments (without the program's name) and from `environment` (getenv, or a
- * test's function), and borrows their texts. Returns false with a sentence in `message` if one is
- * wrong; then `config` is empty but for log_format, the format in which to print the sentence. */
+ * test's function), and borrows their texts. Returns false with a sentence in `message` if a value
+ * is wrong; then `config` is empty except for log_format, the format in which the caller is to
+ * print the sentence. */
 bool srv_config_read(srv_config *config, int argc, char *const *argv,
                      char *(*environment)(const char *name), char *message, size_t size);
 void srv_config_clear(srv_config *config);
 
-/* Returns the folder of the store; NULL if meshes are in memory only. */
+/* Returns the folder of the store, or NULL if meshes are kept in memory only. */
 const char *srv_config_folder(const srv_config *config);
 
 /* Writes the URL of a daemon with this configuration on this machine: "http://127.0.0.1:8080",

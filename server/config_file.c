@@ -9,7 +9,8 @@
 
 enum { MOST = 64 * 1024, SOURCE_TEXT = 512 };
 
-/* Loads the whole file with a NUL after it; *length does not count the NUL. */
+/* Returns the contents of a file with a NUL after them; *length does not count the NUL. Returns
+ * NULL, with a sentence in `message`, if the file cannot be read or is longer than MOST bytes. */
 static char *load(const char *path, size_t *length, char *message, size_t size)
 {
     FILE *in = fopen(path, "rbe");

@@ -1,4 +1,5 @@
-/* config_option.h - one row of the table of options, for the sources that read and print it. */
+/* config_option.h - the table of options: its rows, and functions for the files that read and print
+ * the options. */
 #ifndef HE_SERVER_CONFIG_OPTION_H
 #define HE_SERVER_CONFIG_OPTION_H
 
@@ -7,9 +8,10 @@
 
 #include <stddef.h>
 
-/* A setting has a variable and may be in a file. An action and a command have neither; a command
- * takes a text. A source is the place of other settings: it has a variable but cannot be in a
- * file. */
+/* The kinds of options. SRV_ACTION and SRV_COMMAND are what hedged does instead of serving; only
+ * SRV_COMMAND takes a text. SRV_SOURCE is the path of the configuration file; it has an environment
+ * variable, but cannot be in that file. All other kinds are settings, which have a variable and may
+ * be in the file. */
 typedef enum srv_option_kind {
     SRV_TEXT,
     SRV_LIST,
@@ -51,9 +53,10 @@ bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
 /* Sets an option. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or "hedged.conf:3:
- * listen", and begins the sentence in `message` if the value is refused. Items of a list from one
- * source add up and replace those of a source that it overrides; `seen`, with an entry per row that
- * is false at first, says which lists the present source has begun. */
+ * listen"; the sentence in `message` begins with it if the value is refused. Items that one source
+ * (the file, the environment or the flags) gives for a list add up, and replace those of sources
+ * that it overrides. So `seen` has an entry per row that says whether the present source has set
+ * that option before; all are false at first. */
 bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
                     bool *seen, char *message, size_t size);
 

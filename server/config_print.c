@@ -33,8 +33,8 @@ size_t srv_config_find_unknown(char *const *environment, char *names, size_t siz
     return count;
 }
 
-/* The column of --help in which descriptions begin is after this many characters of options. A
- * longer option has a line of its own. */
+/* The width of the column of --help that shows the options, in characters. An option that is longer
+ * has a line of its own. */
 enum { FLAG_WIDTH = 26 };
 
 void srv_config_help(FILE *out)

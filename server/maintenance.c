@@ -49,10 +49,10 @@ static int restore(const char *folder, const char *file)
     return 0;
 }
 
-/* --- each mesh in turn --- */
+/* --- visiting all meshes of a store --- */
 
-/* A function that processes a mesh, or what is left of a damaged one (`whole` is false). Returns
- * false with a line on stderr on failure. */
+/* A function that processes a mesh; `whole` is false if the mesh is damaged and `content` is only
+ * what is left of it. Returns false on failure, after it has printed why. */
 typedef bool visit(void *context, const st_mesh_info *info, const he_mesh *content, bool whole);
 
 static void stay_open(void *self)
@@ -73,7 +73,9 @@ static void visit_damaged(const st_card *card, st_mesh *mesh, const char *damage
     }
 }
 
-/* Opens a store for this mesh alone, so that only one mesh is in memory at a time. */
+/* Reads one mesh of a store and passes it to `each`, or prints why it cannot be read. Returns true
+ * if the mesh is undamaged and was processed. The store must be opened for this mesh alone, so that
+ * only one mesh is in memory at a time. */
 static bool visit_in(st_store *store, const st_card *card, visit *each, void *context)
 {
     st_mesh *mesh = NULL;
@@ -110,8 +112,8 @@ static bool visit_mesh(const st_journal *journal, const st_card *card, visit *ea
     return good;
 }
 
-/* Returns true if the text is a valid id of a mesh. The id becomes a file name, and in a damaged or
- * forged store it may be anything. */
+/* Returns true if the text is a valid id of a mesh. This is checked because the id becomes a file
+ * name, and in a damaged or forged store an id may be any text. */
 static bool is_id(const char *id)
 {
     return id[0] != '\0' && id[0] != '.' &&
@@ -155,7 +157,9 @@ static void say_fault(void *context, const char *what)
     printf("%s: DAMAGED: %s\n", path, what);
 }
 
-/* Opens a store and visits its meshes. A damaged file is read as far as possible. */
+/* Opens a store, passes each of its meshes to `each`, and prints how many succeeded; `done` is the
+ * word for that. A damaged file is read as far as possible. Returns the exit status of the
+ * process. */
 static int look(const char *path, visit *each, void *context, const char *done)
 {
     st_sqlite_opened out;
@@ -224,9 +228,10 @@ typedef struct dump {
     FILE *list;
 } dump;
 
-/* Writes a mesh to a file named after its id. Ids consist of letters, digits, '-', '_' and '.', so
- * they are valid file names. What is left of a damaged mesh gets its revision into the name, so
- * that it is not mistaken for the whole mesh. */
+/* Writes a mesh to a file that is named after the mesh's id, and adds a line about it to the list.
+ * Ids consist of letters, digits, '-', '_' and '.', so they are valid file names. If only a part of
+ * a damaged mesh is left, the name contains its revision, so that the file is not mistaken for the
+ * whole mesh. */
 static bool dump_mesh(void *context, const st_mesh_info *info, const he_mesh *content, bool whole)
 {
     const dump *d = context;

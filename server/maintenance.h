@@ -1,4 +1,4 @@
-/* maintenance.h - operations on a store that no daemon serves meanwhile: --backup, --restore,
+/* maintenance.h - what hedged does with a store instead of serving it: --backup, --restore,
  * --verify, --dump. */
 #ifndef HE_SERVER_MAINTENANCE_H
 #define HE_SERVER_MAINTENANCE_H

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The most bytes that are read of the file of tokens: one more than allowed shows that it is too
- * large. */
+/* How many bytes of the file of tokens are read at most: one more than the file may have, which
+ * shows that it is too large. */
 enum { MOST = API_TOKENS_FILE + 1 };
 
 bool srv_tokens_read(api_tokens *tokens, const char *path, char *message, size_t size)

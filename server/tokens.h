@@ -1,5 +1,5 @@
-/* tokens.h - the file of tokens (api/token/token_file.h): reading it at the start and on reload,
- * and making a line for it with `hedged --new-token`. */
+/* tokens.h - reads the file of tokens (api/token/token_file.h) at the start and on reload, and
+ * makes a line for that file with `hedged --new-token`. */
 #ifndef HE_SERVER_TOKENS_H
 #define HE_SERVER_TOKENS_H
 

@@ -5,8 +5,8 @@
 
 #define SRV_VERSION "0.1.0"
 
-/* The git commit of the build; it ends in "+" if files were changed since. It is "" if the sources
- * are not in a git repository and make was not given COMMIT=. */
+/* The git commit from which hedged was built; "+" follows it if files had been changed since that
+ * commit. It is "" if the sources are not in a git repository and make was not given COMMIT=. */
 extern const char srv_commit[];
 
 #endif

@@ -1,8 +1,10 @@
-// build.mjs - the page, bundled once: `npm run build` writes it to WEB_OUT, ../build/web without.
+// build.mjs - bundles the page: `npm run build` writes these files to the folder that the variable
+// WEB_OUT names, or to ../build/web if it is not set.
 //
-//   index.html, docs.html  with the names of the files below
-//   assets/NAME-HASH.js    and .css, .svg: a name never has two contents, so they cache for ever
-//   assets/LICENSES.txt    of everything that is in the bundle
+//   index.html, docs.html  the pages, with the names of the files below
+//   assets/NAME-HASH.js    scripts, and in the same way .css and .svg; HASH is computed from the
+//                          contents, so browsers may keep the files for ever
+//   assets/LICENSES.txt    the licences of everything that is in the bundle
 
 import { mkdir, readFile, rm, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -52,7 +54,8 @@ if (unused.size > 0) {
 }
 await writeFile(path.join(out, 'assets/LICENSES.txt'), await licenses(metafile.inputs));
 
-// A page with each source replaced by the bundled file.
+// Returns the HTML of a page in which the name of each source file is replaced by the name of the
+// bundled file.
 async function page(name) {
     const html = await readFile(path.join(here, name), 'utf8');
     return html.replaceAll(/"(src\/[^"]*)"/g, (quoted, source) => {
@@ -64,7 +67,8 @@ async function page(name) {
     });
 }
 
-// The project's own licence, then the licence of each package from which a file was bundled.
+// Returns the text of the project's own licence and of the licences of all packages from which a
+// file was bundled.
 async function licenses(inputs) {
     const packages = new Set();
     for (const input of Object.keys(inputs)) {

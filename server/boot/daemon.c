@@ -12,9 +12,10 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { STOP_MILLIS = 4000 /* of the five seconds that a stop may take */ };
+enum { STOP_MILLIS = 4000 /* longest wait for running work, of the five seconds of a stop */ };
 
-/* The main thread serves no requests; it does periodic work until a signal stops it. */
+/* Does the periodic work of the main thread, which serves no requests, until SIGTERM or SIGINT
+ * arrives; SIGHUP reloads the configuration. */
 static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *reason)
 {
     const struct timespec second = {.tv_sec = 1};
@@ -30,7 +31,7 @@ static void wait_for_stop(srv_parts *parts, const sigset_t *signals, siginfo_t *
             (void)srv_reload(parts, message, sizeof message);
         }
     } while (number != SIGTERM && number != SIGINT);
-    srv_watch_look(&watch, parts); /* reports a disk that failed in the last second */
+    srv_watch_look(&watch, parts); /* so that a disk that failed in the last second is reported */
 }
 
 static void tell_stop(srv_log *log, const char *reason)
@@ -41,8 +42,8 @@ static void tell_stop(srv_log *log, const char *reason)
     srv_log_end(log, &line);
 }
 
-/* Stops all parts of the daemon. Returns false if some work did not end: then nothing that it may
- * use can be freed. */
+/* Stops all parts of the daemon. Returns false if some work did not end in time: then the caller
+ * must free nothing, because that work may still use it. */
 static bool stop(srv_parts *parts, const siginfo_t *reason)
 {
     char text[64];

@@ -1,4 +1,4 @@
-/* daemon.h - all parts of a running hedged, put together and taken apart.
+/* daemon.h - opens all parts of hedged, serves requests until a signal arrives, and closes them.
  *
  *     store <- api service <- http <- clients
  *                  ^            |
@@ -8,7 +8,7 @@
 
 #include "server/config.h"
 
-/* What the process was started with; everything is borrowed. */
+/* The arguments and the environment of the process; all pointers are borrowed. */
 typedef struct srv_started {
     const srv_config *config; /* made from the other members */
     int argc;

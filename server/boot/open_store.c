@@ -7,8 +7,8 @@
 #include "server/version.h"
 
 enum {
-    SHORT_THREADS = 2, /* threads of the pool in addition to the maximum of jobs: thread_pool.h */
-    MAKER_QUEUE = 1024 /* pieces of answers in the queue; beyond that workers make them */
+    SHORT_THREADS = 2, /* threads of the pool beside those for long tasks: thread_pool.h */
+    MAKER_QUEUE = 1024 /* pieces of answers that may wait for a thread; workers make further ones */
 };
 
 bool srv_open_failed(const srv_parts *parts, const char *why)
@@ -30,7 +30,8 @@ static bool open_threads(srv_parts *parts)
            srv_open_failed(parts, "no memory or threads to start");
 }
 
-/* Opens the journal. Sets *made if the store is new, so that samples may be added. */
+/* Opens the journal, which keeps the meshes on the disk. Sets *made to true if the store is new, so
+ * that sample meshes may be added. */
 static bool open_journal(const srv_parts *parts, st_journal *out, bool *made)
 {
     const char *folder = srv_config_folder(parts->config);

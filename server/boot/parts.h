@@ -1,7 +1,7 @@
 /* parts.h - the parts of a running daemon.
  *
- * A part is NULL until the source of this room that opens it has done so. daemon.c opens them in
- * order and closes them in the opposite order. */
+ * A part is NULL until it is opened by one of the files open_*.c. daemon.c opens the parts in order
+ * and closes them in the opposite order. */
 #ifndef HE_SERVER_BOOT_PARTS_H
 #define HE_SERVER_BOOT_PARTS_H
 
@@ -17,30 +17,30 @@
 
 typedef struct srv_parts {
     const srv_started *started;
-    const srv_config *config; /* that of `started` */
+    const srv_config *config; /* the member of `started` */
     srv_log *log;             /* opened first, closed last */
-    st_pool *pool, *makers;   /* one for long work, one for making answers while they are sent */
+    st_pool *pool, *makers;   /* threads for long work, and for making answers ahead of sending */
     st_parallel *parallel;
     st_store *store;
     srv_assets *assets;
-    srv_certificates *certificates; /* NULL: no TLS */
-    api_tokens *tokens;             /* NULL: requests need no token */
+    srv_certificates *certificates; /* NULL if the daemon does not use TLS */
+    api_tokens *tokens;             /* NULL if requests need no token */
     api_job_table *job_table;
     srv_backups backups;
     api_service *service;
     srv_policy policy;
     char own_host[SRV_ADDRESS_TEXT];
-    srv_unix_socket socket; /* the socket file of `listen`, if it is one */
+    srv_unix_socket socket; /* the file of the Unix socket, if the daemon listens on one */
     srv_http *http;
     char url[SRV_URL_TEXT]; /* with the port that is in use */
-    _Atomic bool ready;     /* the answer of /readyz */
-    _Atomic bool full;      /* what it says about memory: see watch.h */
+    _Atomic bool ready;     /* whether /readyz answers that the daemon serves requests */
+    _Atomic bool full;      /* whether memory is full, for /readyz: see watch.h */
 } srv_parts;
 
 /* Each of these functions opens its parts of the daemon as `parts->config` says. Returns false,
  * with the reason in the log, if a part cannot be opened; daemon.c closes what was opened
  * before. */
-bool srv_open_tokens(srv_parts *parts); /* from their file, if there is one */
+bool srv_open_tokens(srv_parts *parts); /* read from a file, if the configuration names one */
 bool srv_open_certificates(srv_parts *parts);
 bool srv_open_store(srv_parts *parts);   /* thread pools, journal, store, samples */
 bool srv_open_service(srv_parts *parts); /* page, jobs, service */

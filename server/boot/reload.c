@@ -52,8 +52,8 @@ static bool differs(const srv_option *row, const srv_config *one, const srv_conf
     return differ;
 }
 
-/* Reads all settings again. Only the configuration file can have changed since the start, and flags
- * and variables still override it. */
+/* Reads the configuration file again, which flags and variables still override, and applies the
+ * settings of the log. Other settings that have changed are reported: they need a restart. */
 static bool reload_settings(srv_parts *parts, char *message, size_t size)
 {
     const srv_started *started = parts->started;
@@ -97,15 +97,15 @@ static bool reload_certificates(srv_parts *parts, char *message, size_t size)
     return true;
 }
 
-/* The functions that read something again, in the order in which they are called. */
+/* The functions that srv_reload calls, in this order; each reads one file again. */
 static bool (*const reloads[])(srv_parts *parts, char *message, size_t size) = {
     reload_settings,
     reload_tokens,
     reload_certificates,
 };
 
-/* Notifies systemd that a reload has begun, with the time, which systemd needs to distinguish this
- * reload from an earlier one. */
+/* Notifies systemd that a reload has begun. The message contains the time, by which systemd
+ * distinguishes this reload from an earlier one. */
 static void tell_systemd_begun(void)
 {
     char text[64];
@@ -122,7 +122,7 @@ bool srv_reload(void *context, char *message, size_t size)
     for (size_t i = 0; i < sizeof reloads / sizeof *reloads; i++) {
         if (!reloads[i](parts, why, sizeof why)) {
             srv_log_tell(parts->log, SRV_LEVEL_ERROR, "%s; what was in force before still is", why);
-            if (ok) { /* the message is that of the first failure */
+            if (ok) { /* this is the first failure, and `message` reports only that one */
                 snprintf(message, size, "%s", why);
             }
             ok = false;

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 enum {
-    OWN_FILES = 48, /* descriptors that are not connections */
+    OWN_FILES = 48, /* descriptors that the daemon needs for other things than connections */
     DRAIN_FILES = 64
 };
 
@@ -19,7 +19,8 @@ size_t srv_cores(void)
     return online < 1 ? 1 : (size_t)online;
 }
 
-/* Each connection needs a descriptor: raises their limit as far as the system allows. */
+/* Raises the limit of open descriptors as far as the system allows, because each connection needs
+ * one, and returns the limit. */
 static size_t open_files(void)
 {
     struct rlimit files;
@@ -34,8 +35,8 @@ static size_t open_files(void)
     return (size_t)files.rlim_cur;
 }
 
-/* Chooses the numbers of connections and sockets. A few descriptors are reserved to answer 503 to
- * connections over the limit. */
+/* Chooses how many connections and sockets there may be. There may be a few more sockets than
+ * connections, so that connections over the limit can be answered 503. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options)
 {
     size_t files = open_files();

@@ -9,13 +9,14 @@
 
 size_t srv_cores(void); /* at least one */
 
-/* Sets connections, sockets, deadlines and workers of `options` within the number of descriptors,
- * whose limit is raised to the maximum that the system allows. */
+/* Sets the numbers of connections, sockets and workers, and the deadlines, in `options`. Raises the
+ * limit of open descriptors to the maximum that the system allows, which limits these numbers. */
 void srv_choose_connections(const srv_config *config, srv_http_options *options);
 
-/* Sets the memory budget. Returns the limit that the machine sets. */
+/* Sets the memory budget of the process. Returns how much memory the machine, or a control group,
+ * allows. */
 st_memory_limit srv_choose_budget(const srv_config *config);
-/* Logs the memory budget with its reason; `limit` is what srv_choose_budget returned. */
+/* Logs the memory budget and how it was chosen; `limit` is what srv_choose_budget returned. */
 void srv_tell_budget(srv_log *log, const srv_config *config, const st_memory_limit *limit);
 
 #endif

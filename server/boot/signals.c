@@ -2,8 +2,8 @@
 
 #include <stddef.h>
 
-/* Ignores the signals that would end the process and have no meaning for it: a terminal or client
- * that is gone, timers, descriptors, and signals that other daemons use as commands. */
+/* Ignores signals that would end the process although they have no meaning for it: those about
+ * closed connections, timers and descriptors, and those that other daemons use as commands. */
 static void ignore_signals(void)
 {
     static const int harmless[] = {SIGPIPE, SIGALRM, SIGUSR1,   SIGUSR2, SIGVTALRM,

@@ -1,12 +1,13 @@
-/* signals.h - the signals of the daemon: it waits for three and ignores the harmless ones. */
+/* signals.h - sets how the daemon treats signals: it waits for three of them and ignores those that
+ * have no meaning for it. */
 #ifndef HE_SERVER_BOOT_SIGNALS_H
 #define HE_SERVER_BOOT_SIGNALS_H
 
 #include <signal.h>
 
 /* Ignores signals that have no meaning for the daemon, and blocks SIGTERM, SIGINT and SIGHUP, so
- * that the main thread can wait for them; *waited is set to these. Threads inherit that, so the
- * caller must not have started one. */
+ * that the main thread can wait for them; *waited is set to these three. Threads inherit what their
+ * creator blocks, so this must be called before the first thread is started. */
 void srv_signals_begin(sigset_t *waited);
 
 #endif

@@ -11,7 +11,7 @@ bool srv_start_is_json(const srv_config *config);
 srv_log_settings srv_start_log_settings(const srv_config *config);
 
 /* Logs versions, the options in effect, and a warning with the variables of `environment` that
- * belong to no option. It prints no token, only the path of the file of tokens. */
+ * begin with HEDGE_ and belong to no option. No token is logged, only the path of their file. */
 void srv_start_tell(srv_log *log, const srv_config *config, char *const *environment);
 
 #endif

@@ -15,8 +15,9 @@ static uint64_t processor_micros(void)
     return (uint64_t)time.tv_sec * 1000000 + (uint64_t)time.tv_nsec / 1000;
 }
 
-/* Logs when the disk is found full, when it has space again, and when it failed. What began and
- * ended between two checks is logged, too; what ended and began again is not. */
+/* Logs that the disk is full, that it has space again, or that it failed. If the disk was full for
+ * a while between two checks, that is logged, too; if it was full at both checks, it is not logged
+ * that it had space between them. */
 static void tell_health(srv_log *log, const st_health *before, const st_health *now,
                         const char *folder)
 {
@@ -66,7 +67,8 @@ static void tell_systemd(const srv_parts *parts)
     srv_notify(text);
 }
 
-/* Notifies systemd twice within its timeout if a worker still answers. */
+/* Notifies systemd's watchdog twice within its timeout, if a worker still answers requests; *fed is
+ * the time when a worker was last asked. */
 static void feed_watchdog(const srv_parts *parts, uint64_t *fed)
 {
     const uint64_t patience = srv_notify_watchdog();

@@ -1,5 +1,5 @@
-/* watch.h - periodic work of the main thread: checking the disk and memory, telling systemd about
- * them, and checking for its watchdog whether a worker still answers. */
+/* watch.h - the periodic work of the main thread: it checks the disk and memory, reports their
+ * state to systemd, and checks for systemd's watchdog whether a worker still answers. */
 #ifndef HE_SERVER_BOOT_WATCH_H
 #define HE_SERVER_BOOT_WATCH_H
 
@@ -9,11 +9,11 @@
 typedef struct srv_watch {
     st_memory_rest rest;
     st_health health;
-    uint64_t fed; /* when systemd was last notified that a worker answered, st_clock_micros */
+    uint64_t fed; /* when a worker was last asked for systemd's watchdog, by st_clock_micros */
 } srv_watch;
 
-/* Writes what `systemctl status` shows of a daemon that runs: "listening on URL", and what is wrong
- * with the disk. */
+/* Writes the text that `systemctl status` shows while the daemon runs: "listening on URL", and what
+ * is wrong with the disk if anything is. */
 enum { SRV_STATUS = SRV_URL_TEXT + 128 };
 void srv_watch_describe(const srv_parts *parts, char text[SRV_STATUS]);
 

@@ -47,8 +47,8 @@ static void request_completed(void *context, struct MHD_Connection *connection, 
     }
 }
 
-/* Leaves percent-escapes in a path as they are, because the router decodes the path segment by
- * segment. */
+/* Leaves percent-escapes in a path as they are, because they must be decoded after the path was
+ * split into segments. */
 static size_t keep_escapes(void *context, struct MHD_Connection *connection, char *text)
 {
     (void)context;
@@ -56,9 +56,9 @@ static size_t keep_escapes(void *context, struct MHD_Connection *connection, cha
     return strlen(text);
 }
 
-/* Counts a connection of an address. A connection over the maximum of its address gets one answer,
- * which says so, and is closed. Connections of a trusted proxy are not counted, because they belong
- * to all its clients. */
+/* Counts a new connection of its client's address. If that address has too many connections, the
+ * connection gets one answer, which says so, and is closed. Connections of a trusted proxy are not
+ * counted, because the proxy uses them for all its clients. */
 static void count_peer(srv_http *http, srv_connection *c)
 {
     size_t count;
@@ -93,8 +93,8 @@ static void connection_changed(void *context, struct MHD_Connection *connection,
         }
         api_count(api_metrics_of(http->options.service), API_COUNT_OPENED);
         if (c == NULL || !srv_recv_watch(c)) {
-            /* Bytes that cannot be checked are not served: the socket is shut down, so that
-             * libmicrohttpd sees the end of the stream at once. */
+            /* The bytes of this connection could not be checked (http_recv.h), so it is not served:
+             * its socket is shut down, and libmicrohttpd sees the end of the stream at once. */
             shutdown(fd, SHUT_RDWR);
         }
     } else {
@@ -134,8 +134,8 @@ static enum MHD_Result accept_policy(void *context, const struct sockaddr *peer,
     return MHD_NO;
 }
 
-/* Returns the certificate and key to which the connection holds a reference. gnutls calls this for
- * each handshake, perhaps twice. */
+/* Sets the outputs to the certificate and the key for a handshake; gnutls may call this twice for
+ * one handshake. The connection keeps a reference to the pair. */
 static int show_certificate(gnutls_session_t session, const struct gnutls_cert_retr_st *info,
                             gnutls_pcert_st **chain, unsigned int *length,
                             gnutls_ocsp_data_st **ocsp, unsigned int *ocsp_length,
@@ -170,8 +170,8 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         flags |= MHD_USE_TLS;
     }
     struct MHD_OptionItem numbers[] = {
-        /* In strict mode libmicrohttpd would answer what http_syntax.h has refused already, with
-         * pages of its own. */
+        /* In strict mode libmicrohttpd would refuse some requests with answers of its own; faulty
+         * requests are found before by http_syntax.h. */
         {MHD_OPTION_STRICT_FOR_CLIENT, 0, NULL},
         {MHD_OPTION_CONNECTION_MEMORY_LIMIT, SRV_BUFFER_BYTES, NULL},
         /* libmicrohttpd divides the limit by the number of workers, but one worker may get all
@@ -184,7 +184,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         {MHD_OPTION_END, 0, NULL},
     };
     struct MHD_OptionItem *last = numbers + sizeof numbers / sizeof *numbers - 3;
-    if (o->workers > 1) { /* the library does not accept a pool of one */
+    if (o->workers > 1) { /* libmicrohttpd does not accept a pool of one thread */
         *last++ = (struct MHD_OptionItem){MHD_OPTION_THREAD_POOL_SIZE, (intptr_t)o->workers, NULL};
     }
     if (o->listening >= 0) {
@@ -195,7 +195,7 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
         MHD_OPTION_SOCK_ADDR, &o->address.socket.any, MHD_OPTION_UNESCAPE_CALLBACK, keep_escapes,
         NULL, MHD_OPTION_URI_LOG_CALLBACK, request_begin, http, MHD_OPTION_NOTIFY_COMPLETED,
         request_completed, NULL, MHD_OPTION_NOTIFY_CONNECTION, connection_changed, http,
-        /* These options come last, because without TLS the list ends here. */
+        /* The options for TLS come last, because without TLS the list ends here. */
         tls ? MHD_OPTION_HTTPS_CERT_CALLBACK2 : MHD_OPTION_END, show_certificate,
         MHD_OPTION_HTTPS_PRIORITIES, srv_tls_priorities, MHD_OPTION_END);
 }
@@ -224,8 +224,8 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
     api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
     http->deadlines = srv_deadlines_new(&http->options.deadlines);
     http->live = srv_live_new(options->heartbeat_micros);
-    /* Each worker may have taken a buffer for a connection that is not yet, or no longer,
-     * counted. */
+    /* Each worker may have a buffer for one more connection, which is not counted yet or is not
+     * counted any more. */
     const size_t most = options->max_sockets + options->workers;
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
@@ -265,13 +265,14 @@ bool srv_http_stop(srv_http *http, unsigned millis)
     if (http == NULL) {
         return true;
     }
-    /* From now on accept_policy refuses all connections. MHD_quiesce_daemon cannot be used for
-     * that: it removes the listening socket from the workers' epoll sets while the workers may do
-     * the same, and the library aborts if both try. */
+    /* From now on accept_policy refuses all new connections. MHD_quiesce_daemon cannot be used to
+     * stop accepting: it removes the listening socket from the workers' epoll sets while the
+     * workers may do that, too, and the library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
     srv_live_stop(http->live);
-    /* After the deadline, the stop waits only for suspended requests. */
+    /* Waits for running requests at most `millis`. After that time requests that are running but
+     * not suspended do not prevent the stop. */
     if (!srv_gate_close(&http->gate, millis)) {
         return false;
     }

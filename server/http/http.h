@@ -1,9 +1,10 @@
-/* http.h - connects sockets with the exchanges of api/request/api.h.
+/* http.h - the HTTP server: it passes requests that arrive on sockets to api/request/api.h, and
+ * sends the answers.
  *
  * Only the sources of server/http know libmicrohttpd, through http_request.h, which draws the
- * states of a request and their transitions. Workers never block: long work runs on the pool while
- * the connection is suspended, and a connection also stays suspended until the revision in its
- * answer is durable (D1). */
+ * states of a request and their transitions. Worker threads, which serve the connections, never
+ * block: long work runs on a pool of other threads while the connection is suspended. A connection
+ * also stays suspended until the revision in its answer is durable (D1). */
 #ifndef HE_SERVER_HTTP_HTTP_H
 #define HE_SERVER_HTTP_HTTP_H
 
@@ -20,20 +21,20 @@ typedef struct srv_http srv_http;
 /* What the server is started with. Everything is borrowed and must outlive the server. */
 typedef struct srv_http_options {
     srv_address address;
-    int listening;                  /* a listening socket; -1: the server binds `address` */
-    srv_certificates *certificates; /* with a pair in force; NULL: no TLS */
+    int listening;                  /* a listening socket; -1 if the server is to bind `address` */
+    srv_certificates *certificates; /* must have a pair in force; NULL if TLS is not used */
     api_service *service;
     st_store *store;
     st_pool *pool;
-    st_pool *makers; /* makes answers while they are sent: http_ahead.h */
-    srv_log *log;    /* NULL: none */
+    st_pool *makers; /* threads that make pieces of answers: http_ahead.h */
+    srv_log *log;    /* NULL if nothing is logged */
     const srv_policy *policy;
     srv_deadline_options deadlines;
-    size_t max_sockets; /* above deadlines.max_connections: those in between are answered 503 */
-    size_t address_connections; /* maximum per address; 0: no limit */
-    size_t workers;             /* threads, at least 1 */
-    uint64_t read_seconds;      /* maximum duration of reads that the client waits for */
-    uint64_t heartbeat_micros;  /* of silence, after which an open stream sends a comment */
+    size_t max_sockets; /* connections above deadlines.max_connections, up to this, get a 503 */
+    size_t address_connections; /* maximum of connections per address; 0: no limit */
+    size_t workers;             /* number of worker threads, at least 1 */
+    uint64_t read_seconds;      /* longest time for a read while its client waits */
+    uint64_t heartbeat_micros;  /* time without an event after which a stream sends a comment */
 } srv_http_options;
 
 /* The number of connections that may wait to be accepted (the listen backlog). */
@@ -42,12 +43,13 @@ enum { SRV_BACKLOG = 1024 };
 /* Starts to accept connections. Returns NULL with a sentence in `message` if it cannot. */
 srv_http *srv_http_start(const srv_http_options *options, char *message, size_t size);
 unsigned srv_http_port(const srv_http *http);
-/* Stops accepting, answers 503 to new requests on open connections, and waits for running ones, for
- * at most `millis`. Returns true when all have ended and the server is freed. Returns false if work
- * is still running: then nothing that it may use can be freed, and the process should exit. */
+/* Stops accepting connections, answers 503 to new requests on open connections, and waits at most
+ * `millis` until the running requests have ended. Returns true after the server was stopped and
+ * freed. Returns false if work is still running: then nothing that this work may use can be freed,
+ * and the process should exit. */
 bool srv_http_stop(srv_http *http, unsigned millis);
 
-/* Returns the version of the libmicrohttpd that was loaded; static. */
+/* Returns the version of the libmicrohttpd that was loaded, as a static text. */
 const char *srv_http_library(void);
 
 #endif

@@ -28,7 +28,7 @@ void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID 
         out[given->value_length] = '\0';
         return;
     }
-    /* The id is the prefix and the counter in hexadecimal, written without the cost of printf. */
+    /* A new id is the prefix, a hyphen and the counter in hexadecimal. printf would be slower. */
     uint64_t number = atomic_fetch_add_explicit(&ids->next, 1, memory_order_relaxed);
     char *at = out + SRV_ID_PREFIX;
     memcpy(out, ids->prefix, SRV_ID_PREFIX);

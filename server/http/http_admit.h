@@ -1,6 +1,5 @@
-/* http_admit.h - a request whose headers have arrived: choosing its id, and checking whether it may
- * run.
- */
+/* http_admit.h - what is done when the headers of a request have arrived: chooses the id of the
+ * request, finds its client, and checks whether the request may run. */
 #ifndef HE_SERVER_HTTP_HTTP_ADMIT_H
 #define HE_SERVER_HTTP_HTTP_ADMIT_H
 
@@ -15,7 +14,7 @@
 
 enum { SRV_ID_PREFIX = 8 };
 
-/* Makes request ids, which consist of a prefix of this server and a counter. */
+/* A generator of request ids. An id consists of a random prefix of this server and a counter. */
 typedef struct srv_ids {
     char prefix[SRV_ID_PREFIX + 1];
     _Atomic uint64_t next;
@@ -27,21 +26,23 @@ void srv_ids_init(srv_ids *ids);
  * letters, digits and . _ -, or makes a new one. */
 void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1]);
 
-/* The client of a request. */
+/* What is known about the client of a request. */
 typedef struct srv_client {
     char address[SRV_ADDRESS_TEXT]; /* without a port; "unix:uid=1000" on a Unix socket */
     srv_scheme scheme;
-    bool told_name; /* the answer has the header of P6 (http_policy.h) */
+    bool told_name; /* whether the answer has the header of rule P6 (http_policy.h) */
 } srv_client;
 
-/* Reads what a trusted proxy at the other end of the connection says about its client (proxy.h).
- * `client` describes the connection at first, and stays as it is where the proxy says nothing.
- * Returns false with bad_header and `client` unchanged. */
+/* Reads from the headers of a request what a trusted proxy, from which the connection comes, says
+ * about its own client (proxy.h). Before the call `client` describes the proxy; members about which
+ * the headers say nothing stay as they are. Returns false with bad_header, and `client` unchanged,
+ * if the headers are invalid. */
 bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_client *client,
                        api_problem *problem);
 
-/* Applies rules P1 to P6 of http_policy.h to a request with valid framing. Returns false with the
- * problem filled if it is refused. `cors` is set to the origin to name in the answer, or NULL. */
+/* Applies rules P1 to P6 of http_policy.h to a request. Returns false with the problem filled if
+ * the request is refused. Sets *cors to the origin that the answer must name in CORS headers, or to
+ * NULL. */
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
                srv_client *client, const char **cors, api_problem *problem);
 

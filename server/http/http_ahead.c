@@ -4,9 +4,10 @@
 
 #include <string.h>
 
-/* The sizes of pieces. A full piece takes some milliseconds to compress, and is more than a socket
- * takes at once. The first piece is smaller, and each is twice as long as the last, so that little
- * work is lost if the client reads nothing. */
+/* The sizes of the pieces of an answer. The first piece has FIRST_PIECE bytes and each further one
+ * twice as many as the one before, up to PIECE; so little work is lost if the client reads nothing.
+ * A piece of PIECE bytes takes some milliseconds to compress, and is more than a socket accepts at
+ * once. */
 enum { PIECE = 128 * 1024, FIRST_PIECE = 16 * 1024 };
 
 void srv_ahead_clear(srv_ahead *ahead)

@@ -1,12 +1,13 @@
-/* http_ahead.h - answers that are slow to make: other threads make them ahead.
+/* http_ahead.h - lets other threads make the pieces of an answer that is slow to make.
  *
- * While a piece is made the connection is suspended and the worker serves others; while a piece is
- * sent, no other one is made. The threads are not those of long work, because a download would have
- * to wait behind that.
+ * While a piece is made, the connection is suspended and the worker serves other connections; while
+ * a piece is sent, no further piece is made. The threads are not those of the pool for long work,
+ * because a download would have to wait behind that work.
  *
- *     srv_ahead_take ---- bytes, the end or a failure: send that
- *        ^      `-------- SRV_AHEAD_WAIT: suspend the connection, then srv_ahead_make
- *        +--- resume, by a thread, exactly once, when a piece is there */
+ *     srv_ahead_take --- returns bytes, the end or a failure: the caller sends that
+ *        ^      `------- returns SRV_AHEAD_WAIT: the caller suspends the connection, then calls
+ *        |               srv_ahead_make
+ *        +--- `resume` is called by a thread, exactly once, when the piece has been made */
 #ifndef HE_SERVER_HTTP_HTTP_AHEAD_H
 #define HE_SERVER_HTTP_HTTP_AHEAD_H
 
@@ -18,14 +19,14 @@
 
 enum { SRV_AHEAD_WAIT = -2 };
 
-/* An answer that is made ahead. It is stored in the request; the caller uses only the members up to
- * `resume`. */
+/* The state of an answer whose pieces other threads make. It is stored in the request; the caller
+ * sets the members up to `resume` and uses no others. */
 typedef struct srv_ahead {
     int64_t (*read)(void *context, char *buffer, size_t size); /* as in api_answer */
     void *context;
     void (*resume)(struct srv_ahead *ahead);
-    size_t size; /* of the last piece; 0: none was made */
-    char *piece; /* NULL without memory: each piece is then made when it is taken */
+    size_t size; /* bytes allocated for the last piece; 0 if no piece was made yet */
+    char *piece; /* NULL if memory was out: then srv_ahead_take calls `read` itself */
     size_t from, to;
     int64_t last; /* the last result of `read`: 0 or -1 at the end */
     bool begun;
@@ -33,11 +34,12 @@ typedef struct srv_ahead {
 
 void srv_ahead_clear(srv_ahead *ahead);
 
-/* Takes the piece that was made. Returns the number of bytes, 0 at the end, -1 on failure, or
- * SRV_AHEAD_WAIT if the next piece must be made first. */
+/* Copies bytes of the piece that was made to `buffer`. Returns their number, 0 at the end of the
+ * answer, -1 on failure, or SRV_AHEAD_WAIT if the next piece must be made first. */
 int64_t srv_ahead_take(srv_ahead *ahead, char *buffer, size_t size);
-/* Makes the next piece, after SRV_AHEAD_WAIT. The caller must not touch the request afterwards. If
- * the queue of the threads is full, the piece is made by the calling thread. */
+/* Lets one of the threads make the next piece. To be called after SRV_AHEAD_WAIT; the caller must
+ * not touch the request afterwards. If the queue of the threads is full, the calling thread makes
+ * the piece. */
 void srv_ahead_make(srv_ahead *ahead, st_pool *threads);
 
 #endif

@@ -12,15 +12,16 @@
 #include <sys/socket.h>
 
 enum {
-    /* The number of bytes requested from a reader at once, in memory of libmicrohttpd. */
+    /* The size of the buffer that libmicrohttpd allocates for an answer sent piece by piece. */
     ANSWER_BLOCK = 64 * 1024,
-    LIVE_BLOCK = 1024 /* small, as there may be thousands; used for HTTP/1.0 only */
+    LIVE_BLOCK = 1024 /* for a stream of events, of which there may be thousands; HTTP/1.0 only */
 };
 
 /* --- answers sent piece by piece --- */
 
-/* Returns what libmicrohttpd expects of a reader: bytes, its code for the end (0) or for a failure.
- * An end before the announced length is a failure. */
+/* Converts `got`, the result of reading an answer, to what libmicrohttpd expects: a number of
+ * bytes, or its code for the end or for a failure. An end before the announced length is a
+ * failure. */
 static ssize_t pulled(srv_request *r, int64_t got)
 {
     int64_t length = api_answer_of(r->exchange)->length;
@@ -44,8 +45,8 @@ static void widen(srv_request *r)
     }
 }
 
-/* Enlarges the socket's buffer when so much was sent that the client must have read some of it,
- * because it is more than the buffers hold. */
+/* Enlarges the socket's send buffer once the client is known to read: when more of the answer was
+ * sent than the buffers can hold. */
 static void widen_after(srv_request *r, uint64_t position)
 {
     if (position >= SRV_SEND_BUFFER) {
@@ -70,8 +71,7 @@ static void resume_ahead(srv_ahead *ahead)
     MHD_resume_connection(r->connection);
 }
 
-/* Makes a piece of the answer; called by the thread that makes it ahead, while the request is
- * suspended. */
+/* Makes a piece of an answer. Called by a thread of http_ahead.h while the request is suspended. */
 static int64_t read_ahead(void *context, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -82,7 +82,7 @@ static int64_t read_ahead(void *context, char *buffer, size_t size)
     return got;
 }
 
-/* Takes the pieces of an answer that another thread makes. */
+/* Passes the pieces of an answer that other threads make (http_ahead.h) to libmicrohttpd. */
 static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -107,7 +107,8 @@ static void resume_stream(srv_stream *stream)
     MHD_resume_connection(r->connection);
 }
 
-/* Reads from a stream. Once the stream is aside, another thread owns the request. */
+/* Reads from a stream of events for libmicrohttpd. If there is nothing to send, suspends the
+ * request, which the thread of http_live.h owns from then on. */
 static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t size)
 {
     (void)position;
@@ -122,7 +123,8 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
-        /* While the stream waits, the request needs only its headers in the buffer. */
+        /* While the stream waits, the request needs of its buffer only the part with the
+         * headers. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
         srv_live_aside(&r->stream);
         return 0;
@@ -144,16 +146,16 @@ void srv_answer_refuse(srv_request *r, int code, const char *text)
     r->step = API_READY;
 }
 
-/* Describes the answer of a request: that of its exchange, or a refusal if it has no exchange. The
- * description is valid until the request ends. */
+/* Fills `wire` with the answer of a request: that of its exchange, or the refusal if the request
+ * has no exchange. `wire` is valid until the request ends. */
 static void describe(srv_request *r, srv_wire *wire)
 {
     *wire = (srv_wire){.close = r->close};
     if (r->exchange != NULL) {
         const api_answer *answer = api_answer_of(r->exchange);
         srv_wire_answer(wire, answer);
-        /* If the whole body was read, no rest of it can be mistaken for the next request, so the
-         * connection may stay open. */
+        /* The connection may stay open if the whole body of the request was read, because then no
+         * rest of the body can be mistaken for the next request. */
         wire->close = wire->close || (answer->close && !r->whole) || answer->live != NULL;
     } else {
         srv_wire_refusal(wire, r->preflight ? NULL : &r->refusal, r->request_id, &r->text);
@@ -184,9 +186,10 @@ static bool is_streamed(const srv_request *r)
     return is_live(r) || (r->exchange != NULL && api_answer_of(r->exchange)->read != NULL);
 }
 
-/* Decides whether another thread makes the pieces of an answer. Making a piece takes up to a
- * millisecond. With a few downloads the worker makes them itself, which saves the detour through
- * the pool; a thousand would keep it from other work for a second. */
+/* Decides whether other threads make the pieces of an answer. Making a piece takes up to a
+ * millisecond. If there are only a few downloads, the worker makes the pieces itself, which is
+ * faster than passing them through the pool; a thousand downloads would keep it from other work for
+ * a second. */
 static bool is_made_ahead(srv_request *r)
 {
     size_t others = atomic_fetch_add(&r->http->downloads, 1);
@@ -207,7 +210,7 @@ static struct MHD_Response *response_of(srv_request *r, const srv_wire *wire)
                                                                         : pull,
                                                      r, NULL);
     } else {
-        /* The exchange owns the bytes, which live until the request has completed. */
+        /* The exchange owns the bytes, and frees them after the request has completed. */
         response = MHD_create_response_from_buffer((size_t)wire->length, (void *)wire->bytes,
                                                    MHD_RESPMEM_PERSISTENT);
     }
@@ -242,12 +245,12 @@ bool srv_answer_send(srv_request *r)
     srv_connection_enter(r->socket, is_live(r) ? SRV_STAGE_LIVE : SRV_STAGE_ANSWER,
                          st_clock_micros());
     if (is_live(r)) {
-        /* A stream may be silent without limit, so it has no timeout; the connection is closed
-         * after it. */
+        /* A stream may send nothing for any time, so libmicrohttpd's timeout is switched off for
+         * this connection, which is closed after the stream. */
         MHD_set_connection_option(r->connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     }
     if (is_live(r) || (!is_streamed(r) && wire.length > SRV_FIRST_SEND_BUFFER)) {
-        widen(r); /* the answer is in memory already, so a small send buffer would save nothing */
+        widen(r); /* a small send buffer would save nothing, because the answer is in memory */
     }
     if (!is_streamed(r) && strcmp(r->method, "HEAD") != 0) {
         r->bytes_out = (uint64_t)wire.length;
@@ -261,9 +264,9 @@ bool srv_answer_send(srv_request *r)
     return queued == MHD_YES;
 }
 
-/* Answers while a body is still arriving, when libmicrohttpd accepts no response. So that a client
- * that sends without end learns why it is cut off, the answer is written directly to the socket;
- * closing the connection then drains the rest of the body. */
+/* Answers while the body is still arriving. libmicrohttpd accepts no response then, so the answer
+ * is written directly to the socket; a client that sends without end learns in this way why it is
+ * cut off. When the connection is closed, the rest of the body is drained. */
 void srv_answer_cut_off(srv_request *r)
 {
     srv_wire wire;

@@ -1,9 +1,9 @@
-/* http_answer.h - sending the answer of a request: that of its exchange, or a refusal.
+/* http_answer.h - sends the answer of a request: that of its exchange, or a refusal.
  *
- * Bytes in memory are sent as they are. Other answers are pulled. A reader is called as the socket
- * takes its bytes. Answers that are slow to make (or all, if there are more downloads than workers)
- * are made ahead (http_ahead.h), and streams wait for events (http_live.h); both suspend the
- * connection meanwhile. */
+ * An answer whose bytes are in memory is sent as it is. Another answer is made piece by piece: its
+ * `read` function is called whenever the socket can take more bytes. If the answer is slow to make,
+ * or if there are more downloads than workers, other threads make the pieces (http_ahead.h); a
+ * stream waits for events (http_live.h). In both cases the connection is suspended meanwhile. */
 #ifndef HE_SERVER_HTTP_HTTP_ANSWER_H
 #define HE_SERVER_HTTP_HTTP_ANSWER_H
 
@@ -15,11 +15,11 @@ typedef struct srv_request srv_request;
  * exchange, if there is one. */
 void srv_answer_refuse(srv_request *r, int code, const char *text);
 
-/* Queues the answer; the request is then DONE. Returns false when memory is out: the caller closes
- * the connection. */
+/* Passes the answer to libmicrohttpd, which sends it; the request is then in the state SRV_DONE.
+ * Returns false when memory is out: then the caller closes the connection. */
 bool srv_answer_send(srv_request *r);
-/* Writes the answer while the body is still arriving; the request is then CUT: the caller closes
- * the connection, and the rest of the body is drained. */
+/* Writes the answer while the body is still arriving. The request is then in the state SRV_CUT: the
+ * caller closes the connection, and the rest of the body is drained. */
 void srv_answer_cut_off(srv_request *r);
 
 #endif

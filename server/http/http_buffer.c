@@ -16,36 +16,37 @@
 #include <unistd.h>
 
 enum {
-    REST_MICROS = 1000 * 1000,
-    LOOK_MILLIS = 500, /* milliseconds between checks of a worker that has idle buffers */
-    AT_ONCE = 32,      /* buffers returned to the system before requests are served again */
-    KEPT = 64,         /* free buffers that keep their pages for the next connections */
-    LANES = 64         /* as many workers as --workers allows */
+    REST_MICROS = 1000 * 1000, /* a buffer keeps its pages for this time without a request */
+    LOOK_MILLIS = 500,         /* time between checks for buffers whose pages can be returned */
+    AT_ONCE = 32,              /* most buffers whose pages are returned in one check */
+    KEPT = 64,                 /* free buffers that keep their pages for the next connections */
+    LANES = 64                 /* number of workers that --workers allows */
 };
 
-/* A buffer is FREE or belongs to a connection. Then it is USED, IDLE (in the list of its worker),
- * or GIVEN (not in the list, because its pages were returned). */
+/* The states of a buffer. FREE: it belongs to no connection. USED: its connection has a request.
+ * IDLE: its connection has no request, and the buffer is in the list of its worker. GIVEN: its
+ * connection has no request, and its pages were returned to the system. */
 typedef enum state { FREE, USED, IDLE, GIVEN } state;
 
 struct lane;
 
 typedef struct buffer {
     state state;
-    uint32_t next, previous; /* in the list of free buffers or in the worker's list */
-    struct lane *lane;       /* list of the worker that took it */
-    uint64_t since;          /* when it became idle */
-    size_t held;             /* bytes counted for it */
+    uint32_t next, previous; /* neighbours in a list of free buffers or in the worker's list */
+    struct lane *lane;       /* list of the worker that took the buffer */
+    uint64_t since;          /* when the buffer became IDLE */
+    size_t held;             /* bytes that st_memory_count counts for the buffer */
 } buffer;
 
-/* The idle buffers of a worker, in the order in which they became idle. Only the worker uses the
- * list, so it has no lock; connections left when the worker has ended are closed by the thread that
- * stops the server. */
+/* The list of a worker's IDLE buffers, in the order in which they became IDLE. It needs no lock,
+ * because only the worker uses it; after the worker has ended, the thread that stops the server
+ * closes the connections that are left. */
 typedef struct lane {
     uint32_t first, last;
 } lane;
 
 static struct {
-    char *memory; /* NULL: nothing was reserved */
+    char *memory; /* the reserved range; NULL before srv_buffers_reserve */
     size_t bytes; /* size of one buffer */
     size_t page;
     uint32_t most;
@@ -53,10 +54,10 @@ static struct {
     lane lanes[LANES];
     pthread_mutex_t lock; /* protects the members below */
     size_t lanes_used;
-    /* The lists of free buffers with pages (warm) and without (cold), and the number of buffers
-     * ever used (fresh). */
+    /* `warm` is the list of FREE buffers that still have pages, `cold` the list of those without,
+     * and `fresh` the index of the first buffer that was never used. */
     uint32_t warm, cold, fresh;
-    uint64_t put; /* when a buffer last joined the warm list */
+    uint64_t put; /* when a buffer was last added to the list `warm` */
     _Atomic size_t warm_count;
 } all = {.lock = PTHREAD_MUTEX_INITIALIZER, .warm = SRV_NO_BUFFER, .cold = SRV_NO_BUFFER};
 
@@ -83,8 +84,8 @@ bool srv_buffers_reserve(size_t most)
         he_mem_free(all.buffers);
         return false;
     }
-    /* A huge page would allocate the pages beside the one that is written, so huge pages are
-     * excluded. */
+    /* Transparent huge pages are switched off, because a write to one page would allocate many
+     * pages beside it. */
     madvise(memory, most * all.bytes, MADV_NOHUGEPAGE);
     all.memory = memory;
     return true;
@@ -96,7 +97,7 @@ static void count(buffer *b, size_t held)
     b->held = held;
 }
 
-/* --- the list of idle buffers, used by its worker only --- */
+/* --- a worker's list of idle buffers --- */
 
 static void leave_line(uint32_t i)
 {
@@ -165,7 +166,7 @@ static int sooner(int timeout)
     return timeout < 0 || timeout > LOOK_MILLIS ? LOOK_MILLIS : timeout;
 }
 
-/* --- lists of free buffers, under the lock --- */
+/* --- lists of free buffers; the caller holds the lock --- */
 
 static void push(uint32_t *list, uint32_t i)
 {
@@ -180,8 +181,9 @@ static uint32_t pop(uint32_t *list)
     return i;
 }
 
-/* Returns the pages of free buffers beyond the number to keep, a second after the last connection
- * ended. Returns the milliseconds that the worker may wait before the next check. */
+/* Gives the pages of FREE buffers back to the system, except KEPT buffers, when no connection has
+ * ended for a second. Returns how many milliseconds the worker may wait before the next check;
+ * `timeout` is how long it would wait otherwise. */
 static int give_back_free(int timeout)
 {
     if (atomic_load_explicit(&all.warm_count, memory_order_relaxed) <= KEPT) {
@@ -206,8 +208,9 @@ static int give_back_free(int timeout)
     return more ? 0 : sooner(timeout);
 }
 
-/* Returns the pages of idle buffers to the system. Returns the milliseconds that the worker may
- * wait before the next check. */
+/* Gives the pages of this worker's buffers that have been IDLE long enough back to the system.
+ * Returns how many milliseconds the worker may wait before the next check; `timeout` is how long it
+ * would wait otherwise. */
 static int give_back_idle(int timeout)
 {
     if (own == NULL || own->first == SRV_NO_BUFFER) {
@@ -245,8 +248,8 @@ static void *take(void)
     }
     uint32_t i = SRV_NO_BUFFER;
     if (own == NULL) {
-        /* There are more threads than lists: servers were started and stopped many times in this
-         * process. */
+        /* All lists belong to other threads, because servers were started and stopped many times in
+         * this process. So the memory comes from the system. */
     } else if (all.warm != SRV_NO_BUFFER) {
         i = pop(&all.warm);
         atomic_fetch_sub_explicit(&all.warm_count, 1, memory_order_relaxed);
@@ -288,11 +291,12 @@ static void put(uint32_t i)
 typedef void *(*map_function)(void *, size_t, int, int, int, off_t);
 typedef int (*unmap_function)(void *, size_t);
 
-/* Marks functions that may be called before the program has begun, when a sanitizer is not
- * initialised yet: they must not be instrumented, and make the system call directly. */
+/* Marks functions that the dynamic linker may call before main, when a sanitizer is not initialised
+ * yet, so that they must not be instrumented. */
 #define UNWATCHED __attribute__((no_sanitize("thread"), no_sanitize("address")))
 
-/* Finds the next definition after this program's: the C library's, or a sanitizer's before it. */
+/* Returns the function of this name that this program's definition hides: the C library's, or a
+ * sanitizer's if there is one. *kept remembers it. */
 static void *next_definition(_Atomic(void *) *kept, const char *name)
 {
     void *found = atomic_load_explicit(kept, memory_order_acquire);
@@ -344,7 +348,8 @@ UNWATCHED int munmap(void *address, size_t length)
     return all.memory == NULL ? (int)syscall(SYS_munmap, address, length) : unmap(address, length);
 }
 
-/* Replaces epoll_wait by epoll_pwait without a signal mask, which does exactly the same. */
+/* Replaces the epoll_wait() of the C library, so that workers give pages back before they wait.
+ * epoll_pwait() without a signal mask does what the replaced function did. */
 int epoll_wait(int set, struct epoll_event *events, int most, int timeout)
 {
     return epoll_pwait(set, events, most, give_back_idle(give_back_free(timeout)), NULL);

@@ -21,11 +21,11 @@
 #include <unistd.h>
 
 enum {
-    SWEEP_MILLIS = 500,
-    PAUSE_MILLIS = 10, /* pause after SRV_CLOSES */
-    CROWDED_SECONDS = 2,
-    DRAINS = 64,          /* sockets drained at one time; further ones are closed without it */
-    DRAIN_BYTES = 1 << 20 /* per socket */
+    SWEEP_MILLIS = 500,   /* time between the beginnings of two sweeps over all connections */
+    PAUSE_MILLIS = 10,    /* pause after SRV_CLOSES connections were closed */
+    CROWDED_SECONDS = 2,  /* limit of idle connections and handshakes while there are too many */
+    DRAINS = 64,          /* sockets drained at one time; further ones are closed undrained */
+    DRAIN_BYTES = 1 << 20 /* most bytes that are drained from a socket */
 };
 
 #define SECOND       UINT64_C(1000000)
@@ -41,16 +41,16 @@ struct srv_deadlines {
     srv_deadline_options options;
     pthread_mutex_t lock; /* protects the list, the drains and `ending` */
     srv_connection *first;
-    srv_connection *next; /* where the sweep continues; NULL: no sweep is in progress */
+    srv_connection *next; /* the connection that a sweep checks next; NULL if none is running */
     _Atomic size_t count;
     drain drains[DRAINS];
     size_t drain_count;
     bool ending;
-    int wake; /* eventfd */
+    int wake; /* an eventfd that wakes the thread */
     pthread_t thread;
-    /* Used by the thread only. */
-    uint64_t swept;  /* when the last sweep began */
-    uint64_t paused; /* nothing is closed before this time */
+    /* The members below are used by the thread only. */
+    uint64_t swept;  /* when the last sweep over all connections began */
+    uint64_t paused; /* no connection is closed before this time */
 };
 
 void srv_connection_enter(srv_connection *c, srv_stage stage, uint64_t now)
@@ -140,8 +140,9 @@ static void count_kept(srv_connection *c, uint64_t kept)
     c->kept = kept;
 }
 
-/* Returns the bytes of an answer that the kernel still holds, with its bookkeeping; 0 if unknown. A
- * Unix socket has no queue of its own: everything is in the reader's queue. */
+/* Returns how many bytes of memory the kernel uses for data of an answer that the client has not
+ * read, or 0 if unknown. A TCP socket has such data in its own queue; what is sent on a Unix socket
+ * is in the queue of the reader. */
 static uint64_t kept_by_kernel(const srv_connection *c)
 {
     uint32_t info[SK_MEMINFO_VARS] = {0};
@@ -151,9 +152,10 @@ static uint64_t kept_by_kernel(const srv_connection *c)
                : 0;
 }
 
-/* Finds how many of all bytes ever sent have arrived. For a Unix socket, `outstanding` includes the
- * kernel's bookkeeping, so the number may seem to fall while more is waiting: it is never reduced.
- * Returns false if the kernel does not report it. */
+/* Sets c->acked to the number of bytes sent so far that the client has received. For a Unix socket
+ * it is computed from `outstanding`, which includes the kernel's bookkeeping, so that it may seem
+ * to fall while more bytes are waiting; then it stays as it is. Returns false if the kernel does
+ * not report the number. */
 static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
 {
     struct tcp_info info = {0};
@@ -169,8 +171,8 @@ static bool find_acknowledged(srv_connection *c, uint64_t outstanding)
     return told;
 }
 
-/* Returns true if bytes of an answer may be waiting to be read. In the stage IDLE that is so only
- * until none was found waiting once. */
+/* Returns true if bytes of an answer may still be in the socket's buffer. In the stage IDLE that is
+ * possible until a check has found the buffer empty. */
 static bool may_wait(const srv_connection *c, int stage, uint64_t since)
 {
     return stage == SRV_STAGE_ANSWER || stage == SRV_STAGE_LIVE ||
@@ -197,9 +199,9 @@ static bool is_answer_stuck(srv_connection *c, const srv_deadline_options *o, ui
                                    c->acked, now);
 }
 
-/* Returns true if the client has closed its side before its request was complete. It must be seen
- * twice without progress in between, because the handler may still be working on bytes that arrived
- * together with the end. */
+/* Returns true if the client has closed its side before its request was complete. Two checks must
+ * find this, with no bytes handled in between, because the handler may still be working on bytes
+ * that arrived together with the end of the stream. */
 static bool is_request_cut(srv_connection *c)
 {
     char byte;
@@ -217,8 +219,8 @@ static bool is_request_cut(srv_connection *c)
     return again;
 }
 
-/* Counts a connection that is closed for being too slow, only once, because later sweeps may find
- * it again. */
+/* Counts a connection that is closed for being too slow. It is counted once, although later sweeps
+ * may find it again. */
 static void count_late(const srv_deadlines *d, srv_connection *c, bool stuck)
 {
     const int stage = atomic_load_explicit(&c->stage, memory_order_relaxed);
@@ -237,8 +239,8 @@ static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t 
 {
     bool stuck = is_answer_stuck(c, &d->options, now);
     if (stuck) {
-        /* The connection is reset: otherwise the kernel would go on sending what is in its
-         * buffer. */
+        /* The connection is reset, because otherwise the kernel would still try to send what is in
+         * the socket's buffer. */
         struct linger reset = {.l_onoff = 1, .l_linger = 0};
         setsockopt(c->socket, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
         count_late(d, c, true);
@@ -251,9 +253,10 @@ static bool look_at(srv_deadlines *d, srv_connection *c, bool crowded, uint64_t 
     return true;
 }
 
-/* Begins a sweep when one is due, or continues the one in progress. While the lock is held no
- * socket of the list is closed, so no descriptor can belong to another socket. Returns the
- * milliseconds until there is something to do. */
+/* Begins a sweep over all connections when it is time, or continues the sweep in progress, and
+ * closes connections that are too slow. The caller holds the lock: so no socket of the list is
+ * closed meanwhile, and no descriptor can be that of another socket. Returns the milliseconds until
+ * the next call. */
 static int sweep(srv_deadlines *d)
 {
     uint64_t now = st_clock_micros();
@@ -281,7 +284,7 @@ static int sweep(srv_deadlines *d)
     return d->next == NULL ? SWEEP_MILLIS : 0;
 }
 
-/* Reads and discards what a client still sends. Returns true when the drain is finished. */
+/* Reads and discards what a client still sends. Returns true when the socket can be closed. */
 static bool drain_once(drain *one, uint64_t now)
 {
     char buffer[16 * 1024];
@@ -327,7 +330,7 @@ static void *run(void *context)
         poll(polls, count, timeout);
         uint64_t ignored;
         if (polls[0].revents != 0 && read(d->wake, &ignored, sizeof ignored) < 0) {
-            /* There is nothing to read from the counter; the list is checked anyway. */
+            /* The eventfd had nothing to read. That does no harm: the list is checked anyway. */
         }
         pthread_mutex_lock(&d->lock);
         drain_all(d);
@@ -341,7 +344,7 @@ static void wake(srv_deadlines *d)
 {
     uint64_t one = 1;
     if (write(d->wake, &one, sizeof one) < 0) {
-        /* The counter is full, so the thread will wake up anyway. */
+        /* The eventfd's counter is full, so the thread will wake up anyway. */
     }
 }
 
@@ -412,8 +415,8 @@ srv_connection *srv_deadlines_add(srv_deadlines *d, int socket, const struct soc
     return c;
 }
 
-/* Begins to drain a connection. It works on a duplicate of the socket, which keeps the connection
- * open after its owner has closed the socket. */
+/* Begins to drain a connection. A duplicate of the socket is drained, because the connection then
+ * stays open although libmicrohttpd closes the socket. */
 static void begin_drain(srv_deadlines *d, int socket)
 {
     if (d->drain_count == DRAINS || d->ending) {

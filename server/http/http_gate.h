@@ -1,7 +1,7 @@
 /* http_gate.h - counts running and suspended requests, so that a stop can wait for them.
  *
- * libmicrohttpd must not be stopped while a connection is suspended. The gate counts suspended
- * connections, and after it is closed no connection can be suspended. */
+ * libmicrohttpd must not be stopped while a connection is suspended. So the gate counts the
+ * suspended connections, and after it was closed no connection may be suspended any more. */
 #ifndef HE_SERVER_HTTP_HTTP_GATE_H
 #define HE_SERVER_HTTP_HTTP_GATE_H
 
@@ -12,8 +12,8 @@
 typedef struct srv_gate {
     pthread_mutex_t lock;
     pthread_cond_t ended;
-    size_t active;  /* requests between their headers and their completion */
-    size_t waiting; /* how many of them are suspended */
+    size_t active;  /* number of requests between their headers and their completion */
+    size_t waiting; /* number of suspended connections */
     bool closed;
 } srv_gate;
 
@@ -22,12 +22,13 @@ void srv_gate_clear(srv_gate *gate);
 
 void srv_gate_enter(srv_gate *gate); /* counts a request that begins */
 void srv_gate_leave(srv_gate *gate);
-/* Counts a connection that is about to be suspended. Returns false if it must not be suspended. */
+/* Counts a connection that is about to be suspended. Returns false if the gate is closed: then the
+ * connection must not be suspended. */
 bool srv_gate_wait(srv_gate *gate);
 void srv_gate_resume(srv_gate *gate);
 
-/* Waits until no request is running, for at most `millis`. Returns true when none is suspended:
- * then the gate is closed. */
+/* Waits until no request is running, but at most `millis`. Then closes the gate and returns true if
+ * no connection is suspended; otherwise returns false. */
 bool srv_gate_close(srv_gate *gate, unsigned millis);
 
 #endif

@@ -12,8 +12,8 @@
 #include <strings.h>
 
 enum {
-    SWALLOW = 256 * 1024, /* bytes of a refused body that are skipped to keep the connection open */
-    WORKER_MICROS = 20000 /* that a worker spends on a read before it goes to the pool */
+    SWALLOW = 256 * 1024, /* if more of a refused body is to come, the connection is closed */
+    WORKER_MICROS = 20000 /* time for a read on a worker, before the read moves to the pool */
 };
 
 /* All functions of this file that return bool return false to close the connection, unless their
@@ -48,8 +48,9 @@ static bool give_way(srv_request *r)
     return true;
 }
 
-/* Sends the answer when it is durable (rule D1). It suspends the connection before it registers the
- * wait, because as soon as the wait is registered, another thread may resume the request. */
+/* Sends the answer, or waits first until the changes that it shows are durable (rule D1). The
+ * connection is suspended before the wait is registered, because after that another thread may
+ * resume the request at once. */
 static bool answer_when_durable(srv_request *r)
 {
     const api_answer *answer = r->exchange == NULL ? NULL : api_answer_of(r->exchange);
@@ -80,7 +81,8 @@ static bool answer_held(srv_request *r)
     return srv_answer_send(r);
 }
 
-/* Turns the exchange into a job; another exchange answers the client. */
+/* Turns the exchange into a job (a long request that runs on without the client), and answers the
+ * client by another exchange. */
 static void detach(srv_request *r)
 {
     api_exchange *answer = api_detach(r->exchange);
@@ -91,8 +93,8 @@ static void detach(srv_request *r)
     }
 }
 
-/* Returns true if the worker may continue a read, and false if its other connections have waited
- * too long. */
+/* Returns true if the worker may continue a read, and false if it has spent WORKER_MICROS, because
+ * its other connections are waiting. */
 static bool is_short(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -101,7 +103,8 @@ static bool is_short(void *context, const char *phase, double done)
     return st_clock_micros() < r->work_until;
 }
 
-/* Returns true if the client still waits for the answer and there is time left. */
+/* Returns true if the work on a request shall go on: the client still waits for the answer, and the
+ * request has not used up its time. */
 static bool is_awaited(void *context, const char *phase, double done)
 {
     (void)phase;
@@ -132,7 +135,7 @@ static void do_work(void *context)
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
-    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* a worker will return to it */
+    srv_timing_enter(&r->timing, SRV_PART_QUEUE); /* until a worker continues with the request */
     MHD_resume_connection(r->connection);
 }
 
@@ -159,8 +162,8 @@ static bool begin_work(srv_request *r)
 
 /* --- reading --- */
 
-/* Returns true if the bytes of the request were no valid request (http_syntax.h). Then
- * libmicrohttpd parses an ending that the client did not send. */
+/* Returns true if the request is malformed (http_syntax.h), and fills `problem`, which may be NULL.
+ * libmicrohttpd has then parsed an ending of the request that the client did not send. */
 static bool is_faulty(const srv_request *r, api_problem *problem)
 {
     return r->socket != NULL && srv_syntax_fault(&r->socket->syntax, r->number, problem);
@@ -179,7 +182,8 @@ static enum MHD_Result gather_field(void *context, enum MHD_ValueKind kind, cons
     return MHD_YES;
 }
 
-/* Finds the address of the client. Returns false with r->refusal filled. */
+/* Finds the address of the client, in the headers if the connection comes from a trusted proxy.
+ * Returns false with r->refusal filled if those headers are invalid. */
 static bool find_client(srv_request *r, const srv_head *head)
 {
     snprintf(r->client.address, sizeof r->client.address, "%s",
@@ -196,8 +200,8 @@ static api_metrics *metrics_of(const srv_request *r)
     return api_metrics_of(r->http->options.service);
 }
 
-/* Checks whether the request may run. Returns false with r->refusal filled, and with r->close set
- * if the reason is the connection rather than the request. */
+/* Checks whether the request may run. Returns false with r->refusal filled if it may not, and with
+ * r->close set if the connection shall be closed after the answer. */
 static bool admit(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     srv_http *http = r->http;
@@ -216,9 +220,9 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
     return srv_admit(http->options.policy, head, framing, &r->client, &r->cors, &r->refusal);
 }
 
-/* Begins the exchange of a request. The values of headers belong to libmicrohttpd, which keeps them
- * until the request has completed, or to r->joined. Before that the exchange is freed, or has
- * become a job that copied them. */
+/* Begins the exchange of a request. The exchange borrows the values of headers from libmicrohttpd,
+ * which keeps them until the request has completed, or from r->joined. By then the exchange has
+ * been freed, or has become a job with copies of the values. */
 static void begin_exchange(srv_request *r, const srv_head *head, const srv_framing *framing)
 {
     api_request asked = {
@@ -245,9 +249,10 @@ static void begin_exchange(srv_request *r, const srv_head *head, const srv_frami
     }
 }
 
-/* Answers a request whose answer is known before its body arrived. A small body is read and
- * discarded, so that the connection can be used again; a client that waits for 100 Continue gets
- * the answer at once. */
+/* Called when the answer of a request is known before its body has arrived. If the body is small,
+ * it is read and discarded first, so that the connection can be used again. Otherwise, or if the
+ * client waits for 100 Continue (`expects`), the answer is sent at once and the connection is
+ * closed. */
 static bool answer_early(srv_request *r, bool expects)
 {
     if (r->whole || (!expects && r->announced <= SWALLOW)) {
@@ -321,7 +326,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     return r->step == API_MORE || answer_early(r, srv_head_find(&head, "Expect") != NULL);
 }
 
-/* Counts bytes against the client's limit; those of a body that is skipped count, too. */
+/* Counts bytes of the body for the client's limit of bytes a second, also if they are skipped. */
 static void charge(const srv_request *r, uint64_t bytes)
 {
     if (r->exchange != NULL) {
@@ -338,8 +343,8 @@ static void refuse_fault(srv_request *r)
     r->socket->drain = true;
 }
 
-/* Passes a piece of the body to the exchange. Reduces `size` to the bytes that must be passed
- * again. */
+/* Passes a piece of the body to the exchange, or skips it if the answer is known already. Sets
+ * *size to the number of bytes at the end of the piece that libmicrohttpd must pass again. */
 static bool read_body(srv_request *r, const char *bytes, size_t *size)
 {
     if (is_faulty(r, NULL)) {

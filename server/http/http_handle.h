@@ -1,7 +1,8 @@
-/* http_handle.h - the transitions of a request between the states in http_request.h.
+/* http_handle.h - moves a request from state to state (see http_request.h).
  *
- * What the client sends is passed to api piece by piece. Long work runs on the job pool, and an
- * answer that is not durable yet is held back (D1); in both cases the connection is suspended. */
+ * The body of the request is passed to api piece by piece. Long work runs on a pool of threads, and
+ * an answer is held back until the changes that it shows are durable (D1); in both cases the
+ * connection is suspended. */
 #ifndef HE_SERVER_HTTP_HTTP_HANDLE_H
 #define HE_SERVER_HTTP_HTTP_HANDLE_H
 
@@ -10,10 +11,10 @@
 
 typedef struct srv_request srv_request;
 
-/* Handles one call of libmicrohttpd's handler: once with the headers, once for each piece of the
- * body, once at its end, and once after each resume. Reduces `size` to the bytes of `upload` that
- * must be passed again. Returns false if the connection shall be closed. When it returns, another
- * thread may own the request. */
+/* Handles one call of libmicrohttpd's handler, which is called once with the headers, once for each
+ * piece of the body, once at its end, and once after each resume. Sets *size to the number of bytes
+ * at the end of `upload` that must be passed again. Returns false if the connection shall be
+ * closed. When the function returns, another thread may own the request. */
 bool srv_request_handle(srv_request *r, const char *method, const char *version, const char *upload,
                         size_t *size);
 

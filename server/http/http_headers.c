@@ -4,12 +4,14 @@
 
 #include <string.h>
 
-/* All lines of one header: their number, and their bytes with a comma or a NUL after each. */
+/* The number of lines in which one header was sent, and the sum of the lengths of their values,
+ * with one byte more for each. */
 typedef struct line_sum {
     size_t count, bytes;
 } line_sum;
 
-/* Joins all lines of a header. Returns the position after the joined value. */
+/* Writes the values of all lines of a header to `out`, separated by commas. Returns the position
+ * after the joined value and its NUL. */
 static char *join(const srv_head *head, api_request_header header, char *out)
 {
     for (size_t i = 0; i < head->field_count; i++) {

@@ -14,16 +14,16 @@ enum { GONE_AT_ONCE = 64, LONGEST_MILLIS = 60 * 1000 };
 
 struct srv_live {
     uint64_t heartbeat; /* microseconds */
-    int watch;          /* an epoll set of the streams' sockets and `changed` */
+    int watch;          /* an epoll set with the streams' sockets and `changed` */
     int changed;        /* an eventfd that wakes the thread */
     pthread_mutex_t lock;
     pthread_t thread;
-    srv_stream *first, *last; /* streams that are aside, in the order of their deadlines */
-    srv_stream *ready;        /* streams to resume */
+    srv_stream *first, *last; /* suspended streams, in the order of their deadlines */
+    srv_stream *ready;        /* suspended streams that the thread is to resume */
     bool stopping, ending;
 };
 
-/* --- lists of streams, under the lock --- */
+/* --- lists of streams; the caller holds the lock --- */
 
 static void add_last(srv_live *live, srv_stream *stream)
 {
@@ -65,8 +65,8 @@ static void ready_due(srv_live *live)
     }
 }
 
-/* Marks streams whose clients are gone. Streams are removed from the set under the lock, so those
- * that epoll names while the lock is held still exist. */
+/* Marks the streams whose clients have closed their side. The caller holds the lock, under which a
+ * stream is also removed from the epoll set; so the streams that epoll reports still exist. */
 static void ready_gone(srv_live *live)
 {
     struct epoll_event events[GONE_AT_ONCE];
@@ -85,7 +85,8 @@ static void ready_gone(srv_live *live)
     }
 }
 
-/* Waits until a stream is ready, a client is gone, or the first deadline. */
+/* Waits until a stream must be resumed, a client has closed its side, or the first deadline has
+ * come. The caller holds the lock, which is released meanwhile. */
 static void wait_for_change(srv_live *live)
 {
     struct pollfd watched = {.fd = live->watch, .events = POLLIN};
@@ -101,8 +102,8 @@ static void wait_for_change(srv_live *live)
     ready_gone(live);
 }
 
-/* Resumes each stream that is ready. After that a stream must not be touched, because it may be
- * freed at once. */
+/* Resumes the streams of the list `ready`. A stream must not be touched after it was resumed,
+ * because it may be freed at once. The caller holds the lock, which is released meanwhile. */
 static void resume_all(srv_live *live)
 {
     srv_stream *ready = live->ready;
@@ -135,7 +136,8 @@ static void *run(void *context)
 static void wake_thread(srv_live *live)
 {
     uint64_t one = 1;
-    (void)!write(live->changed, &one, sizeof one); /* the counter is full: the thread is awake */
+    (void)!write(live->changed, &one,
+                 sizeof one); /* fails only if it is full: then it wakes, too */
 }
 
 static void release(srv_live *live)
@@ -207,8 +209,8 @@ void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source
 {
     *stream = (srv_stream){
         .live = live, .source = source, .idle = idle, .resume = resume, .socket = socket};
-    /* The end of the client is reported once, because the watch is edge-triggered. If the socket
-     * cannot be watched, a dead client is noticed at the second heartbeat. */
+    /* The event that the client has closed its side is edge-triggered, so it is reported only once.
+     * If the socket cannot be watched, that is noticed when the second heartbeat cannot be sent. */
     struct epoll_event closed = {.events = EPOLLRDHUP | EPOLLET, .data.ptr = stream};
     if (socket >= 0 && epoll_ctl(live->watch, EPOLL_CTL_ADD, socket, &closed) != 0) {
         stream->socket = -1;
@@ -249,8 +251,8 @@ int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
     return got;
 }
 
-/* Puts a stream aside until there is something to send. A stream that was woken while it was pulled
- * is ready at once. */
+/* Leaves a stream to the thread of this module until there is something to send. If the source has
+ * called wake while the worker read from the stream, the stream is resumed at once. */
 void srv_live_aside(srv_stream *stream)
 {
     srv_live *live = stream->live;

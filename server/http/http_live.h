@@ -1,16 +1,19 @@
-/* http_live.h - streams (api/live.h): suspending their connections and resuming them.
+/* http_live.h - streams of events (api/live.h): suspends their connections while there is nothing
+ * to send, and resumes them.
  *
- * A stream belongs to the worker while it is pulled. When its source has nothing to send, the
- * worker suspends the connection and puts the stream aside. From then on it belongs to this module,
- * whose thread has the connection resumed, exactly once: when the source calls wake, when nothing
- * was sent for a whole heartbeat, or when the server stops.
+ * A stream belongs to the worker (PULLED) while the worker reads events from its source and sends
+ * them. When the source has nothing to send, the worker suspends the connection and puts the stream
+ * aside (ASIDE). From then on the stream belongs to this module, whose thread has the connection
+ * resumed, exactly once: when the source calls wake, when a heartbeat is due because nothing was
+ * sent for some time, when the client has closed its side, or when the server stops.
  *
- *     PULLED --srv_live_read gives API_READ_WAIT, srv_live_aside--> ASIDE
- *       ^                                                             | wake, heartbeat, stop
- *       +------------- resume, by the thread (also: client gone) -----+
+ *     PULLED --srv_live_read returns API_READ_WAIT, then srv_live_aside--> ASIDE
+ *       ^                                                                    |
+ *       +--- `resume`, called by the thread: wake, heartbeat, closed, stop --+
  *
- * libmicrohttpd does not watch a suspended connection, so the thread does: when the client has
- * closed its side, the stream fails at its next pull, which frees its descriptor. */
+ * libmicrohttpd does not notice that the client of a suspended connection has closed its side, so
+ * the thread watches the socket. After it was resumed, srv_live_read fails for such a stream, and
+ * the connection is closed. */
 #ifndef HE_SERVER_HTTP_HTTP_LIVE_H
 #define HE_SERVER_HTTP_HTTP_LIVE_H
 
@@ -20,38 +23,39 @@
 
 typedef struct srv_live srv_live;
 
-/* Stored in the request. */
+/* One stream of events. It is stored in its request. */
 typedef struct srv_stream {
-    srv_live *live; /* NULL: not begun */
+    srv_live *live; /* NULL before srv_live_begin */
     const api_source *source;
-    const char *idle; /* sent as a heartbeat */
+    const char *idle; /* bytes to send as a heartbeat */
     void (*resume)(struct srv_stream *stream);
     bool aside;
-    bool woken;    /* woken while it was pulled */
-    bool due;      /* a heartbeat is due */
-    bool finished; /* the source was told that the server stops */
+    bool woken;    /* the source has called wake while the worker owned the stream */
+    bool due;      /* a heartbeat must be sent if there is nothing else */
+    bool finished; /* the source knows that the server stops */
     bool gone;     /* the client has closed its side */
     int socket;
-    uint64_t deadline;
+    uint64_t deadline; /* when a heartbeat is due */
     struct srv_stream *next, *previous;
 } srv_stream;
 
-/* Makes the object that streams share, with its thread. Returns NULL when memory, descriptors or
- * threads are out. */
+/* Makes the object that all streams share, and starts its thread. Returns NULL when memory,
+ * descriptors or threads are out. */
 srv_live *srv_live_new(uint64_t heartbeat_micros);
-/* No stream may be left. */
+/* Ends the thread and frees the object, which must have no streams any more. */
 void srv_live_free(srv_live *live);
 
-/* Begins a stream. The thread calls `resume` once for each srv_live_aside. `socket` is the client's
- * socket, which is watched for the end of the connection; -1 means that it is not watched. */
+/* Begins a stream that sends the events of `source`. The thread calls `resume` once after each call
+ * of srv_live_aside. `idle` is the text of a heartbeat. `socket` is the socket of the connection,
+ * on which the thread notices that the client closes its side, or -1. */
 void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
                     int socket, void (*resume)(srv_stream *stream));
 /* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
  * the stream was not begun. */
 void srv_live_end(srv_stream *stream);
-/* Reads like the read of api_source; returns -1 also when the client is gone. After API_READ_WAIT
- * the caller suspends the connection, calls srv_live_aside, and must not touch the request
- * afterwards. */
+/* Reads bytes to send, like the member `read` of api_source; returns -1 also if the client has
+ * closed its side. After API_READ_WAIT the caller must suspend the connection, call srv_live_aside,
+ * and not touch the request afterwards. */
 int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size);
 void srv_live_aside(srv_stream *stream);
 

@@ -8,7 +8,7 @@
 typedef struct authority {
     const char *host; /* an IPv6 address has no brackets here */
     size_t host_length;
-    long port; /* -1: none */
+    long port; /* -1 if no port is given */
 } authority;
 
 /* Parses "host", "host:", "host:port" or "[v6]:port". */
@@ -107,8 +107,9 @@ const char *srv_policy_cors(const srv_policy *policy, const char *origin)
     return NULL;
 }
 
-/* Returns true if `origin` is the origin of the authority in Host. A missing port is the default of
- * the scheme. */
+/* Returns true if `origin` is this server's own origin: its host and port are those of the header
+ * Host, and its scheme is that of the connection, if that is known. If no port is given, it is the
+ * default port of the origin's scheme. */
 static bool is_own_origin(const char *origin, const char *host, srv_scheme scheme)
 {
     long port;

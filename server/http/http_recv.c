@@ -13,8 +13,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* The watched connection of each descriptor. The kernel allocates pages of this table only where
- * descriptors are used. */
+/* The watched connection of each descriptor, or NULL. The table is large, but the kernel allocates
+ * only those of its pages that are written. */
 static _Atomic(srv_connection *) watched[SRV_MAX_DESCRIPTORS];
 
 static bool fits(int socket)
@@ -66,7 +66,8 @@ ssize_t srv_recv_checked(srv_syntax *syntax, char *buffer, size_t size,
     return got > 0 ? (ssize_t)srv_syntax_check(syntax, buffer, (size_t)got, size) : got;
 }
 
-/* Returns the number of bytes left that the kernel reported; 0 if it reported none. */
+/* Returns how many bytes the kernel still has for this socket, as it reported with the message, or
+ * 0 if it reported nothing. */
 static int left_to_read(struct msghdr *message)
 {
     int left = 0;
@@ -92,8 +93,8 @@ static ssize_t receive(void *context, char *buffer, size_t size)
     }
     ssize_t got = recvmsg(c->socket, &message, 0);
     if (got > 0) {
-        /* If the kernel does not report whether more is to come, any read may have been the
-         * last. */
+        /* If the kernel does not report whether there is more to read, the client's stream may have
+         * ended after any read. */
         c->may_have_ended = (size_t)got < size && (!c->tells_end || left_to_read(&message) > 0);
     }
     return got;

@@ -18,8 +18,8 @@ static srv_connection *socket_of(struct MHD_Connection *connection)
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection)
 {
     srv_connection *socket = socket_of(connection);
-    /* The request is counted first, in all cases, because http_syntax.h has counted it, too (rule
-     * S4). A request that was not counted there has bypassed the check. */
+    /* Every request is counted here, because http_syntax.h counts each, too (rule S4). If a request
+     * was not counted there, its bytes were not checked. */
     if (socket == NULL || !srv_syntax_has_begun(&socket->syntax, ++socket->requests)) {
         return NULL;
     }
@@ -48,8 +48,8 @@ static void copy_text(char *out, size_t size, const char *text)
     out[length] = '\0';
 }
 
-/* Returns true if a request took long enough to be logged as slow. A stream lasts as long as its
- * client listens, so it is never slow. */
+/* Returns true if a request took long enough to be logged as slow. A stream of events is never
+ * slow, because it lasts as long as its client listens. */
 static bool is_slow(const srv_request *r, uint64_t took)
 {
     const uint64_t slow_us = srv_log_get(r->http->options.log).slow_us;
@@ -61,7 +61,7 @@ static void tell_log(srv_request *r, uint64_t now)
 {
     srv_log *log = r->http->options.log;
     const bool slow = is_slow(r, now - r->started);
-    srv_access access; /* not zeroed: most of it is space for a long path */
+    srv_access access; /* not zeroed, which would take time: all its members are set below */
     if (!slow && !srv_log_get(log).requests) {
         return;
     }
@@ -117,7 +117,8 @@ void srv_request_end(srv_request *r)
 {
     srv_http *http = r->http;
     uint64_t now = st_clock_micros();
-    /* Bytes of the next request may already be in libmicrohttpd's buffer. */
+    /* The client may have begun the next request: its first bytes may be in libmicrohttpd's
+     * buffer. */
     bool begun = r->socket != NULL && r->socket->syntax.requests > r->socket->requests;
     srv_connection_enter(r->socket, begun ? SRV_STAGE_HEAD : SRV_STAGE_IDLE, now);
     srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, now);
@@ -128,7 +129,7 @@ void srv_request_end(srv_request *r)
         tell_log(r, now);
     }
     bool counted = r->counted;
-    srv_request_resumed(r); /* a client that was lost during suspension leads directly here */
+    srv_request_resumed(r); /* does something only if the connection ended while suspended */
     if (r->block > 0) {
         atomic_fetch_sub(&http->downloads, 1);
         st_memory_count(-(int64_t)r->block);

@@ -1,5 +1,5 @@
-/* http_request.h - a request from its first line to its completion, and the only door to
- * libmicrohttpd.
+/* http_request.h - a request from its first line to its completion, and the only header that gives
+ * access to libmicrohttpd.
  *
  * This is the one file that includes <microhttpd.h>, and only the sources of server/http include
  * it; lint checks both. Headers only declare srv_request.
@@ -9,11 +9,11 @@
  *     http_answer.c   sending the answer
  *     http_request.c  beginning and end of a request, and how it is suspended
  *
- * Each calls those below it in this list, none those above.
+ * Each of these files calls only functions of files below it in this list.
  *
  * The states of a request follow. libmicrohttpd calls `handle` once with the headers, once for each
  * piece of the body and once at its end, and once more after each resume; srv_request_handle makes
- * every transition but the two marked with a star.
+ * every transition except the two marked with a star.
  *
  *     FRESH -- headers --> BODY -- its end, the answer is there -----------------> DONE
  *       |                   |  \                                                    ^
@@ -24,10 +24,11 @@
  *
  *     instead of DONE, while the answer is not durable: HELD --resume_held*--> DONE
  *
- * In WORK and HELD the connection is suspended and no thread of libmicrohttpd touches it; the job
- * or the wait for durability resumes it exactly once. A stream is DONE, and `pull_live` suspends it
- * again and again: see http_live.h. `pull_ahead` does that with an answer that is made ahead:
- * http_ahead.h.
+ * In WORK and HELD the connection is suspended and no thread of libmicrohttpd touches it; the
+ * thread that has done the work, or the store when the changes are durable, resumes it exactly
+ * once. In DONE an answer that is sent piece by piece may be suspended again and again: a stream of
+ * events by `pull_live` (http_live.h), and an answer made by other threads by `pull_ahead`
+ * (http_ahead.h).
  */
 #ifndef HE_SERVER_HTTP_HTTP_REQUEST_H
 #define HE_SERVER_HTTP_HTTP_REQUEST_H
@@ -48,12 +49,12 @@
 
 typedef enum srv_state { SRV_FRESH, SRV_BODY, SRV_WORK, SRV_HELD, SRV_DONE, SRV_CUT } srv_state;
 
-/* The server. It is made and freed by http.c, and outlives its requests. */
+/* The HTTP server. It is made and freed by http.c, and outlives its requests. */
 struct srv_http {
     struct MHD_Daemon *daemon;
     srv_http_options options;
     srv_deadlines *deadlines;
-    srv_peers *peers; /* NULL: no limit of connections per address */
+    srv_peers *peers; /* NULL if the connections of an address are not limited */
     srv_live *live;
     unsigned port;
     srv_ids ids;
@@ -66,65 +67,66 @@ struct srv_http {
 typedef struct srv_request {
     srv_http *http;
     struct MHD_Connection *connection;
-    srv_connection *socket; /* NULL: not watched */
+    srv_connection *socket; /* NULL if the connection is not watched */
     srv_state state;
-    bool counted; /* counted by the gate */
-    bool aside;   /* counted by the gate as suspended, until it runs again or has completed */
-    bool whole;   /* the whole body has arrived */
+    bool counted; /* whether the gate counts the request as running */
+    bool aside;   /* whether the gate counts its connection as suspended */
+    bool whole;   /* whether the whole body has arrived */
     uint64_t started;
     uint64_t number; /* number of the request on its connection, from 1 */
     uint64_t bytes_in, bytes_out;
     uint64_t announced; /* Content-Length; UINT64_MAX: chunked */
     uint64_t swallowed; /* bytes of the body skipped since the answer was known */
     char request_id[SRV_REQUEST_ID + 1];
-    char *joined; /* headers whose lines were joined (http_headers.h); NULL: none */
+    char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
     srv_client client;
-    const char *cors; /* origin to name in CORS headers; NULL: none */
-    bool close;
+    const char *cors; /* origin to name in CORS headers; NULL if there are none */
+    bool close;       /* whether the connection is to be closed after the answer */
 
-    api_exchange *exchange; /* NULL: the answer is `refusal` */
+    api_exchange *exchange; /* NULL if the answer is `refusal` */
     api_step step;
     api_problem refusal;
     api_text text;               /* the refusal as JSON */
-    api_rate_fields rate_fields; /* of the exchange that the refusal took the place of */
-    bool preflight;
-    st_wait hold;
-    uint64_t work_until; /* microseconds of the monotonic clock; UINT64_MAX: no limit */
+    api_rate_fields rate_fields; /* the fields of an exchange that was replaced by the refusal */
+    bool preflight;              /* whether it is a CORS preflight request */
+    st_wait hold;                /* the wait for durability in the state HELD */
+    uint64_t work_until; /* when the work must end, by st_clock_micros; UINT64_MAX: no limit */
     srv_stream stream;
     srv_ahead ahead;
-    size_t block; /* bytes libmicrohttpd allocated for a download; 0: none */
+    size_t block; /* bytes that libmicrohttpd allocated to send a download; 0: none */
     int status;
     srv_trace trace;
     srv_timing timing;
 
     char method[SRV_METHOD + 1];
     const char *path; /* NULL before the headers were read */
-    char target[];    /* raw */
+    char target[];    /* the request target as the client sent it */
 } srv_request;
 
-/* Begins a request when its request line has arrived. Returns NULL when memory is out, or if its
- * bytes were not checked (http_recv.h): the connection is then closed without an answer. */
+/* Begins a request whose request line has arrived. Returns NULL when memory is out, or if the bytes
+ * of the request were not checked (http_recv.h); then the connection is closed without an answer.
+ */
 srv_request *srv_request_begin(srv_http *http, const char *uri, struct MHD_Connection *connection);
 /* Ends a request that was answered or whose client is gone: logs it and frees it. The server may be
  * freed right afterwards. */
 void srv_request_end(srv_request *r);
 
-/* Returns the address of the client, such as "192.0.2.1": THE address by which clients are counted
- * and distinguished. It is what a trusted proxy says (--trusted-proxy), else the address of the
- * connection. On a Unix socket it is the user, "unix:uid=1000". It is "" until the headers have
- * been read, and valid as long as the request. Without --trusted-proxy all clients of a proxy have
- * the proxy's address. */
+/* Returns the address of the client, such as "192.0.2.1", by which clients are distinguished
+ * everywhere. If the connection comes from a trusted proxy (--trusted-proxy), it is the address
+ * that the proxy reports, else that of the connection; on a Unix socket it is the user,
+ * "unix:uid=1000". So all clients of a proxy that is not trusted have the proxy's address. The text
+ * is "" until the headers have been read, and valid as long as the request. */
 static inline const char *srv_request_client(const srv_request *r)
 {
     return r->client.address;
 }
 
-/* Suspends the connection, if that is still allowed. Call it before another thread gets the
- * request; that thread then resumes it with MHD_resume_connection, exactly once. Returns false if
- * the gate is closed: nothing is suspended, and the connection must be closed. */
+/* Suspends the connection. Must be called before the request is passed to another thread, which
+ * then resumes the connection with MHD_resume_connection, exactly once. Returns false if the gate
+ * is closed, because the server stops: then the connection is not suspended and must be closed. */
 bool srv_request_suspend(srv_request *r);
-/* Records that the worker owns the request again. It must be called first in each callback before
- * which the request may have been suspended. */
+/* Records that the connection is not suspended any more. Must be called at the beginning of each
+ * callback before which the connection may have been suspended. */
 void srv_request_resumed(srv_request *r);
 
 #endif

@@ -1,4 +1,4 @@
-/* http_wire.h - an answer as plain data: status, headers, bytes. */
+/* http_wire.h - describes an answer as plain data: status, headers and bytes. */
 #ifndef HE_SERVER_HTTP_HTTP_WIRE_H
 #define HE_SERVER_HTTP_HTTP_WIRE_H
 
@@ -12,30 +12,30 @@
 
 enum { SRV_WIRE_HEADERS = API_ANSWER_HEADERS + 16 };
 
-/* Everything is borrowed. */
+/* An answer that is to be sent; all pointers are borrowed. */
 typedef struct srv_wire {
     int status;
     api_header headers[SRV_WIRE_HEADERS];
     size_t header_count;
     const char *bytes;
-    int64_t length; /* -1: unknown */
-    bool close;
+    int64_t length; /* number of bytes; -1 if unknown */
+    bool close;     /* whether the connection is closed after the answer */
     char retry[API_RETRY];
 } srv_wire;
 
 void srv_wire_add(srv_wire *wire, const char *name, const char *value);
-/* Describes an answer of api. */
+/* Fills `wire` with the answer of an exchange (api/request/api.h). */
 void srv_wire_answer(srv_wire *wire, const api_answer *answer);
-/* Describes a problem found outside of api; it is written into `text`, which `wire` then borrows. A
- * NULL problem describes 204 without a body. */
+/* Fills `wire` with a problem that was found outside of api. The problem is written as JSON into
+ * `text`, which `wire` then borrows. If `problem` is NULL, the answer is 204 without a body. */
 void srv_wire_refusal(srv_wire *wire, const api_problem *problem, const char *request_id,
                       api_text *text);
-/* Lets pages of `origin` read the answer (rule P4 of http_policy.h). With `preflight` it also lists
- * what they may send. */
+/* Adds CORS headers that let pages of `origin` read the answer (rule P4 of http_policy.h). If
+ * `preflight` is true, the headers list what these pages may send. */
 void srv_wire_cors(srv_wire *wire, const char *origin, bool preflight);
 
-/* Writes the answer to a connection directly (srv_recv_send), with Connection: close. Returns false
- * if the socket did not take all of it. */
+/* Sends the answer on a connection without libmicrohttpd (srv_recv_send), with the header
+ * Connection: close. Returns false if the socket did not take all of the answer. */
 bool srv_wire_send(const srv_wire *wire, const char *reason, srv_connection *connection);
 
 #endif

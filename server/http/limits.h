@@ -1,12 +1,12 @@
-/* limits.h - maximum sizes per connection. */
+/* limits.h - the sizes of the send buffers that the kernel has for a connection. */
 #ifndef HE_SERVER_HTTP_LIMITS_H
 #define HE_SERVER_HTTP_LIMITS_H
 
-/* Bytes of answers that the kernel buffers for a connection until the client reads them; it needs
- * as much again for bookkeeping. By default it would buffer 3 MiB for a client that does not read.
- * On loopback a larger buffer is not faster; a distant client receives this much per round trip. An
- * answer that is made while it is sent begins with SRV_FIRST_SEND_BUFFER until its client has read
- * some of it, so that little is made for a client that reads nothing. */
+/* How many bytes of answers the kernel buffers for a connection until the client reads them; it
+ * needs as much memory again for bookkeeping. By default it would buffer 3 MiB for a client that
+ * does not read. On loopback a buffer larger than SRV_SEND_BUFFER is not faster; a distant client
+ * receives at most one buffer per round trip. A connection begins with SRV_FIRST_SEND_BUFFER, so
+ * that little of an answer is made in vain if its client reads nothing. */
 enum { SRV_SEND_BUFFER = 128 * 1024, SRV_FIRST_SEND_BUFFER = 16 * 1024 };
 
 #endif

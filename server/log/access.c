@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Lines of requests are written without printf, because at high rates formatting takes time from
+/* The line of a request is formatted without printf, which would be too slow at high rates of
  * requests. */
 
 static const char *const part_names[SRV_PARTS] = {"receive", "queue", "lock",
@@ -27,7 +27,7 @@ static void append_text(char line[SRV_ACCESS_LINE], size_t *at, const char *text
     }
 }
 
-/* Appends text that fits and needs no escapes. */
+/* Appends a text that has only printable ASCII characters and fits into the line. */
 static void append(char line[SRV_ACCESS_LINE], size_t *at, const char *text)
 {
     size_t length = strlen(text);

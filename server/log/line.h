@@ -1,4 +1,4 @@
-/* line.h - one line of the log, in either format.
+/* line.h - formats one line of the log, as JSON or as text for people.
  *
  *     {"time":"2026-01-31T12:00:00.000Z","level":"info","message":"started","port":80}
  *     2026-01-31T12:00:00.000Z info started port=80
@@ -34,16 +34,18 @@ void srv_line_begin(srv_line *line, bool json, srv_level level, const char *form
 
 void srv_line_text(srv_line *line, const char *name, const char *value);
 void srv_line_number(srv_line *line, const char *name, uint64_t value);
-/* Opens an object: in JSON, fields between open and close are members of an object with this
- * name. */
+/* Opens an object: in the JSON format, the fields until srv_line_close are members of an object
+ * with this name. In the text format, does nothing. */
 void srv_line_open(srv_line *line, const char *name);
 void srv_line_close(srv_line *line);
 
-/* Ends the line: line->text then holds it with a line feed, unless memory was out. */
+/* Ends the line: line->text then contains the whole line with a line feed, unless memory was out.
+ */
 void srv_line_end(srv_line *line);
 void srv_line_clear(srv_line *line);
 
-/* Writes one whole line at once, for a program that has no log (log.h) yet. */
+/* Formats a line that consists of a message, and writes it to `fd` at once. It is for times when
+ * the program has no log (log.h) yet. */
 void srv_line_write(int fd, bool json, srv_level level, const char *message);
 
 #endif

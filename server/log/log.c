@@ -14,21 +14,21 @@
 #include <unistd.h>
 
 enum {
-    GATHER_MILLIS = 20, /* the line of a request is written at most this late */
-    BATCH = 16,         /* entries formatted at once */
+    GATHER_MILLIS = 20, /* longest time that the line of a request waits for others */
+    BATCH = 16,         /* most entries that are formatted and then written together */
     POLL_MILLIS = 100,
     ENDING_MILLIS = 500,
     LEAST_ENTRIES = 256,
     MOST_ENTRIES = 8192,
-    RING_SHARE = 64 /* of the memory budget */
+    RING_SHARE = 64 /* the ring takes the memory budget divided by this */
 };
 
 /* One entry of the ring: a line of the daemon itself, or the record of a request. */
 typedef struct entry {
-    char *line; /* owned by the ring; NULL: `access` is used */
+    char *line; /* owned by the ring; NULL if the entry is the record of a request, `access` */
     size_t length;
     srv_access access;
-    bool usual, slow; /* which of its two lines to write */
+    bool usual, slow; /* which lines about the request are written */
 } entry;
 
 struct srv_log {
@@ -39,17 +39,18 @@ struct srv_log {
     pthread_mutex_t lock;
     pthread_cond_t wake;
     _Atomic bool ending;
-    bool urgent; /* a line of the daemon itself is waiting: do not gather */
+    bool urgent; /* a line of the daemon itself is in the ring, so it is written without delay */
     entry *ring;
     size_t capacity, first, count;
-    uint64_t dropped; /* and not yet told of in the log */
+    uint64_t dropped; /* dropped lines that no line in the log has reported yet */
     _Atomic uint64_t all_dropped;
-    int waited; /* polls without success since the end began; used by the thread only */
+    int waited; /* polls in vain since `ending` became true; used by the log's thread only */
     pthread_t thread;
 };
 
-/* Writes bytes to the log. If the log cannot be written to, the server goes on. If its reader takes
- * nothing, srv_log_free waits for it only briefly. A pipe that is ready takes PIPE_BUF bytes
+/* Writes bytes to the descriptor of the log. On an error they are lost, and the server goes on.
+ * While nothing can be written because the log is not read, this waits, but only ENDING_MILLIS once
+ * the log ends. At most PIPE_BUF bytes are written at once, which a pipe that is ready takes
  * without blocking. */
 static void write_all(srv_log *log, const char *bytes, size_t length)
 {
@@ -84,9 +85,10 @@ static void write_dropped(srv_log *log, uint64_t dropped)
     write_all(log, line, (size_t)length);
 }
 
-/* Waits until there are entries in the ring. Waking a thread costs a request more than its record
- * does, so the log's thread is woken for the first record and then lets others gather. The lock is
- * held. Returns false when everything is written and the log ends. */
+/* Waits until there are entries in the ring. Because waking the log's thread takes a worker longer
+ * than adding a record, the thread is woken by the first record and then waits for more records
+ * before it writes them. The caller holds the lock. Returns false when everything is written and
+ * the log ends. */
 static bool wait_for_entries(srv_log *log)
 {
     while (log->count == 0 && log->dropped == 0 && !atomic_load(&log->ending)) {
@@ -102,8 +104,8 @@ static bool wait_for_entries(srv_log *log)
     return log->count > 0 || log->dropped > 0;
 }
 
-/* Writes an entry. Lines of the daemon itself are written directly; those of requests are formatted
- * into `room`, which holds two. */
+/* Writes an entry. If it is a line of the daemon itself, writes the *at bytes in `room`, and then
+ * the line; if it is the record of a request, appends its lines to `room`. */
 static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], size_t *at)
 {
     const bool json = atomic_load(&log->json);
@@ -119,8 +121,8 @@ static void write_entry(srv_log *log, entry *e, char room[2 * SRV_ACCESS_LINE], 
     *at += e->slow ? srv_access_format_slow(&e->access, json, room + *at) : 0;
 }
 
-/* The log's thread: writes the entries of the ring. Other threads do not touch entries in the ring
- * until `count` is reduced. */
+/* The function of the log's thread: writes the entries of the ring. No other thread touches an
+ * entry in the ring until this one has subtracted it from `count`. */
 static void *run(void *context)
 {
     srv_log *log = context;
@@ -221,15 +223,15 @@ uint64_t srv_log_dropped(const void *log)
     return atomic_load_explicit(&((const srv_log *)log)->all_dropped, memory_order_relaxed);
 }
 
-/* Counts a line that is dropped. The lock is held. */
+/* Counts a line that is dropped. The caller holds the lock. */
 static void drop(srv_log *log)
 {
     log->dropped++;
     atomic_fetch_add_explicit(&log->all_dropped, 1, memory_order_relaxed);
 }
 
-/* Returns a free entry of the ring; if there is none, counts a dropped one and returns NULL. The
- * lock is held. */
+/* Returns a new entry of the ring. If the ring is full, counts a dropped line and returns NULL. The
+ * caller holds the lock. */
 static entry *take_entry(srv_log *log)
 {
     if (log->count == log->capacity) {
@@ -246,8 +248,8 @@ static void wake(srv_log *log)
     }
 }
 
-/* Puts a line into the ring and takes its text, which is a whole line or failed for lack of
- * memory. */
+/* Puts a line into the ring, which then owns the text, and wakes the log's thread. If memory for
+ * the text was out or the ring is full, the line is counted as dropped. */
 static void add_line(srv_log *log, api_text *text)
 {
     pthread_mutex_lock(&log->lock);

@@ -1,8 +1,8 @@
 /* log.h - the log on standard error. A slow reader of the log never delays requests.
  *
- * Lines and records of requests go into a bounded ring buffer; the log's own thread formats and
- * writes them in their order. When the ring is full, further ones are dropped, and a line says how
- * many:
+ * Lines and records of requests go into a ring buffer of fixed size; the log's own thread formats
+ * and writes them in their order. While the ring is full, further lines and records are dropped;
+ * afterwards a line says how many:
  *     {"time":"...","level":"warning","event":"dropped","dropped":12}
  *
  * In the JSON format every line is an object, except those of srv_log_plain. No code that has a
@@ -19,18 +19,18 @@ typedef struct srv_log srv_log;
 typedef struct srv_log_settings {
     srv_level level; /* the least severe level that is written; lines of requests have no level */
     bool json;
-    bool requests;    /* write a line for each request */
-    uint64_t slow_us; /* longer requests get a line about their time; 0: none does */
+    bool requests;    /* whether a line is written for each request */
+    uint64_t slow_us; /* requests that took longer get a line that says where; 0: none does */
 } srv_log_settings;
 
-/* Returns how many entries the ring of a daemon with this memory budget holds: a sixty-fourth of
- * the budget, within limits. `budget` is in bytes, 0 for none. */
+/* Returns how many entries the ring of a daemon with this memory budget should have: as many as fit
+ * into a sixty-fourth of the budget, within limits. `budget` is in bytes, or 0 if there is none. */
 size_t srv_log_capacity(uint64_t budget);
 /* Makes a log that writes to `fd`, which it borrows. Returns NULL when memory or threads are
  * out. */
 srv_log *srv_log_new(int fd, size_t capacity, const srv_log_settings *settings);
-/* Writes what is left in the ring, for half a second at most, and frees the log, which may be
- * NULL. */
+/* Writes what is left in the ring, waits for its reader at most half a second, and frees the log,
+ * which may be NULL. */
 void srv_log_free(srv_log *log);
 
 /* All functions below may be called by any thread at any time. */
@@ -44,15 +44,15 @@ srv_log_settings srv_log_get(const srv_log *log);
 /* Writes a line that consists only of a message. */
 void srv_log_tell(srv_log *log, srv_level level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Writes a line with fields: call begin, then srv_line_text and the others of line.h, then
- * srv_log_end, which puts the line into the ring and clears it. */
+/* Write a line with fields: call srv_log_begin, then srv_line_text or other functions of line.h,
+ * then srv_log_end, which puts the line into the ring and clears `line`. */
 void srv_log_begin(const srv_log *log, srv_line *line, srv_level level, const char *message);
 void srv_log_end(srv_log *log, srv_line *line);
 /* Writes a line unchanged, in both formats and at every level, for programs that wait for it. */
 void srv_log_plain(srv_log *log, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Logs a request that has ended: the usual line, if requests are logged, and another line with its
- * times if `slow` is set. */
+/* Logs a request that has ended: a line about the request, if the settings say so, and another line
+ * that says where its time went, if `slow` is set. */
 void srv_log_request(srv_log *log, const srv_access *access, bool slow);
 
 #endif

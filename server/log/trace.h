@@ -4,14 +4,14 @@
  *                  |  trace id                         parent id        flags
  *                  version
  *
- *   T1  A client that sends traceparent gets one back: its trace id, a span id of this request, and
- *       the flag that says whether the client records the trace.
- *   T2  A malformed one, or two of them, count as none (section 4.3). Then the
- *       recommendation begins a new trace: the answer has a new trace id and no flags.
- *   T3  If the client sends none, the answer has none. The request still has a request id.
+ *   T1  If a request has a header traceparent, the answer has one, too: with the client's trace id,
+ *       a span id of this request, and the flag that says whether the client records the trace.
+ *   T2  If the header is malformed or occurs twice, a new trace begins, as section 4.3 of the
+ *       recommendation says: the answer has a new trace id and no flags.
+ *   T3  If a request has no traceparent, the answer has none. The request still has a request id.
  *   T4  A version above 00 is read as 00, whatever follows after another hyphen; ff is malformed.
- *   T5  tracestate is neither read nor answered: it is for servers that a request is passed
- *       on to, and hedged passes none on. */
+ *   T5  The header tracestate is neither read nor answered: it is for servers to which a request is
+ *       passed on, and hedged passes none on. */
 #ifndef HE_SERVER_LOG_TRACE_H
 #define HE_SERVER_LOG_TRACE_H
 
@@ -24,13 +24,13 @@ enum { SRV_TRACEPARENT = 55 };
 
 /* The trace context of a request. All digits are hexadecimal, in lower case. */
 typedef struct srv_trace {
-    char trace_id[SRV_TRACE_ID + 1];    /* "": the request is in no trace */
-    char parent_id[SRV_SPAN_ID + 1];    /* "": this request begins the trace */
-    char span_id[SRV_SPAN_ID + 1];      /* of this request */
-    char answered[SRV_TRACEPARENT + 1]; /* traceparent in the answer */
+    char trace_id[SRV_TRACE_ID + 1];    /* "" if the request belongs to no trace */
+    char parent_id[SRV_SPAN_ID + 1];    /* span id of the client; "" if the trace begins here */
+    char span_id[SRV_SPAN_ID + 1];      /* the id of this request */
+    char answered[SRV_TRACEPARENT + 1]; /* the value of traceparent in the answer */
 } srv_trace;
 
-/* A source of span ids: random at the start, and never repeated by one server. */
+/* A generator of span ids: it starts from a random number, and never repeats an id. */
 typedef struct srv_spans {
     uint64_t seed;
     _Atomic uint64_t next;
@@ -38,8 +38,8 @@ typedef struct srv_spans {
 
 void srv_spans_init(srv_spans *spans);
 
-/* Reads the `count` values of a request's traceparent headers, of which `value` is the first. If
- * there are any, makes a span id for the request. */
+/* Fills `out` by rules T1 to T4. `count` is the number of traceparent headers of the request, and
+ * `value` the value of the first one. If there are any, makes a span id for the request. */
 void srv_trace_read(srv_spans *spans, const char *value, size_t count, srv_trace *out);
 
 #endif

@@ -44,7 +44,8 @@ static bool split(const char *url, target *out)
            srv_address_parse(authority, &out->address);
 }
 
-/* Sends a request on a socket without TLS and returns the number of bytes of the answer. */
+/* Sends a request on a socket without TLS, and reads the first `size` bytes of the answer. Returns
+ * how many bytes arrived. */
 static size_t ask_plain(int fd, const char *request, size_t length, char *answer, size_t size)
 {
     size_t got = 0;

@@ -1,4 +1,4 @@
-/* notify.h - notifications for systemd: the protocol of sd_notify(3), without its library.
+/* notify.h - sends notifications to systemd by the protocol of sd_notify(3), without its library.
  *
  * systemd gives a service of Type=notify a Unix datagram socket in NOTIFY_SOCKET, and with
  * WatchdogSec= the interval of the watchdog in WATCHDOG_USEC. Outside of such a service these
@@ -13,8 +13,8 @@
  * socket, or if sending failed, which is no reason to stop. */
 bool srv_notify(const char *message);
 
-/* Returns the microseconds within which systemd expects "WATCHDOG=1"; 0 without a watchdog, or if
- * it watches another process. */
+/* Returns the number of microseconds within which systemd's watchdog expects the message
+ * "WATCHDOG=1"; 0 if there is no watchdog, or if it watches another process. */
 uint64_t srv_notify_watchdog(void);
 
 #endif

@@ -9,8 +9,8 @@
 
 typedef struct peer {
     api_rate_key address;
-    uint32_t count; /* number of connections; 0: free */
-    uint32_t next;  /* next in its chain, or in the list of free entries */
+    uint32_t count; /* number of open connections; 0 if the entry is free */
+    uint32_t next;  /* next entry in the chain of a hash value, or in the list of free entries */
 } peer;
 
 struct srv_peers {

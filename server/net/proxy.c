@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { MOST_ADDRESS = 64 }; /* characters, with brackets and a port */
+enum { MOST_ADDRESS = 64 }; /* greatest length of an address with brackets and a port, plus 1 */
 
 static const char local[] = "unix";
 
@@ -89,10 +89,10 @@ bool srv_proxies_has(const srv_proxies *proxies, const char *address)
     return false;
 }
 
-/* --- one element of a list of proxies and clients --- */
+/* --- one element of a list of addresses --- */
 
 /* Parses "192.0.2.1", "192.0.2.1:80", "2001:db8::1", "[2001:db8::1]" or "[2001:db8::1]:80" and
- * writes the address like srv_address_format. */
+ * writes the address without the port, in the form of srv_address_format. */
 static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_TEXT])
 {
     char copy[MOST_ADDRESS];
@@ -130,8 +130,8 @@ static bool parse_address(const char *text, size_t length, char out[SRV_ADDRESS_
            inet_ntop(address.family, address.address, out, SRV_ADDRESS_TEXT) != NULL;
 }
 
-/* Handles an address of the list by rule T1 (proxy.h); `address` is NULL if the element has none.
- * Returns true if it is, so far, the one that counts. */
+/* Handles the next element of a list by rule T1 (proxy.h); `address` is NULL if the element has no
+ * address. Returns true if this element is the client's, as far as the list was read. */
 static bool take_address(srv_told *told, const srv_proxies *proxies, const char *address)
 {
     const bool counts = !told->any || address == NULL || !srv_proxies_has(proxies, address);
@@ -160,7 +160,8 @@ static bool read_scheme(const char *text, size_t length, srv_scheme *out)
 
 /* --- X-Forwarded-For, X-Forwarded-Proto --- */
 
-/* Returns the next element without surrounding blanks; NULL after the last one. */
+/* Returns the next element of a list with commas, without the blanks around it, and moves *at
+ * behind it. Returns NULL after the last element. */
 static const char *next_element(const char **at, size_t *length)
 {
     const char *text = *at;
@@ -219,8 +220,8 @@ static size_t token_length(const char *text)
                         "!#$%&'*+-.^_`|~");
 }
 
-/* Reads a pair name=token or name="text"; returns the position after it, NULL if the text is
- * neither. */
+/* Reads a pair name=token or name="text" at `at`. Returns the position after the pair, or NULL if
+ * there is no such pair. */
 static const char *read_pair(const char *at, pair *out)
 {
     size_t length = 0;
@@ -249,7 +250,7 @@ static bool is_named(const pair *p, const char *name)
     return strlen(name) == p->name_length && strncasecmp(p->name, name, p->name_length) == 0;
 }
 
-/* The members of one element; each may occur once. */
+/* What one element of a Forwarded header says; each of its members may occur once. */
 typedef struct element {
     bool empty, has_for, has_proto;
     char address[SRV_ADDRESS_TEXT]; /* "": none */
@@ -306,7 +307,7 @@ static bool read_forwarded(srv_told *told, const srv_proxies *proxies, const cha
     }
 }
 
-/* --- all lines --- */
+/* --- all header lines of a request --- */
 
 void srv_forwarding_read(srv_forwarding *told, const srv_proxies *proxies, const char *name,
                          const char *value)

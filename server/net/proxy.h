@@ -1,21 +1,22 @@
 /* proxy.h - finds the client of a proxy from the headers that the proxy adds.
  *
- * Behind a proxy all connections come from the proxy. It sends its client's address and scheme in
- * headers, which any client can forge. They count only if the peer of the connection is one of the
- * proxies that --trusted-proxy names.
+ * If hedged is behind a proxy, all connections come from the proxy. The proxy sends the address and
+ * the scheme of its client in headers, which any client can forge. So these headers count only if
+ * the connection comes from one of the proxies that --trusted-proxy names.
  *
- *   T1  Each proxy on the way appends to the list, so the list is read from
- *       its end: addresses of trusted proxies are skipped, and the first other one is the
- *       client's. The client may have written what precedes it, so that is ignored. If every
- *       address is a trusted proxy's, the first of the list is the client's.
+ *   T1  Each proxy on the way appends the address of its own client to the list. So the list is
+ *       read from its end: addresses of trusted proxies are skipped, and the first other address is
+ *       the client's. What precedes that address is ignored, because the client may have written
+ *       it. If all addresses are those of trusted proxies, the first of the list is the client's.
  *   T2  Forwarded (RFC 7239) has address and scheme in one element. X-Forwarded-For has
  *       addresses; the last word of X-Forwarded-Proto is the scheme.
  *   T3  A trusted proxy that sets only one of the two headers passes the other one on as its client
  *       wrote it. So if Forwarded and X-Forwarded-For name different clients the request is
  *       refused, and also if the two schemes differ.
- *   T4  An invalid address in the place that counts is refused, and so is a Forwarded header that
- *       is malformed anywhere: a quote that the client leaves open would hide what the proxy
- *       added. `for=unknown` and hidden names (`for=_x`) are well formed and have no address. */
+ *   T4  A request is refused if the element that is the client's by T1 is no valid address, or if a
+ *       Forwarded header is malformed anywhere: a quotation mark that the client leaves open would
+ *       hide what the proxy added. `for=unknown` and hidden names (`for=_x`) are well formed and
+ *       have no address. */
 #ifndef HE_SERVER_NET_PROXY_H
 #define HE_SERVER_NET_PROXY_H
 
@@ -48,13 +49,13 @@ bool srv_proxies_has(const srv_proxies *proxies, const char *address);
 
 typedef enum srv_scheme { SRV_SCHEME_UNKNOWN, SRV_SCHEME_HTTP, SRV_SCHEME_HTTPS } srv_scheme;
 
-/* What the lines of one kind of header have said so far; {0} before the first line. Only proxy.c
- * uses the members. */
+/* What the lines of Forwarded, or of X-Forwarded-For and X-Forwarded-Proto, have said so far; {0}
+ * before the first line. Only proxy.c uses the members. */
 typedef struct srv_told {
-    char address[SRV_ADDRESS_TEXT]; /* "": none */
+    char address[SRV_ADDRESS_TEXT]; /* the client's address by T1; "" if it has none */
     srv_scheme scheme;
-    bool any;       /* there was an element */
-    bool malformed; /* the element that counts is no valid address */
+    bool any;       /* whether there was an element */
+    bool malformed; /* whether the element that is the client's by T1 is no valid address */
 } srv_told;
 
 typedef struct srv_forwarding {

@@ -16,7 +16,8 @@ static int fail(char *message, size_t size, const char *path, const char *why)
     return -1;
 }
 
-/* Opens and locks the folder of a path; returns -1 on failure. */
+/* Opens and locks the folder that contains a path. Returns the folder's descriptor, -1 on
+ * failure. */
 static int lock_folder(const char *path)
 {
     char folder[SRV_MAX_PATH + 1];
@@ -33,8 +34,9 @@ static int lock_folder(const char *path)
     return fd;
 }
 
-/* Removes an abandoned socket file at the path. Returns NULL, or a sentence that says why the path
- * cannot be used. A listener that does not accept at the moment (EAGAIN) is still a listener. */
+/* Removes a socket file at the path on which no program listens. Returns NULL, or a sentence that
+ * says why the path cannot be used. If connecting gives EAGAIN, a program listens there but is not
+ * accepting connections at the moment. */
 static const char *make_room(const srv_address *address, const char *path)
 {
     struct stat found;
@@ -59,8 +61,9 @@ static const char *make_room(const srv_address *address, const char *path)
     return unlink(path) == 0 ? NULL : strerror(errno);
 }
 
-/* Binds the socket to its file. The file has its mode from the beginning: bind() uses the socket's
- * mode, reduced by the umask of this process. */
+/* Binds the socket to its file and listens. The file never has wider permissions than MODE, because
+ * bind() creates it with the mode of the socket, reduced by the umask of this process. Returns
+ * NULL, or a sentence that says what failed. */
 static const char *bind_to(int fd, const srv_address *address, const char *path, int backlog,
                            srv_unix_socket *made)
 {

@@ -1,9 +1,10 @@
-/* unix_socket.h - a listening socket that is a file.
+/* unix_socket.h - a Unix socket on which the daemon listens; its address is the path of a file.
  *
  * The permissions of the file decide which users can connect: its owner and its group (mode 0660),
- * within those of its folder. A killed daemon leaves the file behind. The next daemon connects to
- * it: if nothing listens there, it removes the file; otherwise it refuses to start. The folder is
- * locked meanwhile, so that of two daemons started together one finds the other. */
+ * within those of its folder. A killed daemon leaves the file behind. The next daemon tries to
+ * connect to it: if no program listens there, the daemon removes the file; otherwise it refuses to
+ * start. It locks the folder meanwhile, so that of two daemons that start at the same time the
+ * second one finds the first. */
 #ifndef HE_SERVER_NET_UNIX_SOCKET_H
 #define HE_SERVER_NET_UNIX_SOCKET_H
 
@@ -23,7 +24,7 @@ typedef struct srv_unix_socket {
  * and an empty `made` on failure. */
 int srv_unix_listen(const srv_address *address, int backlog, srv_unix_socket *made, char *message,
                     size_t size);
-/* Removes the file, unless another file has replaced it. */
+/* Removes the file of the socket, unless another file has replaced it. */
 void srv_unix_remove(const srv_unix_socket *made);
 
 #endif

@@ -15,7 +15,7 @@ const char srv_tls_priorities[] =
     "-MAC-ALL:+AEAD:%SERVER_PRECEDENCE";
 
 struct srv_certificate {
-    _Atomic size_t holders; /* references; being in force is one */
+    _Atomic size_t holders; /* number of references, including that of the member `current` */
     gnutls_pcert_st chain[SRV_MAX_CHAIN];
     unsigned int length;
     gnutls_privkey_t key;
@@ -23,7 +23,7 @@ struct srv_certificate {
 
 struct srv_certificates {
     pthread_mutex_t lock;
-    srv_certificate *current; /* NULL: no pair was read yet */
+    srv_certificate *current; /* the pair in force; NULL if no pair was read yet */
 };
 
 /* --- reading --- */

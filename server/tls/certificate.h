@@ -1,9 +1,10 @@
-/* certificate.h - the certificate of the TLS listener, and its replacement.
+/* certificate.h - the certificate that the daemon shows to TLS clients; it can be replaced while
+ * the daemon runs.
  *
- * One pair of a certificate and its key is in force. A handshake holds a reference to the pair with
- * which it began, so that a replacement affects neither it nor its connection. A pair is freed when
- * it is not in force any more and its last reference is released. Any thread may call the
- * functions, except new and free. */
+ * One pair of a certificate and its key is in force: new handshakes use it. A handshake holds a
+ * reference to its pair, so that a replacement affects neither the handshake nor its connection. A
+ * pair is freed when it is not in force any more and its last reference is released. Any thread may
+ * call the functions, except srv_certificates_new and srv_certificates_free. */
 #ifndef HE_SERVER_TLS_CERTIFICATE_H
 #define HE_SERVER_TLS_CERTIFICATE_H
 
@@ -23,25 +24,27 @@ extern const char srv_tls_priorities[];
 typedef struct srv_certificates srv_certificates;
 typedef struct srv_certificate srv_certificate;
 
-/* Makes an object without a pair of certificate and key. Returns NULL when memory is out. */
+/* Makes an object in which no pair is in force yet. Returns NULL when memory is out. */
 srv_certificates *srv_certificates_new(void);
 /* Frees the object, which may be NULL. Pairs to which references are held stay until these are
  * released. */
 void srv_certificates_free(srv_certificates *certificates);
 
-/* Puts the pair of these two files in force: in PEM, the chain beginning with the server's own
- * certificate, the key not encrypted. Returns false with a sentence in `message`, which names the
- * file and the fault; the old pair then stays in force. */
+/* Reads a pair from two files and puts it in force. Both files are in PEM: the first has the chain
+ * of certificates, beginning with the server's own, the second has the key, not encrypted. Returns
+ * false with a sentence in `message`, which names the file and the fault, if the files cannot be
+ * used; the old pair then stays in force. */
 bool srv_certificates_read(srv_certificates *certificates, const char *certificate_path,
                            const char *key_path, char *message, size_t size);
 
 /* Returns a reference to the pair in force, which must exist. The caller releases it. */
 srv_certificate *srv_certificates_hold(srv_certificates *certificates);
-/* Takes NULL. */
+/* Releases a reference; `certificate` may be NULL. */
 void srv_certificate_release(srv_certificate *certificate);
 
-/* Fills the outputs of gnutls_certificate_set_retrieve_function3(3). They are borrowed from the
- * pair, which must be referenced as long as the session exists. */
+/* Sets the outputs that a callback of gnutls_certificate_set_retrieve_function3(3) must return.
+ * They are borrowed from the pair, so a reference to it must be held as long as the session exists.
+ */
 void srv_certificate_show(srv_certificate *certificate, gnutls_pcert_st **chain,
                           unsigned int *length, gnutls_privkey_t *key);
 

@@ -1,4 +1,4 @@
-/* tls_client.h - one request over TLS, for the health check of a daemon.
+/* tls_client.h - sends one request over TLS, for the health check of a daemon.
  *
  * The certificate is not verified at all: the check only asks whether the daemon at an address
  * answers, and sends nothing secret. */
@@ -7,8 +7,8 @@
 
 #include <stddef.h>
 
-/* Sends `request` on a connected socket, whose timeouts the caller has set, and reads until `size`
- * bytes arrived or no more will. Returns the number of bytes read, 0 on failure. */
+/* Sends `request` on a connected socket, whose timeouts the caller has set, and reads the answer
+ * until `size` bytes have arrived or it ends. Returns the number of bytes read, 0 on failure. */
 size_t srv_tls_ask(int socket, const char *request, size_t length, char *answer, size_t size);
 
 #endif

@@ -1,4 +1,5 @@
-// Numbers as people type them, and the matrix made from scaling, rotation and translation.
+// Tests of the parser for numbers that people type, and of the matrix that is made from scaling,
+// rotation and translation.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,6 +1,7 @@
-// Files that refer to other files are sent to the server together with these, in one request.
+// Tests that a file which refers to other files is sent to the server together with those, in one
+// request.
 import assert from 'node:assert/strict';
-import { File } from 'node:buffer'; // no global of node 18
+import { File } from 'node:buffer'; // in node 18, File is not a global
 import { test } from 'node:test';
 
 import { batchesOf } from '../../web/src/batches.js';

@@ -1,4 +1,4 @@
-// browser.mjs - Chromium with the page in it, and what the page's canvas shows.
+// browser.mjs - starts Chromium, opens the page in it, and reads what the page's canvas shows.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -16,16 +16,17 @@ const require = createRequire(new URL('../../web/package.json', import.meta.url)
 const { chromium } = require('playwright-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-// How often a page answers, at least a second apart, until its test fails: a limit for waits that
-// would never end. It counts answers and not seconds, so that no test fails because a machine is
-// slow or stands still for a while. If a page does not answer at all, the runner of the tests ends
-// the test.
+// A limit for tests that wait for something that never happens: a page is asked at most once a
+// second whether it is alive, and is closed after this many answers. Answers are counted and not
+// seconds, so that no test fails because a machine is slow or stands still for a while. If a page
+// does not answer at all, the program that runs the tests ends the test.
 const MOST_ANSWERS = 600;
 const APART = 1000;
 
 const pause = () => new Promise((resolve) => setTimeout(resolve, APART).unref());
 
-// Closes a page that lives for too long, so that the wait for it fails with a reason.
+// Closes a page that has given MOST_ANSWERS answers, so that a test that still waits for it fails
+// with a reason.
 async function guard(page) {
     for (let answers = 0; answers < MOST_ANSWERS; answers++) {
         await pause();
@@ -45,7 +46,7 @@ const FLAGS = [
     '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
     '--disable-gpu-compositing',
-    '--in-process-gpu', // a process less for each browser
+    '--in-process-gpu', // saves one process for each browser
     '--disable-quic',
     '--no-first-run',
     '--disable-background-networking',
@@ -55,7 +56,7 @@ const FLAGS = [
 
 export function launch() {
     return chromium.launch({
-        timeout: 0, // it starts, or ends by itself
+        timeout: 0, // no limit: the browser starts, or ends with an error
         executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
         args: FLAGS,
     });
@@ -138,8 +139,8 @@ export function waitForFrame(page, { mesh, revision, selection, materials }) {
     );
 }
 
-// Returns a function that returns how many bytes have come over the network since now, including
-// heads and event streams.
+// Counts from now on how many bytes a page gets over the network, including headers and event
+// streams. Returns a function that returns their number.
 export async function countBytes(page) {
     const session = await page.context().newCDPSession(page);
     let bytes = 0;
@@ -162,7 +163,7 @@ export async function checkAccessible(page, state, part = 'html') {
         await page.evaluate(axe);
     }
     const { violations } = await page.evaluate(
-        // Without the other results axe need not find where each element is that passes.
+        // Only violations are wanted, so that axe need not list the elements that pass.
         (within) => window.axe.run(within, { resultTypes: ['violations'] }),
         part,
     );
@@ -170,8 +171,8 @@ export async function checkAccessible(page, state, part = 'html') {
     assert.deepEqual(found, [], state);
 }
 
-// Returns functions that say where elements of a mesh are on the canvas, computed from the API's
-// numbers and from a camera that is put where view.js says.
+// Returns functions that say where elements of a mesh are on the canvas. They are computed from the
+// numbers of the API and from a camera at the place where the page puts its own at first.
 export async function projector(page, daemon, mesh) {
     const geometry = unpack(await getGeometry(daemon, mesh));
     const { width, height } = await page.locator('#canvas').boundingBox();
@@ -242,7 +243,7 @@ export function readPicture(png) {
             }
             return found;
         },
-        // Returns the mean of the places whose colours pass the test.
+        // Returns the mean of the places of all pixels whose colour passes the test.
         centreOf(test) {
             const sum = { x: 0, y: 0, count: 0 };
             for (let pixel = 0; pixel < count; pixel++) {
@@ -257,7 +258,7 @@ export function readPicture(png) {
     };
 }
 
-// The colours of gl/marks.js and gl/shaders.js, with a tolerance.
+// Whether a pixel has one of the colours of gl/marks.js or gl/shaders.js, with a tolerance.
 export const isBackground = ([r, g, b]) => r < 20 && g < 24 && b < 30;
 export const isChosen = ([r, g, b]) => r > 90 && r > g + 25 && g > b + 25;
 export const isBoundary = ([r, g, b]) => r < 100 && g > 150 && b > 170;

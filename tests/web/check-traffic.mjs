@@ -1,8 +1,8 @@
-// check-traffic.mjs FOLDER - checks that every recorded exchange in the files of FOLDER agrees with
-// the daemon's own OpenAPI document, and that every operation of the document was reached. The
-// document is one that a test fetched. Exchanges with one method, path and status count as one
-// test, because their number depends on how threads and frames happened to run; the last line is `N
-// passed, N failed`.
+// check-traffic.mjs FOLDER - checks that all requests and answers that were recorded in the files
+// of FOLDER agree with the daemon's OpenAPI document, and that every operation of the document was
+// used. The document is taken from an answer in these files. All exchanges with the same method,
+// path and status count as one test, because their number depends on how threads and frames
+// happened to run; the last line is `N passed, N failed`.
 
 import { createReadStream } from 'node:fs';
 import { readdir } from 'node:fs/promises';
@@ -11,8 +11,8 @@ import { createInterface } from 'node:readline';
 
 import { Contract } from './contract.mjs';
 
-const SHOWN_BYTES = 200; // of a target or body
-const SHOWN_WRONGS = 5; // of one test
+const SHOWN_BYTES = 200; // of a request's target or body, at most
+const SHOWN_WRONGS = 5; // exchanges of one test that are shown, at most
 
 const folder = process.argv[2];
 const names = (await readdir(folder)).filter((name) => name.endsWith('.ndjson')).sort();

@@ -1,5 +1,5 @@
-// Faces are drawn in the colours of their materials, which a legend names: they are read with a
-// file, changed by this page and by other clients, undone, and switched off.
+// Tests that faces are drawn in the colours of their materials, which a legend names. The colours
+// are read from a file, changed by the page and by other clients, undone, and switched off.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -47,8 +47,8 @@ const isGreen = ([r, g, b]) => g > 90 && r < 60 && b < 90;
 const isBlue = ([r, g, b]) => b > 180 && r < 60 && g < 60;
 const isLight = ([r, g, b]) => Math.min(r, g, b) > 110 && Math.max(r, g, b) - Math.min(r, g, b) < 12;
 
-// Returns a function that reads the colours in the middle of each face of the page's mesh, a few
-// pixels each.
+// Returns a function that reads 64 pixels in the middle of each face of the page's mesh, and
+// returns a map from the face's id to a function that counts those that pass a test.
 async function looker({ page, daemon, mesh }) {
     const [project, faces] = [await projector(page, daemon, mesh), await getAll(daemon, mesh, 'faces')];
     return async () => {

@@ -1,4 +1,5 @@
-// server/compose.yaml: it is well formed, and what it names exists in the image, in hedged and beside it.
+// Tests that server/compose.yaml is well formed, and that what it names exists: in the container's
+// image, among the options of hedged, or in the folder of the file.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -18,7 +19,7 @@ const compose = yaml.load(readFileSync(path.join(folder, 'compose.yaml'), 'utf8'
 const service = compose.services.hedged;
 const image = readFileSync(path.join(folder, service.build, 'Dockerfile'), 'utf8');
 
-// The last instruction of this name in the Dockerfile, on one line.
+// Returns the arguments of the last instruction of this name in the Dockerfile, on one line.
 function instruction(name) {
     const found = image.replaceAll(/\\\n\s*/g, '').match(new RegExp(`^${name} .*$`, 'gm'));
     assert.ok(found, `the Dockerfile has no ${name}`);

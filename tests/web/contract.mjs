@@ -1,9 +1,10 @@
-// contract.mjs - checks whether an exchange agrees with an OpenAPI document, with schemas that Ajv
-// compiles from the document: paths, parameters, statuses, headers, media types, and bodies.
+// contract.mjs - checks whether an exchange, a request with its answer, agrees with an OpenAPI
+// document: paths, parameters, statuses, headers, media types, and bodies. Ajv compiles the schemas
+// of the document.
 //
-// Answers must satisfy more than clients may rely on: a member that is not in the schema is
-// undocumented, so every object counts as closed here, although a later version of the API may add
-// members.
+// The check is stricter than what the document promises to clients: an object must have no member
+// that its schema does not list, because such a member is undocumented. Clients must expect that a
+// later version of the API adds members.
 
 import { createRequire } from 'node:module';
 import { gunzipSync } from 'node:zlib';
@@ -17,14 +18,14 @@ const LISTED = [
     'etag', 'location', 'link', 'allow', 'retry-after', 'export-warnings', 'accept-encoding',
     'content-encoding',
 ];
-// The statuses of faults that are found before the path is looked at.
+// The statuses with which a request may be refused before the server looks at its path.
 const BEFORE_ROUTING = [400, 403, 413, 414, 421, 429, 431, 501, 503, 505];
 const PROBLEM = 'application/problem+json';
 
 // --- closed schemas ---
 
-// Closes a schema to unknown members. A part of an allOf sees only its own members, so the whole is
-// closed and its parts stay open.
+// Returns a schema that refuses members which it does not list. The parts of an allOf stay open,
+// because each part lists only some of the members; the whole allOf is closed instead.
 function closed(schema, open) {
     if (Array.isArray(schema)) {
         return schema.map((each) => closed(each, open));
@@ -79,8 +80,8 @@ function newAjv({ components }) {
 
 // --- messages ---
 
-// Returns the headers of a message by their names in lower case; if there are several start lines,
-// only the last one counts.
+// Returns the headers of a message as a map from names in lower case to values. If a message has
+// several heads, such as 100 Continue before the answer, only the last one counts.
 function parseHead(head) {
     const block = head.trimEnd().split('\r\n\r\n').at(-1);
     const headers = new Map();
@@ -93,8 +94,8 @@ function parseHead(head) {
     return headers;
 }
 
-// Parses a message. A compressed body is decompressed if all of it is there and node knows the
-// coding.
+// Parses a recorded request or answer. A compressed body is decompressed if it was recorded
+// completely and node knows the coding.
 function parseMessage({ head, body, length }) {
     const headers = parseHead(head);
     const sent = Buffer.from(body ?? '', 'base64');
@@ -116,7 +117,7 @@ function unfold(bytes) {
     try {
         return gunzipSync(bytes);
     } catch {
-        return undefined; // of a request that was refused for it
+        return undefined; // the body is no gzip, for which the server refused the request
     }
 }
 
@@ -144,7 +145,7 @@ export class Contract {
             }
             return path;
         });
-        // Paths with literal segments come before those with variables.
+        // Paths with fixed segments are tried before those with variables in the same places.
         this.paths.sort((a, b) => variables(a) - variables(b));
     }
 
@@ -153,8 +154,8 @@ export class Contract {
         return this.operations.filter(({ hits }) => hits === 0).map(({ name }) => name);
     }
 
-    // Returns what an exchange is an example of, such as "GET /v1/meshes 200", and everything that
-    // is wrong with it, as sentences.
+    // Checks an exchange and returns {name, wrong}: its method, path and status, such as "GET
+    // /v1/meshes 200", and a list of sentences about everything that is wrong with it.
     check(exchange) {
         const { method, target, status } = exchange;
         const [path, query] = target.split(/\?(.*)/s);
@@ -189,8 +190,8 @@ export class Contract {
             wrong.push(`status ${status} is not declared`);
             return wrong;
         }
-        // If the body of the first answer to a request with a key was not kept, it cannot be
-        // repeated.
+        // If the server did not keep the body of the first answer to a request with an idempotency
+        // key, the answer to a repeated request has no body to check.
         if (!answer.headers.has('idempotency-replayed') || answer.bytes.length > 0) {
             this.checkHeaders(response, answer, wrong);
             this.checkBody(exchange, response, answer, wrong);
@@ -216,7 +217,7 @@ export class Contract {
             : value.$ref.slice(2).split('/').reduce((at, name) => at[name], this.document);
     }
 
-    // Returns what is wrong with a value, or null.
+    // Returns what is wrong with a value according to a schema, or null if nothing is.
     validate(schema, value) {
         const key = JSON.stringify(schema);
         if (!this.compiled.has(key)) {
@@ -237,7 +238,8 @@ export class Contract {
         }
     }
 
-    // A path with an extra slash at its end is redirected to a path of the document.
+    // Checks the redirect of a path with an extra slash at its end: it must lead to a path of the
+    // document.
     checkRedirect(path, answer, wrong) {
         const base = `http://host${path}`;
         const { pathname } = new URL(answer.headers.get('location') ?? '', base);
@@ -331,7 +333,7 @@ export class Contract {
 
     checkLines(schema, bytes, whole, wrong) {
         const lines = bytes.toString().split('\n');
-        const last = lines.pop(); // what is after the last end of a line, or was cut
+        const last = lines.pop(); // incomplete if the recording was cut, otherwise empty
         if (whole && last !== '') {
             wrong.push('the last line has no end');
         }
@@ -344,8 +346,8 @@ export class Contract {
         }
     }
 
-    // What is after the last empty line was cut. Without data there is no event, but a comment, or
-    // where to go on.
+    // Checks a recorded event stream. What follows the last empty line is an incomplete event, so
+    // it is left out. A block without data is no event but a comment, or sets the last event's id.
     checkEvents(schema, bytes, wrong) {
         for (const block of bytes.toString().split('\n\n').slice(0, -1)) {
             const fields = Object.fromEntries(block.split('\n').map((line) => line.split(/: ?(.*)/s)));
@@ -372,7 +374,7 @@ export class Contract {
             .map((scheme) => scheme.name);
         for (const [name, value] of new URLSearchParams(query ?? '')) {
             if (keys.includes(name)) {
-                continue; // says who asks, and is of the scheme
+                continue; // an access token, which belongs to the security scheme
             }
             const parameter = declared.find((p) => p.name === name);
             if (parameter === undefined) {
@@ -412,11 +414,11 @@ export class Contract {
         const content = requestBody?.content[media];
         if (content === undefined && standsForAny(media) && namesFormat(query)
             && requestBody?.content['application/octet-stream'] !== undefined) {
-            return; // the query says what the type does not
+            return; // ?format= in the query says what the body is, so that its type does not count
         } else if (content === undefined) {
             wrong.push(`a body of ${media} is not declared, and was taken`);
         } else if (answer.status === 202 && READS_AS_JOBS.test(content.schema?.$ref)) {
-            return; // it becomes a job before its body is read
+            return; // the request became a job, so the server has not read its body yet
         } else if (content.schema !== undefined && isJson(media) && whole && !namesFormat(query)) {
             const { schema } = content;
             const taken = schema.$ref?.endsWith('/query') ? takenOf(bytes, answer) : bytes;
@@ -427,8 +429,8 @@ export class Contract {
 
 const READS_AS_JOBS = /\/(query|walk)$/;
 
-// Media types that programs send for any bytes: curl sends none with -T, and that of a form with
-// --data-binary.
+// Returns whether a program sends this media type for bytes of any kind: curl sends none with -T,
+// and the type of a form with --data-binary.
 const standsForAny = (media) =>
     [undefined, 'text/plain', 'application/x-www-form-urlencoded'].includes(media);
 
@@ -436,7 +438,7 @@ const standsForAny = (media) =>
 const namesFormat = (query) =>
     !['json', null].includes(new URLSearchParams(query ?? '').get('format'));
 
-// Checks what a schema cannot say: that a header agrees with a member.
+// Checks what a schema cannot express: that a header of an answer agrees with a member of its body.
 function besides(value, status, response, headers) {
     const paged = response.headers?.Link !== undefined;
     if (paged && (value.next !== null) !== headers.has('link')) {
@@ -451,8 +453,8 @@ function besides(value, status, response, headers) {
     return null;
 }
 
-// A bad question among several is answered by a problem in its place; returns the body of the
-// request without such questions.
+// Returns the body of a request to /query without the questions that the server refused: each of
+// these has a problem in its place in the answer, and may disagree with the schema.
 function takenOf(bytes, { media, whole, bytes: answer }) {
     if (media !== 'application/json' || !whole) {
         return bytes;
@@ -471,7 +473,8 @@ function variables({ template }) {
     return template.split('{').length;
 }
 
-// Returns the values of the variables in a template, null if a path does not fit it.
+// Returns the values that a path has for the variables of a template such as /meshes/{mesh}, or
+// null if the path does not fit the template.
 function variablesOf(template, path) {
     const wanted = template.split('/');
     const given = path.split('/');
@@ -498,8 +501,8 @@ function decode(text) {
     }
 }
 
-// Returns whether a segment is allowed: a choice is a part of the path, and other values are
-// checked later.
+// Returns whether a variable of a path may have this value. Only enumerations are checked here,
+// because they decide which path it is; other schemas are checked later.
 function allowed({ schema }, value) {
     return schema.enum === undefined || schema.enum.includes(value);
 }

@@ -1,5 +1,5 @@
-// contract.test.mjs - the comparison of recorded traffic with the OpenAPI document accepts what a
-// daemon really answered, and finds every kind of change made to it.
+// contract.test.mjs - tests the comparison of recorded traffic with the OpenAPI document: it must
+// accept what a daemon really answered, and find every kind of falsified answer.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -35,7 +35,7 @@ function message(headers, body) {
     return { head, body: bytes.toString('base64'), length: bytes.length };
 }
 
-// Sends a request, and returns the exchange as it is in a file of traffic.
+// Sends a request, and returns it with its answer in the form in which traffic.mjs records both.
 async function ask(method, target, body, headers = {}) {
     const all = body === undefined ? headers : { 'content-type': 'application/json', ...headers };
     const plain = { ...all, 'accept-encoding': 'identity' }; // fetch would hide a coding
@@ -49,7 +49,7 @@ async function ask(method, target, body, headers = {}) {
     };
 }
 
-// Returns the exchange with another body, given by a function of its text or of its JSON value.
+// Returns a copy of a recorded request or answer, whose body is the result of `change(text)`.
 function rewrite(part, change) {
     const text = Buffer.from(part.body, 'base64').toString();
     const body = Buffer.from(change(text));
@@ -72,7 +72,7 @@ function answeringHead(change) {
     return ({ answer, ...rest }) => ({ ...rest, answer: { ...answer, head: change(answer.head) } });
 }
 
-// Returns the message as it would be in gzip.
+// Returns a recorded request or answer as it would be if its body were compressed by gzip.
 function gzipped({ head, body }) {
     const packed = gzipSync(Buffer.from(body, 'base64'));
     return {
@@ -120,7 +120,8 @@ test('what it says in gzip is what it promises', async () => {
     }
 });
 
-// Each row: a title, a request, how its exchange is falsified, and what the comparison must say.
+// Each row has a title, a request, a function that falsifies the exchange, and what the comparison
+// must say about it.
 const lies = [
     ['a status that is not declared', HALFEDGE, (e) => ({ ...e, status: 202 }), /202 is not decl/],
     ['a media type that is not declared', HALFEDGE,
@@ -234,7 +235,7 @@ test('found: an event that is not as it was described', async () => {
     assert.match(contract.check(renamed).wrong.join('; '), /^event end: /);
 });
 
-// Returns the output of the last step of `make test` for a folder.
+// Returns what check-traffic.mjs, the last step of `make test`, prints about some exchanges.
 async function checkFolder(t, exchanges) {
     const folder = await mkdtemp(path.join(tmpdir(), 'hedge-traffic-'));
     t.after(() => rm(folder, { recursive: true }));

@@ -1,9 +1,11 @@
-// cuttable.mjs - a proxy to a daemon that a test can cut, as a network failure does.
+// cuttable.mjs - a proxy to a daemon; a test can make it break all connections, like a failure of
+// the network.
 
 import { connect, createServer } from 'node:net';
 
-// Returns {url, cut(), mend(), closers, stop()}: cut() ends all connections and lets none through
-// until mend(). The test itself still reaches the daemon directly.
+// Starts the proxy and returns {url, cut(), mend(), closers, stop()}: cut() ends all connections
+// through the proxy and allows no new ones until mend() is called. The daemon's own address still
+// works.
 export async function cuttable(t, daemon) {
     const { hostname, port } = new URL(daemon.url);
     const sockets = new Set();

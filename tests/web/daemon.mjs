@@ -1,6 +1,7 @@
 // daemon.mjs - starts the real daemon for a test on a free port, and stops it when the test ends.
 //
-// HEDGED is the program and HEDGE_PAGE the built page; without them those of `make` are used.
+// The variable HEDGED is the path of the program and HEDGE_PAGE that of the built page; the default
+// paths are those to which `make` writes.
 
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
@@ -22,7 +23,7 @@ export async function startDaemon(t, ...flags) {
         stdio: ['ignore', 'ignore', 'pipe'],
     });
     const ended = new Promise((resolve) => {
-        child.on('exit', resolve); // with its status
+        child.on('exit', resolve); // resolves with the exit status
         child.on('error', resolve);
     });
     let proxy;
@@ -63,7 +64,7 @@ async function call(url, options) {
     return body;
 }
 
-// Returns an answer of the API, requested by the test and not by the page.
+// Sends a GET to the API directly, not through the page, and returns the answer.
 export function get(daemon, path) {
     return call(`${daemon.url}/v1/meshes${path}`);
 }

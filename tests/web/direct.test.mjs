@@ -1,5 +1,5 @@
-// The tools of the view: a key or a button selects a tool, and a drag or a click uses it, in
-// Chromium with the real daemon.
+// Tests of the tools of the 3D view: a key or a button selects a tool, and a drag or a click uses
+// it, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ import { openMesh } from './visit.mjs';
 const CUBE = { name: 'cube', shape: 'cube' };
 const GRID = { name: 'grid', shape: 'grid', columns: 2, rows: 2 };
 
-// A drag may begin anywhere: the selected elements move.
+// Where the drags of these tests begin. A drag moves the selected elements wherever it begins.
 const START = { x: 60, y: 60 };
 
 async function dragBy(page, x, y, during = () => {}) {

@@ -1,4 +1,5 @@
-// docs.test.mjs - the manual at /docs in Chromium, under the daemon's own content security policy.
+// docs.test.mjs - tests the manual at /docs in Chromium, with the content security policy that the
+// daemon sends.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

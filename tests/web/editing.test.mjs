@@ -1,4 +1,5 @@
-// Half-edges, arrows, boundaries, operations, keys and links, in Chromium with the real daemon.
+// Tests of half-edges, arrows, boundaries, operations, keys and links on the page, in Chromium with
+// the real daemon.
 
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
@@ -172,7 +173,7 @@ test('rings, lengths, angles and areas are those of the API', async (t) => {
     for (const name of ['outgoing', 'vertices', 'faces']) {
         assert.deepEqual(await ring(name), (await get(daemon, `/${mesh}/vertices/6/${name}`)).ids);
     }
-    // The ids of neighbours are links, too.
+    // The ids of neighbours must be links, too.
     const [first] = await ring('outgoing');
     await page.locator('[data-ring="outgoing"] button').first().click();
     await waitForFrame(page, { selection: `halfedge:${first}` });
@@ -270,7 +271,8 @@ test('an operation takes its elements from the selection', async (t) => {
     const [made] = (await getAll(daemon, mesh, 'vertices')).slice(-1);
     assert.deepEqual(made.position, [0, 0, 2]);
 
-    // If an operation takes an edge, a selected half-edge must fill in its edge.
+    // If an operation takes an edge and a half-edge is selected, the form must be filled with the
+    // edge of the half-edge.
     await goTo(page, 'halfedge', 4);
     await page.locator('#operation').selectOption('edge_split');
     assert.equal(await page.locator('#param-edge').inputValue(), '2');
@@ -369,7 +371,7 @@ test('what is shown is in the address, and an address shows it again', async (t)
     const wanted = new URLSearchParams(new URL(address).hash).get('camera').split(',');
     const camera = (await cameraOf(second)).split(',');
     wanted.forEach((value, i) => assert.ok(Math.abs(value - camera[i]) < 1e-4, `${camera}`));
-    // The user types an address into the open page.
+    // Now the address changes while the page is open, as if the user had typed another one.
     await second.evaluate(() => {
         window.location.hash = '#mesh=none';
     });

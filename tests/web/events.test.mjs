@@ -1,4 +1,5 @@
-// The parser of event streams must give the same events in whatever pieces the stream arrives.
+// Tests that the parser of event streams returns the same events in whatever pieces a stream
+// arrives.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

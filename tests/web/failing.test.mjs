@@ -1,4 +1,4 @@
-// A failure must be shown in a message, and what was shown before must stay.
+// Tests that the page shows a failed request in a message, and keeps showing what it did before.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ const CUBE = { name: 'cube', shape: 'cube' };
 
 const closeToast = (page) => page.getByRole('button', { name: 'Close message' }).click();
 
-// Answers to an edit from a server that cannot do it, or from a gateway before the server.
+// Answers to an edit from a server that refuses it, or from a gateway in front of the server.
 const REFUSALS = [
     [409, { title: 'Mesh busy', detail: 'a long operation is running on it' }],
     [412, { title: 'Stale', detail: 'the mesh is at revision 9' }],

@@ -1,5 +1,5 @@
-// The forms of operations: fields are filled by clicks, and the effect of an edit is described
-// before it is sent, in Chromium with the real daemon.
+// Tests of the forms of operations: fields are filled by clicks, and the effect of an edit is
+// described before it is sent, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,4 +1,5 @@
-// Arrays, arrows, measures, links and picking, tested with numbers alone: no browser and no server.
+// Tests of the page's modules for arrays, arrows, measures, links and picking, without a browser
+// and without a server.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -33,8 +34,8 @@ import {
     turnTo,
 } from '../../web/src/view.js';
 
-// Builds an answer as a server sends it: points are [x, y, z, state], triangles [a, b, c, face,
-// sides].
+// Builds an answer of GET .../geometry as the server sends it: points are [x, y, z, state],
+// triangles [a, b, c, face, sides].
 function answer(points, triangles, { revision = 1n, frame = [0, 0, 0, 1] } = {}) {
     const buffer = new ArrayBuffer(HEADER_BYTES + 16 * (points.length + triangles.length));
     const view = new DataView(buffer);
@@ -204,7 +205,7 @@ test('angles are right at every size', () => {
     near(angleBetween([1e300, 0, 0], [1e-300, 1e-300, 0]), 45);
     near(angleBetween([1, 0, 0], [-1, 0, 0]), 180);
     assert.ok(!Number.isNaN(angleBetween([0, 0, 0], [1, 0, 0])));
-    // The edge of a cube that runs up, whose left face looks to -x and whose right face to -y.
+    // This is an edge of a cube between a face that looks to -x and one that looks to -y.
     near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, -1]), 90);
     near(foldAngle([0, -1, 0], [-1, 0, 0], [0, 0, 1]), -90);
 });

@@ -1,5 +1,5 @@
-// Changes of the geometry that the page's module has applied must equal the arrays that a real
-// daemon sends afresh.
+// Tests that the page's arrays, after it has applied changes to them, equal the complete arrays
+// that a real daemon sends.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -12,7 +12,7 @@ import { countIssued, numbersFrom, randomEdit } from './random.mjs';
 const EDITS = Number(process.env.EDITS ?? 1000);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Returns arrays without spare capacity, so that changes must enlarge them.
+// Returns an answer's arrays without spare capacity, so that changes must enlarge them.
 function wholeOf(buffer) {
     const geometry = unpack(buffer);
     const { vertices, vertexCount, triangles, triangleCount } = geometry;
@@ -110,9 +110,9 @@ test('after random edits the patched arrays equal fresh ones', async (t) => {
     console.log(`note: ${tally.changes} changes of ${bytes} bytes, ${tally.whole} fetched whole`);
 });
 
-// --- by numbers alone ---
+// --- without a daemon ---
 
-// Builds an answer with these rows: [place, a, b, c, d].
+// Builds an answer of GET .../geometry?since= with these changed rows: [index, a, b, c, d].
 function answer(vertices, triangles, { base = 1, layout = 9, counts = [3, 2] } = {}) {
     const bytes = [vertices, triangles].map(
         (rows) => 16 * Math.ceil(rows.length / 4) + 16 * rows.length,

@@ -1,4 +1,4 @@
-// The meaning of a drag when several faces are selected.
+// Tests what a drag does when several faces are selected.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -6,8 +6,8 @@ import { test } from 'node:test';
 import { ROW } from '../../web/src/geometry.js';
 import { begin, drag, regionsOf } from '../../web/src/gesture.js';
 
-// Makes squares of two triangles each, from the ids of their corners; vertex 3 y + x lies at (x,
-// y).
+// Makes the arrays of a mesh of squares, of two triangles each, from the ids of their corners.
+// Vertex 3 y + x lies at (x, y).
 function squares(faces) {
     const vertices = new Float32Array(4 * ROW);
     for (let id = 0; id < 12; id++) {
@@ -49,8 +49,8 @@ test('all faces that are selected are drawn where they will be', () => {
     const { operation, lines } = drag(gesture, { ...view, height: 100 }, [0, -10]);
     assert.deepEqual(operation.faces, [0, 1, 2]);
     assert.equal(operation.region, true);
-    // Each edge of the rim has lines for a side and for its new position, the inner edge for its
-    // new position: two ends each.
+    // Each of the ten outer edges has two lines, for a side face and for the edge's new position;
+    // the inner edge has one line, for its new position. A line has two ends of three coordinates.
     assert.equal(lines.length, 3 * 2 * (2 * 10 + 1));
     const heights = new Set(lines.filter((_, i) => i % 3 === 2));
     assert.deepEqual([...heights], [0, operation.distance]);

@@ -1,10 +1,11 @@
-// held.mjs - a proxy to a daemon that passes levels of detail on only as the test allows.
+// held.mjs - a proxy to a daemon that holds back answers with levels of detail, and passes on only
+// the part of them that a test allows.
 
 import { EventEmitter, once } from 'node:events';
 import { createServer, request as send } from 'node:http';
 
-// Returns {url, next(), closers, stop()}: next() returns the next answer of levels that the page
-// requests, of which the page has got nothing yet:
+// Starts the proxy and returns {url, next(), closers, stop()}. next() waits until the page requests
+// levels and returns an object that controls the answer, of which nothing is passed on at first:
 //
 //   sendTo(part)  passes on everything up to a part of its bytes, 0 to 1
 //   end()         ends the answer as if it were complete

@@ -1,5 +1,5 @@
-// Levels of detail in the page: the mesh is shown from coarse to fine, with a slider, and then as
-// it was.
+// Tests of levels of detail on the page: the mesh is shown from coarse to fine, a slider chooses a
+// level, and at the end the mesh itself is shown again.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -32,14 +32,15 @@ const waitForFrames = (page) =>
             }),
     );
 
-// Opens a mesh like openMesh(), with levels that arrive only when the test lets them.
+// Opens a mesh like openMesh(), but levels of detail arrive only as far as the test allows.
 async function openHeld(t, options) {
     const daemon = await startDaemon(t);
     const { id: mesh } = await post(daemon, '', SPHERE);
     const held = await holdLevels(t, daemon);
     const page = await openPage(t, held, options);
     await waitForFrame(page, { mesh, revision: 1 });
-    // Presses the button for levels; returns the answer that the test holds.
+    // Presses the button that shows levels; returns the object that controls the answer, see
+    // held.mjs.
     const ask = async () => {
         const next = held.next();
         await levels(page).click();
@@ -48,7 +49,7 @@ async function openHeld(t, options) {
     return { daemon, mesh, page, ask };
 }
 
-// Sends a part of an answer, and waits until the page has it.
+// Lets the page have a part of an answer, and waits until the page has read that part.
 async function sendTo(page, answer, part) {
     answer.sendTo(part);
     await page.waitForFunction(
@@ -64,7 +65,8 @@ async function checkGivenUp(page) {
     assert.equal(await levels(page).getAttribute('aria-pressed'), 'false');
 }
 
-// Returns the numbers of faces in all frames from now on, until a frame has this number.
+// Returns a promise of the numbers of faces in all frames from now on, up to the first frame with
+// `faces` faces.
 function seenUntil(page, faces) {
     return page.evaluate(
         (last) =>
@@ -169,7 +171,7 @@ test('levels are given up when the mesh changes, is picked in, or another is ope
     await waitForMesh(page);
     assert.ok(await page.locator('#levels').isHidden());
 
-    // A cube has no triangles, so the server refuses and says what to do.
+    // The faces of a cube are no triangles, so the server refuses levels and says what to do.
     await levels(page).click();
     await expectToast(page, /triangulate first/);
     assert.ok(await page.locator('#levels').isHidden());
@@ -221,7 +223,7 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     const answer = await ask();
     const valueText = () => slider(page).getAttribute('aria-valuetext');
     await sendTo(page, answer, 0.5);
-    // Levels that are shown while playing must not be announced to screen readers.
+    // Screen readers must hear "Playing" instead of each level that is shown while playing.
     assert.equal(await valueText(), 'Playing');
     await page.getByRole('button', { name: 'Pause' }).click();
     await page.getByRole('button', { name: 'Play' }).waitFor();
@@ -234,7 +236,7 @@ test('playing waits for what has not come, and can be stopped and begun again', 
     assert.equal(await slider(page).inputValue(), place);
     await page.getByRole('button', { name: 'Play' }).click();
     await waitForFaces(page, FACES);
-    // If playing begins at the end of the slider, it must begin again with the base.
+    // If the slider is at its end, playing must begin with the coarsest level.
     await page.getByRole('button', { name: 'Play' }).waitFor();
     const again = seenUntil(page, 4);
     await page.getByRole('button', { name: 'Play' }).click();

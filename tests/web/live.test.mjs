@@ -1,5 +1,5 @@
-// Edits of other clients appear on the page, even if its event stream is cut or refused, and the
-// selection survives them.
+// Tests that edits of other clients appear on the page, even if its event stream is cut or refused,
+// and that the selection survives them.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -22,7 +22,8 @@ const GRID = { name: 'grid', shape: 'grid', columns: 3, rows: 3 };
 const edit = (daemon, mesh, operation) => post(daemon, `/${mesh}/edits`, operation);
 const noteOf = (page, state) => page.locator(`#connection[data-state="${state}"]`);
 
-// Returns the list of the page's requests, from now on, whose URL contains a text.
+// Returns a list to which the URLs of all further requests of the page are added that contain a
+// text.
 function requestsOf(page, text) {
     const found = [];
     page.on('request', (request) => {
@@ -33,12 +34,13 @@ function requestsOf(page, text) {
     return found;
 }
 
-// Repeats a test until it holds; the time limit of the test ends this.
+// Waits until a condition holds. If it never does, the time limit of the whole test ends the wait.
 async function waitFor(holds) {
     while (!(await holds()));
 }
 
-// Holds the first request to a path back: returns {asked, release()}.
+// Holds back the page's first request that matches a pattern. Returns {asked, release()}: a promise
+// that resolves when the page has sent the request, and a function that lets the answer through.
 async function hold(page, pattern) {
     let release;
     let ask;
@@ -77,7 +79,7 @@ test('what one page does is seen on another, and costs no whole mesh', async (t)
         await one.getByRole('button', { name: 'Fit view' }).click();
     }
     assert.deepEqual(fetched.filter((url) => !url.includes('since=')), []);
-    // Both pages must show what a page shows that has just been opened.
+    // Both pages must show the same picture as a page that has just been opened.
     await press(page, 'Escape');
     const third = await openPage(t, daemon, { path: `/#mesh=${mesh}` });
     await waitForFrame(third, { mesh, revision: 4 });
@@ -208,7 +210,7 @@ test('an element that is gone is said, with a way to what it is part of', async 
     const context = await openMesh(t, GRID);
     const { daemon, mesh, page } = context;
     const gone = page.locator('#element-gone li');
-    // A collapse merges the selected vertex into another one, which the page must offer.
+    // A collapse merges the selected vertex into another one; the page must offer to select that.
     const { vertices } = await get(daemon, `/${mesh}/edges/5`);
     const made = await edit(daemon, mesh, {
         dry_run: true,
@@ -226,8 +228,8 @@ test('an element that is gone is said, with a way to what it is part of', async 
     await page.keyboard.press('Enter');
     await checkInspector(context, 'vertex', heir);
     assert.equal(await gone.count(), 0);
-    // An undo removes the faces into which a face was divided, and the page must offer the original
-    // one.
+    // An undo removes the faces into which a face was divided; the page must offer to select the
+    // face that was divided.
     const { created } = await edit(daemon, mesh, { op: 'face_poke', face: 8 });
     await waitForFrame(page, { revision: 3 });
     await goTo(page, 'face', created.faces[0]);
@@ -235,13 +237,13 @@ test('an element that is gone is said, with a way to what it is part of', async 
     await waitForFrame(page, { revision: 4, selection: '' });
     await page.getByRole('button', { name: 'Redo' }).click();
     await waitForFrame(page, { revision: 5 });
-    assert.equal(await gone.count(), 0); // it is back
+    assert.equal(await gone.count(), 0); // the face exists again
     await goTo(page, 'face', created.faces[0]);
     await page.getByRole('button', { name: 'Undo' }).click();
     await waitForFrame(page, { revision: 6, selection: '' });
     await gone.getByRole('button', { name: 'Face 8' }).click();
     await checkInspector(context, 'face', 8);
-    // If a face is deleted, nothing replaces it, so the page must offer nothing.
+    // If a face is deleted, nothing replaces it, so the page must offer no other element.
     await edit(daemon, mesh, { op: 'face_delete', face: 8 });
     await waitForFrame(page, { revision: 7, selection: '' });
     assert.match(await gone.textContent(), /^Face 8 is gone/);
@@ -261,7 +263,7 @@ test('what is selected while a change is fetched stays selected', async (t) => {
     release();
     await waitForFrame(page, { revision: 2, selection: 'face:0' });
     await checkInspector(context, 'face', 0);
-    // The answer was made before a change and arrives after it.
+    // The answer about face 0 is made before an edit of the mesh, but arrives after the edit.
     const late = await hold(page, '**/faces/0');
     await page.locator('#goto-id').fill('0');
     await page.getByRole('button', { name: 'Go', exact: true }).click();

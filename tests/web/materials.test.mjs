@@ -1,5 +1,6 @@
-// Materials go from an OBJ file with its library as GLB to three.js and back: names and colours
-// must stay at the same faces. three.js must also read the library that is written.
+// Tests that materials survive the way from an OBJ file and its MTL library, as a GLB file, to
+// three.js and back: names and colours must stay at the same faces. three.js must also read the MTL
+// library that the server writes.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -79,7 +80,7 @@ test('materials stay at their faces on the way to three.js and back', async (t) 
     assert.ok(triangles.some((line) => line.endsWith('red 1.0000,0.2500,0.0000,0.5000,0.0000,1.0000')));
     assert.ok(triangles.some((line) => line.endsWith('green 0.0000,0.7500,0.1250,1.0000,0.5000,0.2500')));
 
-    // the file that three.js writes must have the same materials at the same triangles
+    // The file that three.js writes must have the same materials at the same triangles.
     globalThis.FileReader = FileReader;
     const written = await new GLTFExporter().parseAsync(scene, { binary: true });
     const back = await create(url, written, 'model/gltf-binary');
@@ -87,8 +88,8 @@ test('materials stay at their faces on the way to three.js and back', async (t) 
     assert.deepEqual((await drawn(again)).triangles, triangles);
     assert.deepEqual((await materials(url, back.id)).map(({ name }) => name).sort(), ['green', 'red']);
 
-    // read here again, the file must have its six faces, and a changed colour must appear in the
-    // next file
+    // If the server reads its own file, the mesh must have six faces, and a colour that is changed
+    // must appear in the next file.
     const own = await create(url, glb, 'model/gltf-binary');
     assert.equal(own.counts.faces, 6);
     assert.deepEqual(await materials(url, own.id), [red, green]);

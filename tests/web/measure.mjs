@@ -1,9 +1,9 @@
-// measure.mjs [FOLDER] - how long meshes of a thousand, a hundred thousand and a million faces take
-// to open, to draw, to pick in and to edit, and how many bytes an edit fetches; with FOLDER a
-// screenshot of each. Then how long so many triangles take to be shown from coarse to fine: a frame
-// of all of them, until the base is there, the frames of playing, and those in which the slider
-// goes to another place.
-// Not a test: what it prints depends on the machine.
+// measure.mjs [FOLDER] - measures how long meshes of a thousand, a hundred thousand and a million
+// faces take to open, to draw, to pick in and to edit, and how many bytes the page fetches after an
+// edit; if FOLDER is given, saves a screenshot of each mesh there. Then measures how long levels of
+// detail take: a frame of all triangles, the time until the coarsest level is shown, the frames
+// while levels are played, and the frames after the slider was moved. This is not a test: what it
+// prints depends on the machine.
 
 import { writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -67,7 +67,7 @@ async function measure(browser, daemon, side) {
         () => waitForFrame(page, { revision: 2 }),
     );
     const edited = bytes();
-    // The time until the arrays have the edit, and until it is drawn.
+    // Measures the time until the page's arrays contain an edit, and until the edit is drawn.
     const start = performance.now();
     await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: 0 });
     await page.waitForFunction(
@@ -90,7 +90,7 @@ async function measure(browser, daemon, side) {
     }
     await page.close();
     const { counts: after } = await get(daemon, `/${mesh}`);
-    // The other client made the last edit, so the undo took back that one.
+    // The last edit was the other client's, so the undo must have taken back that edit.
     if (after.faces !== counts.faces + 3) {
         throw new Error(`${after.faces} faces after undo, not ${counts.faces + 3}`);
     }
@@ -133,8 +133,8 @@ async function measureLevels(browser, daemon, side) {
             slider.value = place;
             slider.dispatchEvent(new Event('input'));
             const start = performance.now();
-            await frame(); // goes there
-            jumps.push((await frame()) - start); // is drawn
+            await frame(); // in this frame the page goes to the level
+            jumps.push((await frame()) - start); // now the level is drawn
         }
         return [frames, jumps];
     }, PLACES);

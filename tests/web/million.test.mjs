@@ -1,4 +1,4 @@
-// A torus of a million quads can be opened, picked in, edited and undone.
+// Tests that a torus of a million quadrilaterals can be opened, picked in, edited and undone.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -45,7 +45,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     assert.ok(isChosen(canvas.colour(width / 2, height / 2)));
     assert.ok(canvas.countOf(isChosen) > 1000);
 
-    // After an edit the page must fetch only what the edit changed, and the statistics.
+    // After an edit the page must fetch only the changed parts of the arrays, and the statistics.
     const bytes = await countBytes(page);
     const whole = [];
     page.on('request', (request) => {
@@ -59,7 +59,7 @@ test('a torus of a million quads opens, is picked in, edited and undone', async 
     await waitForStatistics(page, { faces: counts.faces + 3, revision: 2 });
     console.log(`note: an edit of ${counts.faces} faces: ${bytes()} bytes`);
     assert.ok(bytes() > 100 && bytes() < 65536, `${bytes()} bytes`);
-    // The last of the new faces must be where the server has it.
+    // The last of the new faces must have the members that the server says.
     const made = counts.faces + 2;
     await goTo(page, 'face', made);
     await checkInspector({ daemon, mesh, page }, 'face', made);

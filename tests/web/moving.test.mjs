@@ -1,4 +1,5 @@
-// The camera is moved by mouse, wheel, keyboard and fingers, and turns to the selection.
+// Tests that mouse, wheel, keyboard and fingers move the camera, and that it turns to the
+// selection.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -19,7 +20,7 @@ import { openMesh, openPage } from './visit.mjs';
 
 const CUBE = { name: 'cube', shape: 'cube' };
 
-// Returns the size of the mesh on the canvas, and where its middle is.
+// Returns how many pixels of the canvas show the mesh, and the mean of their places.
 async function look(page) {
     const canvas = await readCanvas(page);
     const isMesh = (colour) => !isBackground(colour);

@@ -1,5 +1,5 @@
-// openapi.test.mjs - the OpenAPI document uses only what generators of clients understand, and the
-// paths that a newcomer tries first lead somewhere.
+// openapi.test.mjs - tests that the OpenAPI document uses only what generators of clients
+// understand, and that the paths that a newcomer tries first lead somewhere.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -13,7 +13,7 @@ import { startDaemon } from './daemon.mjs';
 
 const plain = fileURLToPath(new URL('../../.ci/openapi/plain.mjs', import.meta.url));
 
-// Returns what each lint says about the document after `change`.
+// Returns what the checkers of OpenAPI documents find wrong with the document after `change`.
 async function faultsOf(folder, document, change) {
     const copy = structuredClone(document);
     change(copy);

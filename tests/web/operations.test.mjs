@@ -1,4 +1,4 @@
-// Every operation of the server's table is used from the panel: its form is filled by clicks,
+// Tests that every operation of the server can be used from the page: its form is filled by clicks,
 // tried, applied and undone, in Chromium with the real daemon.
 
 import assert from 'node:assert/strict';
@@ -25,7 +25,7 @@ async function goThrough({ daemon, page }, scenario) {
     await page.getByRole('button', { name: 'Apply' }).click();
     await waitForFrame(page, { mesh, revision: revision + 1 });
     if (scenario.name === 'compact') {
-        return; // what was before it has other ids
+        return; // compact gives the elements other ids and cannot be undone
     }
     await page.getByRole('button', { name: 'Undo', exact: true }).click();
     await waitForFrame(page, { mesh, revision: revision + 2 });

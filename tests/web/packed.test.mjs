@@ -1,6 +1,6 @@
-// EXT_meshopt_compression between this server and other programs: three.js must read what the
-// server writes, and the server must read what the encoder of meshoptimizer writes, with the result
-// that three.js has.
+// Tests the glTF extension EXT_meshopt_compression between the server and other programs: three.js
+// must read what the server writes, and the server must read what the encoder of meshoptimizer
+// writes, with the same result as three.js.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -43,8 +43,8 @@ function jsonOf(glb) {
     return JSON.parse(new TextDecoder().decode(new Uint8Array(glb, 20, length)));
 }
 
-// Returns triangles by their corners, beginning with the lowest one, because compression may rotate
-// the corners of a triangle.
+// Returns a text for each triangle: its corners, beginning with the lowest index, because
+// compression may rotate the corners of a triangle.
 function trianglesOf(index) {
     const list = [];
     for (let i = 0; i < index.length; i += 3) {
@@ -93,7 +93,8 @@ test('three.js reads what is packed here', async (t) => {
     }
     assert.deepEqual(trianglesOf(seen.geometry.index.array),
         trianglesOf(wanted.geometry.index.array));
-    // read here again, the mesh must be as it was, with its polygons and values of corners
+    // If the server reads its own file, the mesh must be as it was, with its polygons and with the
+    // values of corners.
     const back = await create(url, 'model/gltf-binary', packed);
     const text = async (mesh) => new TextDecoder().decode(await exported(url, mesh, 'format=obj'));
     assert.equal(await text(back.id), await text(id));
@@ -239,7 +240,7 @@ for (const mode of ['TRIANGLES', 'INDICES']) {
         close(values('color').flat(),
             all.flatMap((i) => [color.getX(i), color.getY(i), color.getZ(i), color.getW(i)]),
             1e-6, 'color');
-        // directions must be transformed with the node, which is scaled differently along its axes
+        // Normals must be transformed by the node's matrix, which scales each axis differently.
         const turned = all.flatMap((i) => {
             const v = [normal.getX(i) / 10, normal.getY(i) / 10, normal.getZ(i) / 2];
             const length = Math.hypot(...v);

@@ -1,11 +1,11 @@
-// page.mjs - what a visitor does on the page, and what a visitor reads there.
+// page.mjs - functions that do what a user does on the page, and read what a user reads there.
 
 import assert from 'node:assert/strict';
 
 import { waitForFrame } from './browser.mjs';
 import { get } from './daemon.mjs';
 
-// Returns the members in the inspector as text, by name.
+// Returns the texts that the inspector shows for the members of an element, by member.
 export function readMembers(page) {
     return page.locator('#members').evaluate((list) =>
         Object.fromEntries(
@@ -45,13 +45,13 @@ export async function press(page, key) {
     await page.locator('#canvas').press(key);
 }
 
-// Returns the camera in the address, once the camera is at rest and has been written there.
+// Waits until the camera is at rest, and returns its numbers as they are in the page's address.
 export async function cameraOf(page) {
     await page.locator('#canvas:not([data-moving])').waitFor();
     return /camera=([^&]*)/.exec(page.url())?.[1];
 }
 
-// Selects an element by the form for ids.
+// Selects an element by the form into which the user types a kind and an id.
 export async function goTo(page, kind, id) {
     await page.locator('#goto-kind').selectOption(kind);
     await page.locator('#goto-id').fill(`${id}`);

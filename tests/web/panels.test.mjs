@@ -1,5 +1,5 @@
-// The panels around the view: what the server says about a mesh, and what a form sends to the
-// server.
+// Tests of the panels around the view: they must show what the server says about a mesh, and send
+// what the user puts into a form.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -70,7 +70,7 @@ test('measures are rounded for the eye, and whole in their titles', async (t) =>
     assert.ok(shown.length < 9 && Math.abs(Number(shown) - area) < 1e-5, shown);
 });
 
-// Applies the form as it is filled, and returns the operation that was sent.
+// Presses the form's button Apply, and returns the operation that the page has sent.
 async function apply(page) {
     const sent = page.waitForRequest(isEdit);
     await page.getByRole('button', { name: 'Apply' }).click();

@@ -1,12 +1,12 @@
-// png.mjs - the pixels of a screenshot, a PNG as Chromium writes it: 8 bits, RGB or RGBA, not
+// png.mjs - reads the pixels of a screenshot, a PNG as Chromium writes it: 8 bits, RGB or RGBA, not
 // interlaced. The filters are described in the PNG specification (W3C), 9.2.
 
 import assert from 'node:assert/strict';
 import { inflateSync } from 'node:zlib';
 
-const CHANNELS = { 2: 3, 6: 4 }; // by colour type
+const CHANNELS = { 2: 3, 6: 4 }; // numbers of channels by PNG colour type
 
-// Returns {width, height, channels, pixels}; the rows begin at the top.
+// Returns {width, height, channels, pixels}, with the rows of pixels from top to bottom.
 export function readPng(file) {
     const [width, height] = [16, 20].map((at) => file.readUInt32BE(at));
     const channels = CHANNELS[file[25]];
@@ -32,7 +32,8 @@ function chunksOf(file, wanted) {
     return found;
 }
 
-// Writes a row of pixels at `at`; the pixels to the left and above are there already.
+// Undoes the PNG filter of a row and writes the row's bytes into `pixels`, from index `at` on. The
+// pixels above must have been written before.
 function undo(filter, row, pixels, at, stride, channels) {
     const guess = FILTERS[filter];
     for (let i = 0; i < stride; i++) {

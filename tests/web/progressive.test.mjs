@@ -1,5 +1,5 @@
-// Meshes from coarse to fine: the bytes that the daemon sends, and the arrays that the page makes
-// of them.
+// Tests of levels of detail: the bytes of GET .../progressive that the daemon sends, and the arrays
+// that the page makes of them.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -44,7 +44,8 @@ async function getStream(daemon, mesh) {
     return new Uint8Array(await answer.arrayBuffer());
 }
 
-// Reads a stream in parts of given lengths; returns the levels, and the ids of their vertices.
+// Reads the bytes of an answer in parts, whose lengths nextLength() returns. Returns the levels,
+// and the ids of their vertices.
 function read(stream, frame, nextLength) {
     let levels;
     const ids = [];
@@ -75,15 +76,15 @@ const WHOLE = { origin: [0, 0, 0], scale: 1 };
 
 const readWhole = (stream, frame = WHOLE) => read(stream, frame, () => stream.length);
 
-// Returns the corners of each triangle that is drawn.
+// Returns the three corners of each triangle that is drawn.
 function cornersOf({ triangles, triangleCount }) {
     return Array.from({ length: triangleCount }, (_, i) => [
         ...triangles.subarray(4 * i, 4 * i + 3),
     ]);
 }
 
-// Returns the half-edges of some triangles by origin and target, which must differ, because
-// otherwise the triangles are no surface.
+// Returns the half-edges of some triangles as texts of origin and target. Two triangles must not
+// have the same half-edge, because otherwise they are no surface.
 function halfedgesOf(triangles) {
     const found = new Set();
     for (const [a, b, c] of triangles) {
@@ -99,7 +100,7 @@ const edgeOf = (halfedge) => halfedge.split('>').map(Number).sort((a, b) => a - 
 
 const edgesOf = (triangles) => new Set([...halfedgesOf(triangles)].map(edgeOf));
 
-// Requires that each vertex has one fan of triangles around it.
+// Checks that the triangles around each vertex form one fan, in which neighbours share an edge.
 function checkFans(triangles) {
     const next = new Map();
     for (const corners of triangles) {
@@ -247,7 +248,7 @@ test('levels can be shown while more come', async (t) => {
     all.goTo(all.most);
     assert.deepEqual(levels.geometry, all.geometry);
     assert.equal(levels.part, 1);
-    // A mesh that cannot be coarser has no other level.
+    // A mesh that cannot be simplified, such as a tetrahedron, must have one level only.
     const least = await makeMesh(daemon, { shape: 'tetrahedron' });
     const { levels: only } = readWhole(await getStream(daemon, least));
     assert.ok(only.hasBase && only.most === 0 && only.part === 1);
@@ -270,15 +271,15 @@ test('what is no stream of levels is refused', async (t) => {
     }
     assert.throws(readIt(Uint8Array.of(...stream, 0)), /longer/);
     for (const [at, value] of [
-        [0, 1], // no magic
+        [0, 1], // not the bytes "HEDP"
         [4, 2], // another version
         [104, 0xfffffff0], // no such vertex
-        [splits, 8], // a split's length
-        [splits + 4, 0xfffffff0], // its new vertex
-        [splits + 8, 0xfffffff0], // the one it leaves
-        [splits + 12, 0xfffffff0], // a corner
-        [splits + 32, 0xfffffff0], // a face
-        [splits + 96, 0xfffffff0], // a face that moves
+        [splits, 8], // a wrong length of a split
+        [splits + 4, 0xfffffff0], // an invalid id of its new vertex
+        [splits + 8, 0xfffffff0], // an invalid id of the vertex that it splits
+        [splits + 12, 0xfffffff0], // an invalid corner
+        [splits + 32, 0xfffffff0], // an invalid face
+        [splits + 96, 0xfffffff0], // an invalid face in the list of faces that get the new vertex
     ]) {
         assert.throws(changed(at, value), /cannot read/, `byte ${at}`);
     }

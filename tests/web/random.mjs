@@ -1,4 +1,4 @@
-// random.mjs - random edits that follow from a seed.
+// random.mjs - makes random edits; equal seeds make equal edits.
 
 // Returns a function that returns pseudo-random numbers below n (Marsaglia, "Xorshift RNGs", 2003).
 export function numbersFrom(seed) {
@@ -12,7 +12,8 @@ export function numbersFrom(seed) {
     };
 }
 
-// Returns an edit of elements whose ids are below those of `issued`; the server may refuse it.
+// Returns a random edit of random elements; the server may refuse it. `below(n)` returns a random
+// number below n, and `issued` has an upper bound of the ids of each kind of element.
 export function randomEdit(below, issued) {
     const id = (kind) => below(issued[kind]);
     const by = [0, 1, 2].map(() => (below(200) - 100) / 2000);
@@ -28,7 +29,7 @@ export function randomEdit(below, issued) {
     ][below(8)]();
 }
 
-// Counts the elements that an answer has created.
+// Raises the upper bounds of ids in `issued` by the elements that an answer says were created.
 export function countIssued(issued, { created }) {
     for (const kind of Object.keys(issued)) {
         issued[kind] = created[kind].reduce((most, id) => Math.max(most, id + 1), issued[kind]);

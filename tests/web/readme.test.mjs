@@ -1,5 +1,5 @@
-// readme.test.mjs - the commands that README.md and api/GUIDE.md offer for pasting must work, with
-// the daemon's address in place of the usual one, and print what the pages say.
+// readme.test.mjs - tests that the commands in README.md and api/GUIDE.md work, with the address of
+// the test's daemon in place of the one on these pages, and print what the pages say.
 
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
@@ -15,10 +15,11 @@ const read = (name) => readFile(new URL(`../../${name}`, import.meta.url), 'utf8
 const readme = await read('README.md');
 const guide = await read('api/GUIDE.md');
 
-// The lines of a block may print at most this many characters, some thirty lines of a terminal.
+// The commands of a code block may print at most this many characters, about thirty lines of a
+// terminal.
 const MOST_PRINTED = 3000;
 
-// Returns the code blocks of a language, with another address.
+// Returns the code blocks of a language on both pages, with the address of the test's daemon.
 function blocks(language, url) {
     const found = (readme + guide).matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\`$`, 'gms'));
     return [...found].map(([, code]) => code.replaceAll('http://127.0.0.1:8080', url));
@@ -29,14 +30,14 @@ async function run(program, words) {
     return stdout;
 }
 
-// Returns the block of shell lines that contains a text.
+// Returns the block of shell commands that contains a text; there must be exactly one.
 function shellWith(text, url) {
     const found = blocks('sh', url).filter((code) => code.includes(text));
     assert.equal(found.length, 1, text);
     return found[0];
 }
 
-// Runs a block; returns a line for the answer to each curl.
+// Runs a block of shell commands; returns the lines that they print, one for each curl.
 async function runCurls(block) {
     const printed = await run('sh', ['-ec', block]);
     return printed.trim().split('\n');
@@ -44,14 +45,14 @@ async function runCurls(block) {
 
 const parsed = (lines) => lines.map((line) => JSON.parse(line));
 
-// Returns the comment at the end of the line that prints.
+// Returns the comment at the end of the code line that prints, which promises what is printed.
 function promised(code, mark) {
     const [, text] = new RegExp(`^(?:print|console\\.log)\\(.*${mark} (.*)$`, 'm').exec(code);
     return text;
 }
 
-// Returns the commands of a block, each with the beginning of the answer that the comment after it
-// promises.
+// Returns the commands of a block, {line, promised} each; `promised` is the beginning of the answer
+// as a comment after the command gives it.
 function commandsOf(block) {
     const lines = block.replaceAll('\\\n', '').split('\n');
     const commands = [];
@@ -65,7 +66,8 @@ function commandsOf(block) {
     return commands;
 }
 
-// Runs each command; its answer must begin as the page says.
+// Runs each command of a block, checks that its answer begins as the page says, and returns all
+// answers.
 async function answersOf(block) {
     const answers = [];
     for (const { line, promised } of commandsOf(block)) {
@@ -207,7 +209,8 @@ test('the JavaScript lines work as pasted', async (t) => {
     assert.equal(printed.trim(), promised(code, '//'));
 });
 
-// Returns headings in the form that links have: "Live updates" is #live-updates.
+// Returns the headings of a page in the form in which links name them: "Live updates" becomes
+// live-updates.
 const anchorsOf = (text) =>
     [...text.matchAll(/^## (.*)$/gm)].map(([, title]) => title.toLowerCase().replaceAll(' ', '-'));
 
@@ -216,8 +219,8 @@ test('each file, heading and make target they name is there', async () => {
     for (const [, target] of readme.matchAll(/`make ([a-z-]+)/g)) {
         assert.match(makefile, new RegExp(`^${target}:`, 'm'), target);
     }
-    // The table, whose commands `make fresh` tries, must have each target of the Makefile, except
-    // those that only serve others.
+    // The table of commands must have each target of the Makefile, except those that only serve
+    // other targets. `make fresh` tries the commands of the table.
     const [table] = /^\| command \|.*?\n\n/ms.exec(readme);
     const named = new Set([...table.matchAll(/`(?:make )?([a-z-]+)/g)].map(([, name]) => name));
     const parts = ['help', 'page', 'programs', 'ready', 'clean'];

@@ -1,4 +1,5 @@
-// A file that was refused is offered again, with the repairs that would make it acceptable.
+// Tests that the page, after the server has refused a file, offers to upload it again with the
+// repairs that would make it acceptable.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

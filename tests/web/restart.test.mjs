@@ -1,5 +1,5 @@
-// restart.test.mjs - the first minutes of a new user: an edit in the page, Ctrl-C, another start on
-// the same folder, and the edit is undone in the page.
+// restart.test.mjs - tests what a new user may do first: edit a mesh in the page, stop the daemon
+// with Ctrl-C, start it again on the same folder, and undo the edit in the page.
 
 import assert from 'node:assert/strict';
 import { mkdtemp, rm, writeFile } from 'node:fs/promises';
@@ -19,7 +19,7 @@ async function open(t, daemon, name, revision) {
     return page;
 }
 
-// Returns everything about the mesh except how often it was changed.
+// Returns everything about the mesh except its revision, so that states can be compared.
 async function stateOf(daemon, mesh) {
     const { counts, bounds } = await get(daemon, `/${mesh}`);
     const lists = await Promise.all(

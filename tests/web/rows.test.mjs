@@ -1,4 +1,4 @@
-// Which parts of a texture are uploaded again after a change; tested without graphics.
+// Tests which parts of a texture are uploaded again after a change, without drawing anything.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,6 +1,6 @@
-// After many edits by several clients, a page must hold, and have uploaded to graphics memory, the
-// same bytes as a page that has just been opened. EDITS (300; make proof takes 1000) and SEED come
-// from the environment.
+// Tests that after many edits by several clients a page has the same bytes in its arrays and in
+// graphics memory as a page that has just been opened. The variables EDITS (300 if not set; `make
+// proof` takes 1000) and SEED come from the environment.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -15,8 +15,8 @@ import { openPage } from './visit.mjs';
 const EDITS = Number(process.env.EDITS ?? 300);
 const SEED = Number(process.env.SEED ?? Date.now() % 2 ** 32);
 
-// Keeps a copy of what is uploaded to 32-bit textures, as the graphics memory has it, and of the
-// array that it came from.
+// Runs in the page: keeps a copy of all data that is uploaded to 32-bit textures, so that it has
+// what graphics memory has, and remembers from which arrays the data came.
 function keepTextures() {
     const { prototype } = WebGL2RenderingContext;
     const kept = new Map();
@@ -52,8 +52,8 @@ function keepTextures() {
         }
     });
     hook('deleteTexture', (texture) => kept.delete(texture));
-    // There are two textures of each format, of the mesh and of the materials of its faces. That of
-    // the mesh must have been uploaded from the mesh's array alone.
+    // Each of the two formats has two textures: one with data of the mesh, one with data of the
+    // materials. The mesh's texture is the one that was uploaded from the mesh's array alone.
     window.readTextures = ({ vertices, triangles }) => {
         const { RGBA32F, RGBA32UI } = WebGL2RenderingContext;
         const find = (wanted, { buffer }) => {
@@ -65,7 +65,7 @@ function keepTextures() {
     };
 }
 
-// Returns the arrays of the page and those of its textures, as text of their bytes.
+// Returns the bytes of the page's arrays and of its textures, as text.
 function readArrays(page) {
     return page.evaluate(() => {
         const text = (array, count) => {
@@ -107,8 +107,8 @@ async function checkSame(daemon, mesh, page) {
     }
 }
 
-// Does what a visitor of the page may do: undo, redo, or an edit by the form. Returns false if it
-// was refused.
+// Does at random what a user of the page may do: undo, redo, or an edit by a form. Returns false if
+// the server refused it.
 async function actOnPage(page, daemon, mesh, below, issued) {
     const { revision, undo, redo } = await get(daemon, `/${mesh}/edits?limit=1`);
     await waitForFrame(page, { mesh, revision });

@@ -1,5 +1,5 @@
-// scenarios.mjs - for each operation of the server's table, a mesh on which it can be done, and
-// what a visitor puts into its form: elements by clicks, the rest by keys.
+// scenarios.mjs - lists for each operation of the server a mesh on which it can be done, and what a
+// user puts into its form: elements by clicks, other values by keys.
 
 import { projector, waitForFrame } from './browser.mjs';
 import { getAll, post } from './daemon.mjs';
@@ -23,7 +23,7 @@ const BOWTIE = flat(
     [[0, 1, 2], [2, 3, 4]],
 );
 
-// Two triangles, made by the longer diagonal of a quadrilateral.
+// A quadrilateral that its longer diagonal divides into two triangles.
 const LONG = flat([[-2, 0], [0, -0.5], [2, 0], [0, 0.5]], [[0, 1, 2], [0, 2, 3]]);
 
 // Three triangles inside each other, with quadrilaterals between them.
@@ -57,8 +57,8 @@ const face = (...corners) => ({ kind: 'face', ends: corners });
 const MIDDLE = face(5, 6, 10, 9);
 const HOLE = [{ op: 'face_delete', face: 4 }];
 
-// Each row: [name, mesh, values by parameter, edits made before]. An element or several are
-// clicked, three numbers are a point, true is a tick, and text is typed or chosen.
+// Each row has [operation, mesh, values by parameter, edits made before]. Values that are elements
+// are clicked, three numbers are a point, true ticks a checkbox, and text is typed or chosen.
 export const SCENARIOS = [
     ['vertex_add', GRID, { position: [0, 0, 1] }],
     ['vertex_move', GRID, { vertex: [vertex(5), vertex(6)], by: [0, 0, 0.25] }],
@@ -148,7 +148,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
         } else if (param.includes(' ')) {
             await page.getByLabel(param, { exact: true }).fill(value);
         } else if ((await field.evaluate(({ tagName }) => tagName)) === 'SELECT') {
-            // The name of a mesh is not known beforehand, so 'mesh' stands for the open one.
+            // The id of a mesh is not known beforehand, so the value 'mesh' means the open mesh.
             await field.selectOption(param === 'mesh' ? mesh : value);
         } else {
             await field.fill(value);
@@ -156,7 +156,7 @@ export async function fillForm({ daemon, page, mesh }, { name, filled }) {
     }
 }
 
-// Waits until a field has as many ids as were clicked, or a coordinate.
+// Waits until a field contains `count` words: as many ids as were clicked, or one coordinate.
 async function waitForWords(field, count) {
     const handle = await field.elementHandle();
     await field.page().waitForFunction(
@@ -165,7 +165,7 @@ async function waitForWords(field, count) {
     );
 }
 
-// Returns where to click for an element.
+// Returns the place on the canvas where a click picks an element.
 async function placeOf({ daemon, mesh, place }, { kind, ends }) {
     const middle = place.at(ends);
     if (kind !== 'halfedge') {

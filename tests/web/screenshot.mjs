@@ -11,7 +11,7 @@ import { setMode } from './page.mjs';
 const file = fileURLToPath(new URL('../../web/screenshot.png', import.meta.url));
 const MOST_BYTES = 100 * 1024;
 
-// Functions that a test would call at its end.
+// Functions to call at the end. `run` stands for the context of a test, to which they are added.
 const endings = [];
 const run = { after: (ending) => endings.unshift(ending) };
 try {
@@ -25,7 +25,8 @@ try {
     await page.locator('#meshes button').filter({ hasText: 'torus' }).click();
     await waitForFrame(page, { mesh, revision: 1 });
     await setMode(page, 'Half-edge');
-    // The half-edge belongs to the face that is nearest to a point on the near side of the ring.
+    // The half-edge to select belongs to the face that is nearest to a place on the canvas where
+    // the near side of the torus is.
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
     const projected = await projector(page, daemon, mesh);
     const distance = ({ vertices }) => {
@@ -38,7 +39,7 @@ try {
     const place = await projected.arrow(face.halfedge);
     await page.mouse.click(x + place.x, y + place.y);
     await waitForFrame(page, { selection: `halfedge:${face.halfedge}` });
-    // The camera goes nearer; the address shows when the frame is drawn.
+    // The wheel moves the camera nearer; when the address changes, the frame has been drawn.
     const address = page.url();
     await page.mouse.wheel(0, -500);
     await page.waitForURL((url) => `${url}` !== address);

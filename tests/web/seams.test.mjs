@@ -1,5 +1,6 @@
-// A mesh whose texture has seams goes as GLB to three.js and back: the same texture coordinates
-// must be at the same corners, although that program has values of vertices only.
+// Tests that a mesh whose texture has seams survives the way as a GLB file to three.js and back:
+// the same texture coordinates must be at the same corners, although three.js has values of
+// vertices only.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -34,7 +35,8 @@ function cornersOfObj(text) {
     }))].sort();
 }
 
-// Reads a mesh of three.js, in which v runs down.
+// Returns the same as cornersOfObj() for a mesh of three.js, whose texture coordinate v points
+// down.
 function cornersOfThree(mesh) {
     const { position, uv } = mesh.geometry.attributes;
     return [...new Set(Array.from(mesh.geometry.index.array, (i) =>
@@ -86,8 +88,8 @@ test('texture coordinates stay at their corners on the way to three.js and back'
     assert.ok(back.import.repairs[0].moved > 0);
     assert.deepEqual(cornersOfObj(await (await content(url, back.id, 'obj')).text()), wanted);
 
-    // read here again, the mesh must have its polygons, and an edit must leave the other faces as
-    // they were
+    // If the server reads its own file, the mesh must have its polygons, and an edit of one face
+    // must leave the other faces as they were.
     const again = await create(url, 'model/gltf-binary', glb);
     assert.equal(again.counts.faces, 6);
     assert.deepEqual(cornersOfObj(await (await content(url, again.id, 'obj')).text()), wanted);

@@ -1,8 +1,8 @@
-// Models with a texture are welded, edited at a seam and exported: every corner must have the
-// texture coordinate that it had, and the seams must be where they were, for three.js, too.
+// Tests that models with a texture can be welded, edited at a seam and exported: every corner must
+// keep its texture coordinate, and the seams must be where they were, also if three.js reads them.
 //
-// The model is made here. TEXTURED names a folder with others, OBJ files of triangles and GLB files
-// of one mesh, which are treated in the same way.
+// The test makes a model. If the variable TEXTURED names a folder, the models in it are tested in
+// the same way: OBJ files of triangles, and GLB files with one mesh.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import path from 'node:path';
@@ -36,7 +36,7 @@ function ring(around, across) {
     return lines.join('\n');
 }
 
-// --- faces: lists of corners {vertex, place, uv}, v upward ---
+// --- faces as lists of corners, {vertex, place, uv}, where v points up ---
 
 function facesOfObj(text) {
     const lines = text.split('\n').map((line) => line.trim().split(/\s+/));
@@ -81,15 +81,16 @@ function facesOfThree(mesh) {
 
 const isNear = (a, b, most) => a.every((x, i) => Math.abs(x - b[i]) <= most);
 
-// Returns whether two faces have the same corners, beginning at any of them.
+// Returns whether two faces have the same corners in the same order, beginning at any corner.
 function sameFace(a, b, size) {
     const same = (p, q) => isNear(p.place, q.place, 1e-5 * size) && isNear(p.uv, q.uv, 1e-5);
     return a.length === b.length && a.some((_, turn) =>
         a.every((corner, i) => same(corner, b[(i + turn) % b.length])));
 }
 
-// Counts the sides of each face that are seams: sides with other texture coordinates on the other
-// face. `sides` lists them as [face, side].
+// Finds the sides of faces that are seams, where the face on the other side has other texture
+// coordinates. Returns {of, sides}: the number of such sides of each face, and a list of all such
+// sides as [face, side].
 function seamsOf(faces) {
     const met = new Map();
     const of = faces.map(() => 0);
@@ -114,7 +115,7 @@ function checkSame(faces, wanted, size, what) {
     assert.deepEqual(wrong, [], what);
 }
 
-// --- the way of a model ---
+// --- what is done with a model ---
 
 async function create(url, type, body, query = '') {
     const answer = await fetch(`${url}/v1/meshes${query}`, {
@@ -131,8 +132,8 @@ const content = (url, id, format) => fetch(`${url}/v1/meshes/${id}/content?forma
 const facesIn = async (url, id) => facesOfObj(await (await content(url, id, 'obj')).text());
 const glbOf = async (url, id) => (await content(url, id, 'glb')).arrayBuffer();
 
-// Returns the faces of a file, and the file as a GLB of another program: with separate vertices at
-// seams, and without polygons.
+// Returns the faces of a file, and the file as a GLB that another program might have written: of
+// triangles, with separate vertices at seams.
 async function begin(url, name, bytes) {
     if (name.endsWith('.glb')) {
         const glb = new Uint8Array(bytes).buffer;
@@ -146,7 +147,8 @@ async function begin(url, name, bytes) {
     };
 }
 
-// Returns the mesh welded while it is read, or by the operation.
+// Creates a mesh from a GLB and welds it: while it is read (isRepaired), or by an edit. Returns the
+// id of the mesh.
 async function welded(url, glb, isRepaired) {
     if (isRepaired) {
         return create(url, 'model/gltf-binary', glb, '?repair=weld');
@@ -156,8 +158,8 @@ async function welded(url, glb, isRepaired) {
     return id;
 }
 
-// Splits a side that is a seam, pokes the face there, and moves the ends of the side. Returns which
-// faces were touched.
+// Splits the edge at a side that is a seam, pokes the face, and moves the ends of the side. Returns
+// which faces these edits changed.
 async function edit(url, id, faces, [face, side]) {
     const [p, q] = [side, side + 1].map((i) => faces[face][i % 3]);
     const at = [p.vertex, q.vertex];
@@ -188,7 +190,7 @@ async function check(t, name, bytes) {
         const edited = await facesIn(url, id);
         const others = faces.flatMap((_, f) => (touched.has(f) ? [] : [f]));
         checkSame(others.map((f) => edited[f]), others.map((f) => faces[f]), size, 'not touched');
-        // the side that was split is two sides now, and both must be seams
+        // The side that was split is two sides now, and both must be seams.
         const after = seamsOf(edited);
         assert.equal(after.sides.length, before.sides.length + 1);
         const about = new Set([...touched].flatMap((f) => faces[f].map(({ vertex }) => vertex)));

@@ -1,5 +1,5 @@
-// A server that requires tokens: the page asks for one, keeps it for its tab, and shows what it
-// allows.
+// Tests the page of a server that requires access tokens: the page must ask for a token, keep it
+// for the browser's tab only, and show what it allows.
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -13,7 +13,7 @@ import { program, startDaemon } from './daemon.mjs';
 import { expectToast } from './page.mjs';
 import { openPage } from './visit.mjs';
 
-// Makes a token, and its line for the file of tokens.
+// Makes a token, and the line that the daemon's file of tokens must have for it.
 function makeToken(name, role) {
     const [token, line] = execFileSync(program, ['--new-token', name, role], {
         encoding: 'utf8',
@@ -70,7 +70,7 @@ test('the page asks for a token until one is good, and edits with it', async (t)
     await page.locator('#undo:enabled').click();
     await waitForFrame(page, { revision: 3 });
 
-    // Nothing of the token may be in the address, or in storage that outlives the tab.
+    // The token must not be in the address, or in a storage that outlives the browser's tab.
     assert.equal(page.url().includes(alice.token), false);
     assert.equal(await page.evaluate(() => localStorage.length + document.cookie.length), 0);
     await page.reload();

@@ -1,23 +1,24 @@
-// traffic.mjs - a proxy before a daemon that records what passes, for the last step of `make test`:
-// check-traffic.mjs compares it with the served OpenAPI document.
+// traffic.mjs - a proxy in front of a daemon that records all requests and answers. In the last
+// step of `make test`, check-traffic.mjs compares them with the OpenAPI document.
 //
-// So browsers, generated clients and the commands of the README need no recorder of their own. The
-// lines have the form of tests/traffic.h. Of the codings that a browser accepts, only gzip is
-// passed on, which node can decompress to look inside.
+// With a proxy, browsers, generated clients and the commands of the README need no recorder of
+// their own. The lines have the form of tests/traffic.h. In Accept-Encoding only gzip is passed on
+// to the daemon, because node can decompress it to check the bodies.
 
 import { appendFileSync } from 'node:fs';
 import { Agent, createServer, request as send } from 'node:http';
 import path from 'node:path';
 
-// The number of bytes recorded of a JSON body; a body that is not JSON is not checked.
+// How many bytes of a JSON body are recorded at most. Of other bodies fewer bytes are enough,
+// because they are not checked.
 const JSON_BYTES = 1024 * 1024;
 const OTHER_BYTES = 4 * 1024;
 
-// Headers that belong to one connection and are not passed to the other.
+// Headers that concern one connection only, so that a proxy must not pass them on.
 const OWN = new Set(['connection', 'keep-alive']);
 
-// The headers are an object and not a list, because with a list node would send a request without a
-// body as chunked.
+// Returns the headers to pass on, as an object: if they were a list, node would send a request
+// without a body as chunked.
 function forwarded(rawHeaders) {
     const kept = {};
     for (let i = 0; i < rawHeaders.length; i += 2) {
@@ -34,7 +35,7 @@ function gzipOf(codings) {
     return /\bgzip\b/.test(codings) ? 'gzip' : 'identity';
 }
 
-// Collects the message of a stream while it passes.
+// Collects what is recorded of a request or an answer while it passes through the proxy.
 function collect(stream) {
     const json = stream.headers['content-type']?.includes('json');
     const most = json ? JSON_BYTES : OTHER_BYTES;

@@ -1,4 +1,4 @@
-// The page in Chromium with the real daemon: it must show what the API answers.
+// Tests in Chromium, with the real daemon, that the page shows what the API answers.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -170,7 +170,8 @@ test('polygons are drawn with their edges and without diagonals', async (t) => {
     assert.ok(!blank(square));
     assert.ok(square.countOf(isBackground) > square.count / 4);
     const place = await projector(page, daemon, mesh);
-    // Both diagonals run through the middle; one of them is a side of triangles.
+    // The square consists of two triangles, whose common side, a diagonal, must not be drawn: all
+    // pixels around the middle must have the colour of the surface.
     const { x, y } = place.at([0, 1, 2, 3]);
     const fill = square.colour(x, y);
     assert.ok(isSurface(fill), `${fill}`);
@@ -412,7 +413,7 @@ test('an edit meant for an older revision is refused, and the page catches up', 
     const [face] = (await getAll(daemon, mesh, 'faces')).filter((f) => place.isSeen(f));
     await click(page, place.at(face.vertices));
     await waitForFrame(page, { selection: `face:${face.id}` });
-    // Another client's edit comes first, while the page's edit is on its way.
+    // Another client edits the mesh while the page's edit is on its way to the server.
     await page.route('**/edits', async (route) => {
         await post(daemon, `/${mesh}/edits`, { op: 'face_poke', face: face.id });
         await route.continue();

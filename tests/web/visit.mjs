@@ -5,7 +5,7 @@ import { after } from 'node:test';
 import { launch, openPageIn, waitForFrame } from './browser.mjs';
 import { post, startDaemon } from './daemon.mjs';
 
-// The browser of all tests in a file, started by the first test that opens a page.
+// The browser that all tests of a file share; the first test that opens a page starts it.
 let browser;
 after(async () => (await browser)?.close());
 

@@ -1,4 +1,5 @@
-// The list of revisions; and long work: its progress, how it is cancelled, how it ends.
+// Tests of the list of revisions, and of uploads and edits that take long: how the page shows their
+// progress, cancels them, and shows their end.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
@@ -48,7 +49,7 @@ test('the history says what was done, and a click goes back to a revision', asyn
         [6, 'undo of edge_split', false, false],
         [5, 'undo of vertex_move', false, false],
     ]);
-    // The focus must not go back to the top of the page.
+    // The focus must stay in the list, and not go back to the top of the page.
     assert.equal(await page.evaluate(() => document.activeElement.id), 'history');
     await page.getByRole('button', { name: 'Redo' }).click();
     await waitForFrame(page, { revision: 7 });
@@ -74,8 +75,7 @@ test('a long history is read on by a button', async (t) => {
     assert.deepEqual(revisions, Array.from({ length: 26 }, (_, i) => 26 - i));
 });
 
-// Makes the page believe that its job still runs, until the test releases it: {cancelled,
-// release()}.
+// Makes the server's jobs look to the page as if they still ran. Returns a function that ends this.
 async function keepRunning(page) {
     let isHeld = true;
     await page.route('**/v1/jobs/*', async (route) => {
@@ -131,8 +131,8 @@ test('an operation that is refused as a job says why', async (t) => {
     await waitForFrame(page, { revision: 1 });
 });
 
-// Makes a job that runs until it is cancelled, because the daemon's own job would have ended long
-// before.
+// Answers the page's request with a job of the test's own, which runs until it is cancelled; a job
+// of the daemon would have ended before the page could cancel it.
 async function fakeJob(page, pattern) {
     const job = { id: 'fake', state: 'running', phase: 'pairing', progress: 0.7, finished: null };
     let body = job;
@@ -188,7 +188,7 @@ test('an upload is given up while it is sent and while it is read', async (t) =>
     await expectToast(page, /Cancelled/);
     assert.ok(await page.locator('#uploading').isHidden());
     assert.deepEqual((await get(daemon, '')).items, []);
-    // The daemon's own job is awaited.
+    // From here on the daemon answers, and the page must wait for the daemon's job.
     await page.unrouteAll();
     await upload('whole.off');
     await waitForTold(page, /Read whole\.off.*3 vertices, 1 face/);

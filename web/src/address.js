@@ -12,7 +12,8 @@ export class Address {
         this.#stage = stage;
     }
 
-    // Moving the camera adds no entry to the browser's history.
+    // Writes what is shown into the page's address. The entry in the browser's history is replaced,
+    // so moving the camera does not fill that history.
     write() {
         const { mesh, selection } = this.#session;
         if (mesh !== null) {
@@ -22,7 +23,7 @@ export class Address {
         }
     }
 
-    // Shows what the address says.
+    // Shows the mesh, the selection and the view of the camera that are in the page's address.
     async follow() {
         const { mesh, kind, id, camera } = parseLink(window.location.hash);
         const session = this.#session;

@@ -1,6 +1,6 @@
 // affine.js - the matrix of an affine map, made from scaling, rotation and translation. Pure.
 //
-// 16 numbers, row-major; the matrix is multiplied with a column vector at its right.
+// A matrix is an array of 16 numbers, row by row. It is multiplied by a column vector on its right.
 
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
@@ -15,7 +15,7 @@ function multiply(a, b) {
     });
 }
 
-// Returns [cosine, sine] of an angle in degrees, exact for quarter turns.
+// Returns [cosine, sine] of an angle in degrees, without rounding errors for multiples of 90.
 function turnOf(degrees) {
     const quarters = (((degrees / 90) % 4) + 4) % 4;
     const exact = [[1, 0], [0, 1], [-1, 0], [0, -1]][quarters];
@@ -48,7 +48,7 @@ export function compose({ scale, rotate, translate, about }) {
     ].reduce((done, next) => multiply(next, done), IDENTITY);
 }
 
-// Writes the matrix as four lines of text.
+// Returns the matrix as text: four lines of four numbers.
 export function textOf(matrix) {
     return [0, 4, 8, 12].map((row) => matrix.slice(row, row + 4).join(' ')).join('\n');
 }

@@ -7,10 +7,11 @@ import { renewToken, token } from './token.js';
 
 const KINDS = { vertex: 'vertices', halfedge: 'halfedges', edge: 'edges', face: 'faces' };
 
-// Entries of the history per request.
+// Number of edits in one page of a mesh's history.
 const HISTORY_PAGE = 20;
 
-// Milliseconds between requests for a job's state: often at first, then less.
+// Milliseconds to wait before the state of a job is requested again: JOB_SOON at first, then twice
+// as long each time, up to JOB_LATEST.
 const JOB_SOON = 60;
 const JOB_LATEST = 1000;
 
@@ -25,7 +26,8 @@ const MEDIA_TYPES = {
     json: 'application/json',
 };
 
-// An error of the server, or of a proxy before it: an RFC 9457 problem.
+// An error that the server, or a proxy in front of it, answered: the members of an RFC 9457
+// problem.
 export class Problem extends Error {
     constructor({ status = 0, title = '', detail = '', code = '', pointer = '', repair = [] }) {
         super(detail || title);
@@ -53,7 +55,7 @@ function problemOf(status, text) {
             return new Problem({ ...problem, status });
         }
     } catch {
-        // The answer is no JSON, so it comes from a gateway before the server.
+        // The answer is no JSON, so it comes from a gateway in front of the server.
     }
     const detail = `The server answered with status ${status}.`;
     return new Problem({ status, title: 'Request failed', detail });
@@ -84,8 +86,8 @@ async function getJson(path, signal) {
     return (await request(path, { signal })).json();
 }
 
-// Returns the answer of a POST, null if it has no body. If the server answers with a job, waits for
-// its result: see finish().
+// Sends a POST and returns the JSON of the answer, or null if it has no body. If the server answers
+// with a job, because the request takes long, waits for the job and returns its result.
 async function postJson(path, body, work = null) {
     const headers = { 'Content-Type': 'application/json' };
     if (work !== null) {
@@ -113,7 +115,8 @@ export function getDescription() {
     return getJson('v1/openapi.json');
 }
 
-// Returns one page of the list: {items, next}; `next` is the cursor of the next page, or null.
+// Returns one page of the list of meshes: {items, next}; `next` is the cursor of the next page, or
+// null.
 export function listMeshes(cursor = null) {
     const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
     return getJson(`v1/meshes?limit=200${after}`);
@@ -123,8 +126,9 @@ export function getSummary(mesh, signal) {
     return getJson(meshPath(mesh), signal);
 }
 
-// Returns one page of the history, newest first: {revision, entries, undo, redo, next}. undo and
-// redo are numbers of steps, `next` is the cursor of the next page, or null.
+// Returns one page of a mesh's history, newest edits first: {revision, entries, undo, redo, next}.
+// `undo` and `redo` are the numbers of steps that can be undone and redone, `next` is the cursor of
+// the next page, or null.
 export function getHistory(mesh, cursor = null, signal = undefined) {
     const after = cursor === null ? '' : `&cursor=${encodeURIComponent(cursor)}`;
     return getJson(`${meshPath(mesh)}/edits?limit=${HISTORY_PAGE}${after}`, signal);
@@ -180,19 +184,20 @@ export async function findHalfedge(mesh, from, to) {
     return halfedge;
 }
 
-// Returns the arrays to draw a mesh as an ArrayBuffer; calls `onProgress` with the fraction read, 0
-// to 1.
+// Reads the arrays from which a mesh is drawn and returns them in one ArrayBuffer, see geometry.js;
+// calls `onProgress` with the fraction that has been read, 0 to 1.
 export function getGeometry(mesh, onProgress, signal) {
     return readArrays(`${meshPath(mesh)}/geometry`, onProgress, signal);
 }
 
-// Returns the changes of the arrays since a revision with a layout, or all of them: see
-// geometry_delta.js.
+// Returns what has changed in the arrays of getGeometry() since they had this revision and layout,
+// or the complete arrays if the server cannot say what has changed: see geometry_delta.js.
 export function getGeometryChanges(mesh, { revision, layout }) {
     return readArrays(`${meshPath(mesh)}/geometry?since=${revision}&layout=${layout}`, () => {});
 }
 
-// The header contains the length of the answer: Content-Length may be that of a compressed body.
+// Reads an answer that begins with a header of geometry.js. The length is taken from this header,
+// because Content-Length may be that of a compressed body.
 async function readArrays(path, onProgress, signal) {
     const answer = await request(path, { signal });
     const reader = answer.body.getReader();
@@ -230,8 +235,8 @@ async function readArrays(path, onProgress, signal) {
     return whole.buffer;
 }
 
-// Reads the mesh from coarse to fine; calls `onBytes` with the bytes as they arrive, see
-// progressive.js.
+// Reads a mesh as a coarse mesh followed by refinements; calls `onBytes` with the bytes as they
+// arrive, see progressive.js.
 export async function getProgressive(mesh, onBytes, signal) {
     // The server must answer with bytes, however long it takes to make them, and not with a job.
     const headers = { Prefer: 'wait=30' };
@@ -252,9 +257,10 @@ async function readOn(reader) {
 
 // --- events ---
 
-// Listens to events of a mesh after an event's id or a revision; null: from now on. Calls onEvent
-// with an event's name, its data and its id, and onError, once, when the stream has ended. Returns
-// an object with close().
+// Listens to the events of a mesh that follow `since`, the id of an event or a revision; if `since`
+// is null, to the events from now on. Calls onOpen when the server has answered, onEvent with the
+// name, the data and the id of each event, and onError, once, when the stream has ended. Returns an
+// object with close().
 export function listen(mesh, since, { onOpen, onEvent, onError }) {
     const closing = new AbortController();
     follow(`${meshPath(mesh)}/events`, since, { onOpen, onEvent }, closing.signal)
@@ -287,16 +293,16 @@ async function follow(path, since, { onOpen, onEvent }, signal) {
 //
 // An edit names the revision it is meant for; the server answers 412 if the mesh has changed.
 //
-// `work`, if not null, shows long work: work.begin(cancel) is called when it begins, where `cancel`
-// cancels it, and work.show(job) with the state of the server's job.
+// If `work` is not null, the server may run the edit as a job. Then work.begin(cancel) is called
+// once, with a function that cancels the job, and work.show(job) with each state of the job.
 
 export function edit(mesh, operation, revision, work = null) {
     const body = { expected_revision: revision, ops: [operation] };
     return postJson(`${meshPath(mesh)}/edits`, body, work);
 }
 
-// Returns what an edit of the present mesh would do, without changing anything; null if that takes
-// long.
+// Returns what an edit of the present mesh would change, without changing anything; null if the
+// server needs long to find out.
 export async function tryEdit(mesh, operation, signal) {
     const answer = await request(`${meshPath(mesh)}/edits`, {
         method: 'POST',
@@ -352,9 +358,9 @@ async function finish(first, work) {
     return job.result ?? null;
 }
 
-// Creates a mesh from a file and the files `beside` it, with `repairs` applied; calls `onProgress`
-// with the fraction sent, 0 to 1. Returns the new mesh's summary. Uses XMLHttpRequest because fetch
-// does not report how much was sent.
+// Creates a mesh from `batch`, {file, beside}: a file and the files that it refers to. The server
+// applies `repairs`. Calls `onProgress` with the fraction sent, 0 to 1. Returns the summary of the
+// new mesh. Uses XMLHttpRequest because fetch does not report how much was sent.
 export async function upload(batch, onProgress, work, repairs = []) {
     const bearer = token();
     const { status, answer } = await send(batch, onProgress, work, repairs, bearer);
@@ -368,14 +374,15 @@ export async function upload(batch, onProgress, work, repairs = []) {
     return status === 202 ? finish(answer, work) : answer;
 }
 
-// Makes a form of several files.
+// Returns a multipart form that contains several files.
 function formOf(files) {
     const form = new FormData();
     files.forEach((file) => form.append('files', file, file.name));
     return form;
 }
 
-// Sends a form or a file; resolves for a 401, too, so that upload() can ask for a token.
+// Sends a file, or a form if several files belong together. The promise resolves for an answer 401,
+// too, so that upload() can ask the user for a token.
 function send({ file, beside }, onProgress, work, repairs, bearer) {
     const dot = file.name.lastIndexOf('.');
     const name = dot > 0 ? file.name.slice(0, dot) : file.name;

@@ -1,10 +1,12 @@
-// around.js - the neighbours and measures of an element, in addition to its own members. Pure
-// except for `ask`, which sends the server a list of questions and returns the answers in order.
+// around.js - reads what is shown about an element in addition to its own members. Pure except for
+// the parameter `ask`, a function that sends the server a list of questions and returns the answers
+// in order.
 //
-//   rings      [{name, kind, ids}]   in the server's order
-//   measures   [{name, value}]       text
-//   halfedges  [{id, origin, target, face, across, role}]: those drawn as arrows, where role is
-//              'self', 'next', 'prev', 'twin' or 'near'
+//   rings      [{name, kind, ids}]   the neighbours, in the server's order
+//   measures   [{name, value}]       such as a length or an angle, as text
+//   halfedges  [{id, origin, target, face, across, role}]: half-edges to draw as arrows; `across`
+//              is the face of the twin, `role` says what the half-edge is to a selected one:
+//              'self', 'next', 'prev', 'twin', or 'near' for all others
 
 import { formatMeasure } from './dom.js';
 
@@ -39,7 +41,7 @@ export function foldAngle(left, right, direction) {
 
 const degrees = (value) => `${formatMeasure(value)}\u00b0`;
 
-// Returns whether a question was answered; it fails if the mesh has changed meanwhile.
+// Returns whether `answer` is no error. A question fails if its element was deleted meanwhile.
 const lives = (answer) => answer !== undefined && !('status' in answer);
 
 async function ids(ask, relations, of) {
@@ -47,7 +49,7 @@ async function ids(ask, relations, of) {
     return answers.map((answer) => (lives(answer) ? answer.ids : []));
 }
 
-// Reads half-edges with their roles, for arrows. The face across is the face of the twin.
+// Reads the half-edges that are to be drawn as arrows; `roles` is a map from their ids to roles.
 async function halfedgesOf(ask, roles) {
     const wanted = [...roles.keys()].slice(0, MOST);
     const answers = await ask(
@@ -61,7 +63,8 @@ async function halfedgesOf(ask, roles) {
         });
 }
 
-// Maps ids to roles; if an id has several roles, the first one stays.
+// Returns a map from ids of half-edges to their roles. Each group is [role, ids]; an id that is in
+// several groups gets the role of the first.
 function rolesOf(...groups) {
     const roles = new Map();
     for (const [role, list] of groups) {

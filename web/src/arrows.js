@@ -19,9 +19,9 @@ const OFFSET = 0.1;
 const HEAD = 0.15;
 const BODY_WIDTH = 0.022;
 const HEAD_WIDTH = 0.068;
-const THIN = 2.2; // as a part of the face's mean width
+const THIN = 2.2; // the length they are parts of is at most this times the mean width of the face
 
-// An arrow is at most as thick as that of an edge with this many pixels.
+// An arrow is at most as thick as the arrow of an edge that is this many CSS pixels long.
 export const MOST_PIXELS = 130;
 
 const subtract = (a, b) => a.map((value, i) => value - b[i]);
@@ -78,7 +78,7 @@ export function arrowOf(geometry, { origin, target, face, across }) {
     };
 }
 
-// Returns the points of an arrow at a scale.
+// Returns the points of an arrow whose spreads are multiplied by `scale`.
 export function pointsOf({ places, spreads }, scale) {
     return places.map((place, i) => along(place, spreads[i], scale));
 }

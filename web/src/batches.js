@@ -1,4 +1,4 @@
-// batches.js - which of the chosen files belong to one upload.
+// batches.js - decides which of the files that a user chose are uploaded together.
 
 const MESHES = ['obj', 'off', 'ply', 'stl', 'glb', 'gltf', 'json'];
 const REFERRING = ['obj', 'glb', 'gltf'];
@@ -16,10 +16,11 @@ function names(text, file) {
     return text.includes(file.name) || text.includes(encodeURI(file.name));
 }
 
-// Returns one `{ file, beside }` per request: a file for the server to read and the files that it
-// refers to. A single mesh gets all other files; of several meshes each gets the files that it
-// names. Images, which no mesh contains, are left out. A file that belongs to no mesh is sent
-// alone, so that the server says what is wrong with it.
+// Returns one `{ file, beside }` per upload: a file for the server to read and the files that it
+// refers to. If there is one mesh file, all other files are sent with it; if there are several, the
+// files whose names each mesh file contains. Images are left out, because the server does not read
+// them. A file that no mesh file refers to is sent alone, so that the server says what is wrong
+// with it.
 export async function batchesOf(files) {
     const meshes = files.filter((file) => has(MESHES, file));
     const referring = meshes.filter((file) => has(REFERRING, file));

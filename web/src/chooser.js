@@ -2,8 +2,8 @@
 
 import { make } from './dom.js';
 
-// Groups of the list by the first word of operations; all others belong to the group of the whole
-// mesh.
+// The group in which the list shows an operation, by the first word of the operation's name.
+// Operations with another first word are in the group 'Mesh'.
 const GROUPS = { vertex: 'Vertex', edge: 'Edge', face: 'Face', loop: 'Loop', hole: 'Loop' };
 const GROUP_NAMES = [...new Set(Object.values(GROUPS)), 'Mesh'];
 
@@ -13,8 +13,8 @@ export class Chooser {
     #onChange;
     #operations = [];
 
-    // `onChange(isChosen)` is called when the current operation changes; `isChosen`: the user chose
-    // it in the list. `onEnter(name)` is called when the search is confirmed.
+    // `onChange(isChosen)` is called when another operation is selected; `isChosen`: the user chose
+    // it in the list. `onEnter(name)` is called when the user presses Enter in the search field.
     constructor({ select, search }, { onChange, onEnter }) {
         [this.#select, this.#search, this.#onChange] = [select, search, onChange];
         select.addEventListener('change', () => onChange(true));
@@ -41,12 +41,12 @@ export class Chooser {
         return this.#operations.find((operation) => operation.name === name);
     }
 
-    // Returns the current operation, or undefined if the search finds none.
+    // Returns the selected operation, or undefined if the search finds none.
     get operation() {
         return this.find(this.#select.value);
     }
 
-    // Makes an existing operation current, whatever the search text is.
+    // Selects the operation with this name, which must exist, and clears the search.
     set(name) {
         this.#search.value = '';
         this.#fill(this.#operations);
@@ -79,8 +79,8 @@ export class Chooser {
     }
 }
 
-// Returns the operation to select: operations whose name contains the text come before those that
-// only mention it, and the previous operation comes before the first of them.
+// Returns the name of the operation to select: the one called `text`, else the first whose name
+// contains all the words, else the one selected before, else the first of `operations`.
 function bestOf(operations, text, words, before) {
     const names = operations.map(({ name }) => name);
     const named =

@@ -2,12 +2,12 @@
 //
 //   node      the element for the form
 //   main      the element that its label belongs to, and that gets the focus first
-//   isSaid    does it have a value?
-//   clear()
+//   isSaid    whether the control has a value
+//   clear()   removes the value
 //   read()    returns the value, undefined if there is none; throws a Problem for a mistake
 //
-// and take(id, place) if clicks can fill it with elements or places. fields.js chooses the control
-// of a parameter.
+// and, if the user can fill it by clicks in the view, take(id, place) with the id of the clicked
+// element and, if it is a vertex, its position. fields.js chooses the control of a parameter.
 
 import { make } from './dom.js';
 import { numbersOf, slip, toggleWord, wordsOf } from './numbers.js';
@@ -35,7 +35,7 @@ class Field {
     }
 }
 
-// A choice of texts: an array of [value, text].
+// A list from which one text is chosen; `options` is an array of [value, text].
 export class Choice extends Field {
     constructor(options, value) {
         super(make('select'));
@@ -86,7 +86,7 @@ export class Text extends Field {
     }
 }
 
-// Red, green and blue, and an opacity if `most` is four: numbers in one field.
+// One text field for the numbers of a colour: red, green and blue, and an opacity if `most` is 4.
 export class Color extends Text {
     #name;
     #most;
@@ -110,7 +110,7 @@ export class Color extends Text {
     }
 }
 
-// Ids of elements; `isList` allows several, `isNullable` none.
+// A text field for ids of elements: `isList` allows several ids, `isNullable` allows none.
 export class Ids {
     node = make('input', { type: 'text', autocomplete: 'off', spellcheck: false });
     #name;
@@ -150,7 +150,7 @@ export class Ids {
         this.node.value = this.#isList ? toggleWord(this.node.value, id) : `${id}`;
     }
 
-    // Returns an id, null for none, or an array if it takes several.
+    // Returns an array of ids if the field takes several, else one id, or null for "none".
     read() {
         const text = this.node.value.trim();
         if (this.#isNullable && (text === '' || text === 'none')) {
@@ -171,12 +171,12 @@ export class Ids {
     }
 }
 
-// A number; empty if it is left out.
+// A field for a number, which may stay empty.
 export class Numeral {
     node;
     #name;
 
-    // `step` is 1 for whole numbers, else any.
+    // `step` is '1' for whole numbers and 'any' for others.
     constructor(name, placeholder, step = 'any') {
         this.#name = name;
         this.node = make('input', { type: 'number', step, placeholder });
@@ -268,7 +268,7 @@ export class Vector {
         });
     }
 
-    // Pastes several numbers: all three, or those from this field on.
+    // Pastes several numbers: two fill this field and the next, three or more fill all fields.
     #paste(event, at, onMore) {
         const words = wordsOf(event.clipboardData.getData('text'));
         if (words.length < 2) {
@@ -286,8 +286,9 @@ export class Vector {
     }
 }
 
-// Simple fields, or a text for everything else; a button switches between them. `easy` is a
-// control, `write()` returns its value as text and `parse(text)` the value of a text.
+// A control with simple fields and, for values that those cannot express, a text area; a button
+// switches between the two. `easy` is the control with the fields, `write()` returns its value as
+// text, and `parse(text)` returns the value that a text means.
 export class WithText {
     node;
     #easy;
@@ -297,7 +298,7 @@ export class WithText {
     #write;
     #labels;
 
-    // `labels` of the button: to the text, to the fields.
+    // `labels` are the two labels of the button: while fields are shown, while the text is shown.
     constructor(easy, { name, placeholder, write, parse, labels }) {
         [this.#easy, this.#parse, this.#write, this.#labels] = [easy, parse, write, labels];
         this.#text = make('textarea', {
@@ -324,7 +325,7 @@ export class WithText {
         return !this.#text.hidden;
     }
 
-    // Shows the text (at first the value of the fields), or the fields as they were left.
+    // Shows the text area with `text` in it, or the fields with the values that they had before.
     showText(isText, text = isText ? this.#write() : '') {
         this.#text.value = text;
         this.#text.hidden = !isText;
@@ -359,7 +360,8 @@ export class WithText {
     }
 }
 
-// One vector for all elements, or as text a list with one vector for each.
+// Returns a control for vectors: its fields take one vector for all elements, its text area takes a
+// list with one vector for each element.
 export function vectors(name) {
     const parse = (text) => {
         const numbers = numbersOf(text, name);

@@ -3,7 +3,7 @@
 
 import { enable } from './dom.js';
 
-// A pointer that moved at most this far between down and up has clicked.
+// A press of the pointer is a click if the pointer moves at most this far before it is released.
 const CLICK_PIXELS = 4;
 
 const HINTS = {
@@ -21,9 +21,10 @@ export class Direct {
     #down = null; // position and id of the pointer when the drag began
     #isEnabled = false;
 
-    // `note` contains `hint`, `amount` and a button, `giveUp`; `buttons` has one for each tool.
-    // `begin(tool)` returns a gesture or null, `drag(gesture, moved)` its result (see gesture.js),
-    // `onShow(lines)` shows lines (null: none) and `onRun(operation)` runs it.
+    // `note` is an element that is shown while a tool is selected; it contains `hint`, `amount` and
+    // a button, `giveUp`. `buttons` has one button for each tool. `acts` are four functions:
+    // begin(tool) returns a gesture or null, drag(gesture, moved) returns its result (for both see
+    // gesture.js), onShow(lines) draws a preview (null: none), and onRun(operation) does an edit.
     constructor(canvas, { note, hint, amount, giveUp, buttons }, acts) {
         this.#canvas = canvas;
         this.#elements = { note, hint, amount, buttons };
@@ -59,7 +60,8 @@ export class Direct {
         return true;
     }
 
-    // A tool's button was pressed: selects the tool, or cancels it.
+    // Called when the button of a tool was pressed: selects the tool, or cancels it if it was
+    // selected.
     toggle(tool) {
         const isOn = this.#tool === tool;
         this.cancel();
@@ -75,7 +77,8 @@ export class Direct {
         }
     }
 
-    // Called when the mesh has changed: goes on with the present selection.
+    // Called when the mesh has changed. A selected tool stays selected, and a drag continues on the
+    // changed mesh; but if the tool no longer fits the selection, it is cancelled.
     refresh() {
         const gesture = this.#gesture && this.#acts.begin(this.#tool);
         if (gesture === null) {

@@ -5,7 +5,7 @@ import { getDescription } from './api.js';
 import { make } from './dom.js';
 import { alternatives, typeOf } from './schema.js';
 
-// Returns types as text, with names of schemas as links.
+// Returns nodes that say of which type a schema is; names of other schemas in it are links.
 function typeNodes(schema) {
     return typeOf(schema).map((part) =>
         typeof part === 'string' ? part : make('a', { href: `#schema-${part.ref}` }, part.ref),
@@ -18,7 +18,8 @@ function cells(tag, ...contents) {
 
 function table(heads, rows) {
     const head = make('thead', {}, cells('th', ...heads.map((text) => [text])));
-    // The table may be wider than the page; the focus lets the keyboard scroll it.
+    // The table may be wider than the page; tabIndex lets it have the focus, so that the keyboard
+    // can scroll it.
     return make(
         'div',
         { className: 'table', tabIndex: 0, role: 'group', 'aria-label': heads[0] },
@@ -30,7 +31,7 @@ function code(text) {
     return make('code', {}, text);
 }
 
-// Shows JSON with one member per line, other text unchanged.
+// Returns an element that shows an example: JSON with one member per line, other text unchanged.
 function example(body) {
     const text = typeof body === 'string' ? body : JSON.stringify(body, null, 2);
     // Short arrays, such as ids and points, are easier to read in one line.
@@ -40,7 +41,7 @@ function example(body) {
     return make('pre', { tabIndex: 0 }, code(flat.trimEnd()));
 }
 
-// Shows words between backticks as code.
+// Returns nodes that show a text, with the words between backticks as code.
 function prose(text) {
     return text.split('`').map((part, i) => (i % 2 === 1 ? code(part) : part));
 }
@@ -61,7 +62,7 @@ function membersTable({ properties, required = [] }) {
     return table(['Member', 'Type', 'Meaning'], rows);
 }
 
-// Returns the contents of a schema, below its heading.
+// Returns the nodes that describe a schema below its heading.
 function schemaNodes(schema) {
     const nodes = note(schema.description);
     const choices = alternatives(schema);
@@ -199,8 +200,8 @@ function show({ info, paths, components }) {
             make('h2', {}, 'Schemas'),
             ...schemas.map(schemaSection),
         );
-    // The browser looked for the anchor of the address before the manual was built, so this scrolls
-    // there.
+    // The browser looked for the section that the address names (#ID) before the manual was built,
+    // so the page must scroll to that section itself.
     document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }
 

@@ -1,5 +1,5 @@
-// dom.js - building elements. Text is always inserted as text, never parsed as HTML, so a mesh may
-// have any name.
+// dom.js - functions that build elements of the page. Text is always inserted as text, never parsed
+// as HTML, so a mesh may have any name.
 
 // Returns the page's element with an id.
 export function byId(id) {
@@ -23,8 +23,9 @@ export function make(tag, properties = {}, ...children) {
 
 const leftBehind = new WeakSet();
 
-// Enables a button, or disables it. If that takes the focus from it, it gets the focus again when
-// enabled, unless the focus is elsewhere by then: so a keyboard user can press it again.
+// Enables or disables a button. A button that loses the focus when it is disabled gets the focus
+// back when it is enabled, unless another element has it by then: so a user of the keyboard can
+// press the button again.
 export function enable(button, isEnabled) {
     if (!isEnabled && document.activeElement === button) {
         leftBehind.add(button);
@@ -39,7 +40,7 @@ function isNowhere(element) {
     return element === null || element === document.body || element.disabled === true;
 }
 
-// Shows text between backticks as code.
+// Returns nodes that show a text, with the words between backticks as code.
 export function prose(text) {
     return text.split('`').map((part, i) => (i % 2 === 1 ? make('code', {}, part) : part));
 }
@@ -58,8 +59,8 @@ export function formatAbout(value) {
     return value < 100000 ? formatCount(value) : about.format(value);
 }
 
-// Formats a measure with at most `digits` significant digits. JSON has null for a value that
-// overflowed.
+// Formats a measure with at most `digits` significant digits. `value` is null if the server's
+// computation overflowed, because JSON has no infinity.
 export function formatMeasure(value, digits = 6) {
     if (value === null) {
         return 'too large';

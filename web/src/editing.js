@@ -10,21 +10,21 @@ import { Tools } from './tools.js';
 import { Trial, wordsOf } from './trial.js';
 import { Work } from './work.js';
 
-// An operation on the whole mesh gets no dry run if the mesh has more faces.
+// An operation on the whole mesh gets no dry run if the mesh has more faces than this.
 const MOST_TRIED = 100000;
 
 // If a form's fields contain more elements than this, the view does not mark them.
 const MOST_MARKED = 1000;
 
-// The tools of the view, and the form to show if a tool cannot be used on the selection in the
-// view.
+// The operation whose form is shown if a tool of the view does not fit the selection, by the name
+// of the tool.
 const FORMS = { move: 'vertex_move', extrude: 'face_extrude', inset: 'face_inset' };
 
 // The words for what the user has to click, for one element and for several.
 const NAMES = { vertex: 'a vertex', halfedge: 'a half-edge', edge: 'an edge', face: 'a face' };
 const PLURALS = { vertex: 'vertices', halfedge: 'half-edges', edge: 'edges', face: 'faces' };
 
-// The operation of the X key for each kind of element.
+// The operation that the X key runs, by the kind of the selected element.
 const REMOVALS = {
     vertex: 'vertex_delete',
     halfedge: 'edge_collapse',
@@ -41,9 +41,9 @@ export class Editing {
     #trial;
     #work;
     #onPicking;
-    #marking = 0; // number of requests for the elements in the fields
+    #marking = 0; // number of the last request for the elements that the form's fields name
 
-    // `onPicking()` is called when a field waits for a click.
+    // `onPicking()` is called when a field of the form begins to wait for a click in the view.
     constructor(canvas, session, stage, toasts, onPicking) {
         [this.#session, this.#stage, this.#toasts] = [session, stage, toasts];
         this.#onPicking = onPicking;
@@ -121,7 +121,7 @@ export class Editing {
         enable(byId('remove'), isEnabled && last !== undefined);
     }
 
-    // The selection or the mesh has changed: see Session for `what`.
+    // Called when the selection or the mesh has changed; `what` has changed as Session describes.
     follow(what) {
         this.#tools.setSelection(this.#session.selection.chosen);
         if (what === 'mesh' || what === 'selection') {
@@ -178,7 +178,8 @@ export class Editing {
         }
     }
 
-    // Deletes or collapses the selection; only its last element if the operation takes one.
+    // Deletes or collapses the selected elements, or only the last one if the operation takes one
+    // element.
     async remove() {
         const { chosen, last } = this.#session.selection;
         if (last !== undefined) {
@@ -188,7 +189,8 @@ export class Editing {
 
     // --- clicks and tools of the view ---
 
-    // Handles what a click chose, see choose(): fills the field that waits for it, or selects it.
+    // Handles a click in the view; `chosen` is the element that it hit, see choose(). Fills the
+    // form's field that waits for a click, or selects the element if no field waits.
     async pick(chosen, also) {
         if (this.#tools.isArmed) {
             await this.#giveToField(chosen);
@@ -197,7 +199,8 @@ export class Editing {
         }
     }
 
-    // Shows that a field waits for a click, see Tools; undefined: none does.
+    // Tells the user which field of the form waits for a click, `wanted`, see Tools; undefined if
+    // none does.
     #showPicking(wanted) {
         byId('pick-note').hidden = wanted === undefined;
         if (wanted !== undefined) {
@@ -212,7 +215,7 @@ export class Editing {
         }
     }
 
-    // Ends the waiting of a field for a click.
+    // If a field of the form waits for a click, ends the wait.
     stopPicking() {
         this.#tools.disarm();
     }
@@ -231,7 +234,7 @@ export class Editing {
         }
     }
 
-    // Marks the elements that are in the fields and not selected.
+    // Marks in the view the elements that the form's fields name and that are not selected.
     async #markField() {
         const { mesh, shown: content, selection } = this.#session;
         const isSelected = ({ kind, id }) =>
@@ -248,8 +251,9 @@ export class Editing {
         }
     }
 
-    // Starts a tool of the view, or shows its form if it does not fit the selection. The form of
-    // the operation is also shown beside the tool, for exact numbers.
+    // Starts a tool of the view, or opens the form of its operation if the tool does not fit the
+    // selection. While the tool is in use, that form is shown, too, for exact numbers. `isKey`: the
+    // user pressed the tool's key, not its button.
     start(tool, isKey) {
         const name = FORMS[tool];
         const isThere = isKey ? this.#direct.arm(tool) : this.#direct.toggle(tool);
@@ -273,7 +277,8 @@ export class Editing {
         }
     }
 
-    // Esc: cancels the tool, else the field that waits for a click, else clears the selection.
+    // Handles the Esc key: cancels the selected tool; if there is none, stops waiting for a click
+    // that fills a field; if no field waits, clears the selection.
     giveUp() {
         if (this.#direct.isArmed) {
             this.#direct.cancel();

@@ -1,4 +1,5 @@
-// fields.js - which control a parameter of an operation gets, and what the form says about it.
+// fields.js - chooses the control of each parameter of an operation, and writes what the form says
+// about the parameter.
 
 import { Choice, Color, Flag, Ids, Numeral, Text, Vector, vectors, Whether } from './controls.js';
 import { matrix } from './matrix.js';
@@ -6,10 +7,10 @@ import { matrix } from './matrix.js';
 const PLURALS = { vertices: 'vertex', halfedges: 'halfedge', edges: 'edge', faces: 'face' };
 export const KINDS = Object.values(PLURALS);
 
-// Parameters filled with the position of a clicked vertex.
+// The types of parameters that can be filled with the position of a clicked vertex.
 const PLACES = ['point', 'points'];
 
-// Returns the kind of element that a click fills in, or null.
+// Returns the kind of element that the user can click to fill this parameter, or null.
 export function kindOf({ type }) {
     const kind = PLURALS[type] ?? type;
     if (PLACES.includes(type)) {
@@ -27,8 +28,9 @@ export function isList({ plural, type }) {
     return plural !== undefined || type in PLURALS;
 }
 
-// `meshes()` returns a promise of the list of meshes; `pickable(param, control)` returns the
-// control's node with a button that lets a click fill it.
+// Makes the control of a parameter. `meshes()` returns a promise of the list of meshes;
+// `pickable(param, control)` returns the control's node with a button after which a click in the
+// view fills it.
 export function controlFor(param, meshes, pickable) {
     const { name, type, choices, default: usual, nullable = false } = param;
     if (type === 'flag') {
@@ -60,12 +62,13 @@ export function controlFor(param, meshes, pickable) {
     return new Ids(name, isList(param), nullable);
 }
 
-// The placeholder of an empty field. The server chooses the value of a number that is left out.
+// Returns the placeholder of an empty number field: the default value, if it is known; else
+// 'number' if the user must give one, or 'default' if the server chooses one.
 function hintFor({ default: usual, required }) {
     return usual === undefined ? (required ? 'number' : 'default') : `${usual}`;
 }
 
-// Returns notes on a parameter: type, range, whether it is required.
+// Returns a note on a parameter: whether it is a whole number, its range, whether it is optional.
 export function marksOf({ type, required, min, max, exclusive }) {
     const marks = type === 'integer' ? ['whole'] : [];
     if (min !== undefined || max !== undefined) {
@@ -78,8 +81,8 @@ export function marksOf({ type, required, min, max, exclusive }) {
     return marks.join(', ');
 }
 
-// Returns whether every parameter has a value or needs none. Of a group of alternatives one value
-// is enough.
+// Returns whether every parameter has a value or needs none. If parameters are alternatives, which
+// have the same `group`, a value for one of them is enough.
 export function isComplete(fields) {
     return fields.every(
         (field) =>
@@ -94,8 +97,8 @@ export function isComplete(fields) {
     );
 }
 
-// Returns [member, value] of a field; undefined if it is left out. The server checks missing values
-// and ranges, since it can say what is wrong.
+// Returns the member that a field adds to the request, [name, value]; the value is undefined if the
+// field is empty. Missing values and ranges are checked by the server, which can say what is wrong.
 export function readField({ param, control }) {
     const value = control.read();
     if (Array.isArray(value) && param.plural !== undefined) {
@@ -104,7 +107,7 @@ export function readField({ param, control }) {
     return [param.name, value];
 }
 
-// Returns the fields that a problem's pointer, such as /ops/0/faces/3, refers to.
+// Returns whether the pointer of a problem, such as /ops/0/faces/3, refers to this field.
 export function isAbout({ param }, pointer) {
     const member = pointer.split('/')[3];
     return member !== undefined && (member === param.name || member === param.plural);

@@ -1,7 +1,7 @@
 // geometry.js - the arrays from which a mesh is drawn, as GET .../geometry sends them. Pure: no
 // page, no network, no WebGL.
 //
-//   vertices   4 floats each:  x, y, z, state (0 dead, VERTEX_USED or VERTEX_ISOLATED)
+//   vertices   4 floats each:  x, y, z, state (0 if deleted, VERTEX_USED or VERTEX_ISOLATED)
 //   triangles  4 words each:   corners a, b, c, and face | sides << 29
 //
 // Both arrays fill a texture that is ROW texels wide, so that the renderer uploads them unchanged.
@@ -15,9 +15,9 @@
 // The index of a vertex is its id. The triangles of a face are consecutive; faces are in no
 // particular order; a slot without a face is four zeros. The server moves and scales positions into
 // the unit ball ("view coordinates") before rounding them to floats, so that meshes far from the
-// origin or of any size are drawn correctly; `frame` has the offset and the scale. Within a
-// `layout` faces keep their slots and the frame stays, so that changes can be applied to the
-// arrays: see geometry_delta.js.
+// origin or of any size are drawn correctly; `frame` has the offset and the scale. As long as the
+// number `layout` is the same, faces keep their slots and the frame stays, so that changes can be
+// applied to the arrays: see geometry_delta.js.
 
 export const VERTEX_USED = 1;
 export const VERTEX_ISOLATED = 2;
@@ -30,9 +30,10 @@ const VERSION = 2;
 const SIDE_SHIFT = 29;
 const FACE_MASK = 2 ** SIDE_SHIFT - 1;
 
-// Returns {revision, base, layout, vertexCount, triangleCount, length} of an answer, an ArrayBuffer
-// of which only the header is read. A base of 0 means that it contains all rows; `length` is the
-// number of its bytes. Throws a RangeError if the header is invalid.
+// Reads the header of an answer, an ArrayBuffer, and returns {revision, base, layout, vertexCount,
+// triangleCount, length}. `base` is the revision to which the answer is a change, or 0 if the
+// answer contains all rows; `length` is the number of bytes of the whole answer. Throws a
+// RangeError if the header is invalid.
 export function headerOf(buffer) {
     const view = new DataView(buffer);
     const text = String.fromCharCode(...new Uint8Array(buffer, 0, 4));
@@ -47,9 +48,9 @@ export function headerOf(buffer) {
     return { revision, base, layout, vertexCount, triangleCount, length };
 }
 
-// Returns an answer with all rows, an ArrayBuffer, as {revision, layout, frame, vertices,
-// vertexCount, triangles, triangleCount, firstOf, hasIsolated}. Throws a RangeError if it is
-// invalid.
+// Reads an answer that contains all rows, an ArrayBuffer, and returns {revision, layout, frame,
+// vertices, vertexCount, triangles, triangleCount, firstOf, hasIsolated}. `firstOf` says where the
+// triangles of each face begin, see below. Throws a RangeError if the answer is invalid.
 export function unpack(buffer) {
     const { revision, base, layout, vertexCount, triangleCount, length } = headerOf(buffer);
     const trianglesAt = HEADER_BYTES + 16 * vertexCount;
@@ -77,7 +78,7 @@ export function unpack(buffer) {
 
 const isLengthOf = (buffer) => (length) => length === buffer.byteLength;
 
-// Returns a copy extended to whole rows of a texture, at least one.
+// Returns a copy of an array, extended by zeros to a whole number of texture rows, at least one.
 export function wholeRows(array) {
     const rows = Math.max(Math.ceil(array.length / (4 * ROW)), 1);
     const whole = new array.constructor(4 * ROW * rows);
@@ -85,8 +86,9 @@ export function wholeRows(array) {
     return whole;
 }
 
-// Returns a ball around all live vertices: the middle of their bounding box, and the distance to
-// the farthest. The radius is never 0, because the camera must stand outside.
+// Returns a ball around all vertices that are not deleted: the middle of their bounding box, and
+// the distance from there to the farthest. The radius is never 0, because the camera must stand
+// outside the ball.
 export function ballOf({ vertices }) {
     const low = [Infinity, Infinity, Infinity];
     const high = [-Infinity, -Infinity, -Infinity];
@@ -122,7 +124,7 @@ function hasIsolated(vertices) {
     return false;
 }
 
-// Returns whether this is the id of a live vertex.
+// Returns whether the mesh has a vertex with this id, which is not deleted.
 export function hasVertex({ vertices }, id) {
     return 4 * id < vertices.length && vertices[4 * id + 3] !== 0;
 }
@@ -132,16 +134,18 @@ export function pointAt({ vertices }, id) {
     return Array.from(vertices.subarray(4 * id, 4 * id + 3));
 }
 
-// Return the face of a triangle, and whether its side i is an edge of the polygon.
+// Returns the id of the face that a triangle belongs to.
 export function faceOf(triangles, triangle) {
     return triangles[4 * triangle + 3] & FACE_MASK;
 }
 
+// Returns whether side 0, 1 or 2 of a triangle is an edge of its face, and not a diagonal.
 export function isEdge(triangles, triangle, side) {
     return ((triangles[4 * triangle + 3] >>> (SIDE_SHIFT + side)) & 1) === 1;
 }
 
-// Returns the polygon edges of some triangles, as pairs of vertices in the direction of their face.
+// Returns the sides of some triangles that are edges of their faces, as pairs of vertices in the
+// order that they have around the face.
 export function edgesOfTriangles(triangles, which) {
     const edges = [];
     for (const triangle of which) {
@@ -159,8 +163,8 @@ export function edgesOfTriangles(triangles, which) {
 
 // --- where the triangles of a face are ---
 //
-// firstOf[face] is the number of its first triangle, counted from 1. It may be outdated: that
-// triangle may belong to another face by now, so readers check.
+// firstOf[face] is the index of the face's first triangle plus 1, or 0 if it has none. The entry
+// may be outdated: that triangle may belong to another face by now, so readers check its face.
 
 const isLive = (triangles, triangle) => triangles[4 * triangle] !== triangles[4 * triangle + 1];
 
@@ -178,13 +182,13 @@ function firstsOf(triangles, count) {
     return firstOf;
 }
 
-// Updates `firstOf` after some triangles were written; `places` are their indices in ascending
-// order.
+// Updates geometry.firstOf after some triangles of the array were written; `places` are the indices
+// of these triangles in ascending order.
 export function findFaces(geometry, places) {
     const { triangles, triangleCount } = geometry;
     let done = -1; // index of the last triangle processed
     for (const place of places) {
-        // A face that lost this triangle may still have one beside it.
+        // The face that this triangle belonged to before may still have a triangle beside it.
         for (const at of [place - 1, place, place + 1]) {
             if (at > done && at < triangleCount && isLive(triangles, at)) {
                 done = at;
@@ -202,14 +206,15 @@ function setFirst(geometry, face, triangle) {
     }
     const isOf = (at) => at >= 0 && faceOf(triangles, at) === face && isLive(triangles, at);
     let first = geometry.firstOf[face] - 1;
-    // If the triangles before it were found already, they need not be visited again.
+    // The entry is still right if it and the triangle just before belong to the face; otherwise the
+    // first triangle must be searched.
     if (first < 0 || first >= triangle || !isOf(first) || !isOf(triangle - 1)) {
         for (first = triangle; isOf(first - 1); first--);
     }
     geometry.firstOf[face] = first + 1;
 }
 
-// Returns the triangles of a face, none if it is not live.
+// Returns the indices of the triangles of a face, none if there is no such face.
 export function trianglesOfFace({ triangles, triangleCount, firstOf }, face) {
     const found = [];
     const isOf = (at) => faceOf(triangles, at) === face && isLive(triangles, at);
@@ -219,7 +224,7 @@ export function trianglesOfFace({ triangles, triangleCount, firstOf }, face) {
     return found;
 }
 
-// Returns the direction of a face's normal; not of length 1, and zero if the face has no area.
+// Returns a normal of a face: its length is twice the area of the face, so it may be zero.
 export function normalOfFace(geometry, face) {
     const { vertices, triangles } = geometry;
     const normal = [0, 0, 0];

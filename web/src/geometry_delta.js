@@ -6,9 +6,10 @@
 //   16  u64 base                    88  u32 vertex rows, u32 triangle rows that follow
 //   24  u64 bytes of each part      96  the two parts
 //
-// A part has u32 indices in ascending order, zeros up to a multiple of 16 bytes, and a row for each
-// index. Within a layout a triangle keeps its slot, counts never decrease, and a slot without a
-// face is four zeros. The triangles of a face are consecutive.
+// The first part has the changed vertices, the second the changed triangles. A part consists of u32
+// indices in ascending order, zeros up to a multiple of 16 bytes, and a row of 16 bytes for each
+// index. As long as `layout` is the same, a triangle keeps its slot, counts never decrease, and a
+// slot without a face is four zeros. The triangles of a face are consecutive.
 
 import { HEADER_BYTES, headerOf } from './geometry.js';
 
@@ -16,7 +17,8 @@ const ROW_BYTES = 16;
 
 // Applies changes to `geometry`: {revision, layout, vertices, vertexCount, triangles,
 // triangleCount}, whose arrays may be longer than their counts. An array that is too short is
-// replaced by one that is an eighth longer than needed, a multiple of `rowTexels` rows.
+// replaced by one that is an eighth longer than needed, rounded up to whole texture rows of
+// `rowTexels` texels.
 //
 // Returns {vertices, triangles, grown}: the indices of the changed rows, as Uint32Arrays, and
 // whether an array was replaced. Returns null, and does nothing, if the answer contains all rows

@@ -1,19 +1,19 @@
-// gesture.js - what a drag does to the selected elements: lines that show it and the edit that
-// results. Pure.
+// gesture.js - computes what a drag with a tool does to the selected elements: the lines of a
+// preview, and the edit to send. Pure.
 //
-// Places are in view coordinates (see geometry.js); the edit is in coordinates of the mesh.
+// Points are in view coordinates (see geometry.js); the edit is in coordinates of the mesh.
 
 import { edgesOfTriangles, hasVertex, normalOfFace, pointAt, trianglesOfFace } from './geometry.js';
 import { middleOf, pixelAtOne, reachFrom } from './view.js';
 
-// The amount of a tool that is clicked rather than dragged, as a part of the selection's size.
+// The amount that a tool applies after a click without a drag, as a part of the selection's size.
 const USUAL = 0.2;
 
-// The least and the greatest inset, as parts of the way to the middle.
+// The least and the greatest inset, as parts of the way from the corners of a face to its middle.
 const INSET = [0.01, 0.99];
 
-// If a smaller part of a normal of length 1 is across the view, the normal looks almost at the
-// viewer, and dragging upwards follows it.
+// If a normal of length 1 is shorter than this when projected to the screen, it points almost at
+// the viewer or away; then dragging upwards counts as dragging along the normal.
 const LEAST_ACROSS = 0.3;
 
 // The largest number of lines that preview an edit.
@@ -35,8 +35,8 @@ const OPERATIONS = {
     inset: { face: 'face_inset' },
 };
 
-// Starts a tool, 'move', 'extrude' or 'inset', on the selection (see Selection): returns what
-// drag() needs, or null if the tool does not fit.
+// Starts a tool, 'move', 'extrude' or 'inset', on the selected elements `chosen` (see Selection):
+// returns a gesture, the data that drag() needs, or null if the tool does not fit the selection.
 export function begin(tool, chosen, geometry) {
     const kind = chosen.at(-1)?.kind;
     const op = OPERATIONS[tool][kind];
@@ -64,9 +64,9 @@ function endsOf({ kind, id, element }) {
     return kind === 'halfedge' ? [element.origin, element.target] : element.vertices;
 }
 
-// Returns the polygon edges of all triangles at some vertices.
+// Returns the edges of faces that are sides of triangles at some vertices, at most MOST_LINES.
 function edgesAt({ triangles, triangleCount, vertexCount }, vertices) {
-    // an array gives fast lookup, because millions of triangles are checked
+    // An array is faster than a Set, which matters because millions of triangles are checked.
     const wanted = new Uint8Array(vertexCount);
     vertices.forEach((id) => {
         wanted[id] = 1;
@@ -99,13 +99,13 @@ export function drag(gesture, view, moved) {
 
 // --- from pixels to places ---
 
-// Returns the length of a pixel at the depth of the selection.
+// Returns how long a CSS pixel is in the plane through the selection parallel to the screen.
 function pixelOf({ middle }, view) {
     const depth = -dot(add(middle, view.position, -1), view.back);
     return pixelAtOne(view.height) * Math.max(depth, 0);
 }
 
-// Returns the movement of the pointer as a vector in the plane of the view.
+// Returns the movement of the pointer as a vector parallel to the screen.
 function across(gesture, view, [dx, dy]) {
     const pixel = pixelOf(gesture, view);
     return add(view.right.map((value) => dx * pixel * value), view.up, -dy * pixel);
@@ -124,7 +124,7 @@ function along(gesture, view, [dx, dy]) {
     return (dx * x - dy * y) * pixelOf(gesture, view);
 }
 
-// Returns the part of the way to the middle of the faces that the pointer has moved.
+// Returns how far the pointer has moved, as a part of the selection's size, within INSET.
 function inwards(gesture, view, [dx, dy]) {
     const part = (Math.hypot(dx, dy) * pixelOf(gesture, view)) / (gesture.reach || 1);
     return Math.min(Math.max(part, INSET[0]), INSET[1]);
@@ -165,7 +165,8 @@ function drawOut(gesture, by) {
     };
 }
 
-// Faces that share an edge move together, as the operation's `region` does.
+// Returns the result of extruding faces by a distance: faces that share an edge move together, as
+// with `region` in face_extrude.
 function pull(gesture, length) {
     const { geometry, chosen, op } = gesture;
     const [distance] = inMesh(gesture, [length]);
@@ -193,7 +194,8 @@ function shrink(gesture, factor) {
     return { operation, lines, text: `${textOf([100 * factor])} % of the way` };
 }
 
-// Returns the sides of a face moved by `place`, and lines from there to the original corners.
+// Returns lines that show how a face moves if its corners p move to place(p): its edges at the new
+// place, and a line from each corner to its new place.
 function linesOfFace(geometry, face, place) {
     return sidesOf(geometry, edgesOfFace(geometry, face), place);
 }
@@ -213,8 +215,9 @@ function edgesOfFace(geometry, face) {
     return edgesOfTriangles(geometry.triangles, trianglesOfFace(geometry, face));
 }
 
-// Returns the connected sets of faces: {faces, rim, inner} for each, where `rim` are the edges to
-// faces outside, in the direction of the face, and `inner` the other edges, once each.
+// Divides faces into connected sets, {faces, rim, inner}: `rim` are the edges with no face of the
+// set on the other side, in the order of the face's vertices, and `inner` the edges between two
+// faces of the set, once each.
 export function regionsOf(geometry, faces) {
     const sides = faces.flatMap((face) =>
         edgesOfFace(geometry, face).map((edge) => ({ face, edge, key: `${edge}` })),

@@ -1,4 +1,5 @@
-// history.js - the list of the open mesh's revisions, newest first; a click goes back to one.
+// history.js - the list of the open mesh's revisions, newest first; a click on a revision undoes
+// everything since.
 
 import { formatCount, make } from './dom.js';
 
@@ -10,13 +11,14 @@ export class History {
     #readPage;
     #onUndo;
     #onError;
-    #shown = null; // the history that is in the list
+    #shown = null; // the history whose entries are in the list
     #isEnabled = true;
-    #hasFocus = false; // a pressed button had the focus before it was disabled
+    #hasFocus = false; // a button of the list was pressed, so the list keeps the focus
     #beginning = null; // the revision before the first step that can be undone
-    #isTopShown = false; // the present state has its row
+    #isTopShown = false; // whether the row of the present state is in the list
 
-    // `readPage(cursor)` reads the next page; `onUndo(revision)` is called when one is chosen.
+    // `readPage(cursor)` reads the next page of the history; `onUndo(revision)` is called when the
+    // user chooses the revision to go back to.
     constructor({ list, more }, { readPage, onUndo, onError }) {
         this.#list = list;
         this.#more = more;
@@ -26,7 +28,7 @@ export class History {
         more.addEventListener('click', () => this.#readOn().catch(onError));
     }
 
-    // Shows the first page, as the server sent it.
+    // Shows the first page of the history, as the server sent it.
     show(history) {
         const hadFocus = this.#hasFocus || this.#list.contains(document.activeElement);
         this.#hasFocus = false;
@@ -49,7 +51,7 @@ export class History {
     async #readOn() {
         const first = this.#shown;
         const page = await this.#readPage(this.#more.dataset.cursor);
-        // If an edit happened meanwhile, the list has started again.
+        // If the mesh was edited meanwhile, the list shows a newer history, without this page.
         if (this.#shown === first) {
             this.#append(page);
         }
@@ -68,7 +70,8 @@ export class History {
         this.#more.hidden = next === null;
     }
 
-    // The newest step that can be undone is the present state.
+    // Returns the row of an entry. The newest entry that can be undone is the present state, which
+    // is marked; those before it are buttons; others cannot be undone.
     #row(entry) {
         const { action, undoable } = entry;
         const ops = entry.ops.join(', ') || action;
@@ -125,7 +128,7 @@ function sumOf(entry) {
         .join(' ');
 }
 
-// Returns the numbers by kind of element, as in "+1 vertices, +3 edges".
+// Returns how many elements of each kind an edit changed, as in "+1 vertices, +3 edges".
 function tallyOf(entry) {
     return Object.keys(signs)
         .flatMap((name) => KINDS.map((kind) => [signs[name], entry[name]?.[kind] ?? 0, kind]))

@@ -1,8 +1,9 @@
-// inspector.js - everything the server says about one element, with links to others.
+// inspector.js - shows everything the server says about the selected element, with links to other
+// elements.
 
 import { formatMeasure, make } from './dom.js';
 
-// Members whose values are ids, and the kind of the element.
+// The members of an element whose values are ids of elements, and the kind of those elements.
 const LINKS = {
     vertex: 'vertex',
     vertices: 'vertex',
@@ -21,10 +22,10 @@ const LINKS = {
 
 const TITLES = { vertex: 'Vertex', halfedge: 'Half-edge', edge: 'Edge', face: 'Face' };
 
-// The number of ids of one member that are shown before a button offers the others.
+// If a member has more ids than this, the others are shown after a click on a button.
 const MOST = 16;
 
-// The digits of a measure: three numbers must fit into a line.
+// The number of digits of a measure, few enough for three measures to fit into a line.
 const DIGITS = 5;
 
 export class Inspector {
@@ -36,8 +37,8 @@ export class Inspector {
     #onFollow;
     #heirOf;
 
-    // `onFollow(kind, id)` is called when a link is clicked; `heirOf({kind, id})` returns the
-    // element that replaced one that is gone, or null.
+    // `onFollow(kind, id)` is called when the link to an element is clicked; `heirOf({kind, id})`
+    // returns the element that replaced a deleted element, or null.
     constructor({ title, hint, gone, members, around }, { onFollow, heirOf }) {
         this.#title = title;
         this.#hint = hint;
@@ -48,8 +49,8 @@ export class Inspector {
         this.#heirOf = heirOf;
     }
 
-    // Shows the last of the selected elements, its neighbours, and selected elements that are gone,
-    // see selection.js.
+    // Shows the element that was selected last, its neighbours, and selected elements that were
+    // deleted meanwhile, see selection.js.
     show({ chosen: selection, around, gone }) {
         const last = selection.at(-1);
         this.#gone.hidden = gone.length === 0;
@@ -95,8 +96,8 @@ export class Inspector {
         );
     }
 
-    // Returns the description of a value; `kind` is the kind of the linked element, undefined if it
-    // is no link.
+    // Returns an element that shows the value of a member; `kind` is the kind of the elements whose
+    // ids the value consists of, or undefined if it has no ids.
     #description(name, value, kind) {
         const description = make('dd', { className: Array.isArray(value) ? 'many' : 'one' });
         description.dataset.member = name;
@@ -146,7 +147,8 @@ export class Inspector {
     }
 }
 
-// Shows a value that is no link. Measures are rounded; hovering shows all digits.
+// Returns an element that shows a value that is no id. Measures are rounded; their title, which is
+// shown when the pointer rests on them, has all digits.
 function plainValue(value) {
     if (typeof value === 'number' && !Number.isInteger(value)) {
         return make('span', { title: `${value}` }, formatMeasure(value, DIGITS));

@@ -1,9 +1,9 @@
-// keys.js - the keys of the view, and the list of them that `?` shows. They work only while the
-// canvas has the focus: elsewhere letters are text.
+// keys.js - the keys of the 3D view, and the list of keys that `?` shows. The keys work only while
+// the canvas has the focus, because letters typed elsewhere are text.
 
 import { make } from './dom.js';
 
-// [keys as shown, key as in events, description, name of the act]
+// Each row is [keys as shown, key as in events, description, member of `acts`].
 const KEYS = [
     ['1', '1', 'Pick vertices', 'pickVertex'],
     ['2', '2', 'Pick edges', 'pickEdge'],
@@ -26,7 +26,7 @@ const KEYS = [
     ['Esc', 'escape', 'Cancel, or clear the selection', 'clear'],
 ];
 
-// `acts` has a function for each act.
+// Listens to the keys; `acts` has the function that each key calls.
 export function listenToKeys(canvas, acts) {
     canvas.addEventListener('keydown', (event) => {
         const control = event.ctrlKey || event.metaKey;

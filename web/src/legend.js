@@ -1,10 +1,10 @@
-// legend.js - the materials of the open mesh with names and colours, and the switch that shows
-// their colours on faces.
+// legend.js - lists the materials of the open mesh with names and colours, and has the checkbox
+// that shows or hides their colours on faces.
 
 import { formatMeasure, make } from './dom.js';
 import { toScreen } from './materials.js';
 
-// The number of rows that are shown before a button offers the others.
+// If there are more materials than this, the others are shown after a click on a button.
 const MOST = 50;
 
 export class Legend {
@@ -12,8 +12,8 @@ export class Legend {
     #list;
     #current = '';
 
-    // `section` contains everything, `toggle` is the checkbox; `onToggle(isOn)` is called when it
-    // changes.
+    // `section` contains the list and the checkbox, `toggle`; `onToggle(isOn)` is called when the
+    // checkbox changes.
     constructor({ section, list, toggle }, { onToggle }) {
         this.#section = section;
         this.#list = list;
@@ -47,7 +47,7 @@ export class Legend {
         this.#list.append(make('li', {}, button));
     }
 
-    // Marks the material of the selection, '' for none.
+    // Marks the material of the selected face in the list; `name` is '' if there is none.
     setCurrent(name) {
         this.#current = name;
         this.#mark();
@@ -90,7 +90,7 @@ function colorOf([red, green, blue, opacity]) {
     return `rgb(${parts.join(' ')} / ${opacity})`;
 }
 
-// Returns notes on the properties that a swatch does not show.
+// Returns notes on the properties of a material that its patch of colour does not show.
 function notesOf(look) {
     if (look === null) {
         return ['unknown colour'];

@@ -1,9 +1,11 @@
-// levels.js - the arrays to draw a mesh at any level of detail, in the layout of geometry.js. Pure.
+// levels.js - the arrays to draw a mesh at any level of detail, in the format of geometry.js. Pure.
 //
-// Vertices and triangles are in the order in which they arrive, not at their ids: a level shows a
-// number of both from the first on, and the next level adds a vertex and its triangles. Entries
-// after them keep the state in which they were last shown. So a split exchanges the stored values
-// of the neighbours with those of the next level, and undoing the split exchanges them back.
+// A level is a coarse mesh, the base, with some of the vertex splits that refine it applied. Unlike
+// in geometry.js, the index of a vertex is not its id: vertices and triangles are in the order in
+// which they arrive. A level shows a number of both from the first on, and the next level adds a
+// vertex and its triangles. A split also changes what was there: the vertex that is split moves,
+// and some triangles get the new vertex as a corner. These values are exchanged with those of the
+// next level, so undoing the split exchanges them back.
 
 import { ROW, VERTEX_ISOLATED, VERTEX_USED, wholeRows } from './geometry.js';
 import { unreadable } from './progressive.js';
@@ -11,11 +13,12 @@ import { unreadable } from './progressive.js';
 // The bits that say that all three sides of a triangle are edges.
 const SIDES = 7 << 29;
 
-// Changes are recorded by blocks of this many texels; a block never spans two rows of a texture.
+// Which texels have changed is recorded for blocks of this many texels. ROW is a multiple of it, so
+// that a block never spans two rows of a texture.
 const BLOCK = 256;
 
 export class Levels {
-    // The arrays in the form that the renderer takes.
+    // The arrays of the present level, in the form that the renderer takes.
     geometry;
     count = 0; // splits that have arrived
     level = 0; // splits that are applied
@@ -25,11 +28,12 @@ export class Levels {
     #scale;
     #base; // numbers of vertices and faces of the base
     #isolated = 0;
-    #placeOf; // by id, starting from 1
+    #placeOf; // index + 1 of each vertex by its id; #triangleOf has those of triangles
     #triangleOf;
     #faces = 0;
-    // For each split: the vertex that is split and its position at the other level, and the ends of
-    // the lists of triangles that it moves and creates.
+    // One entry for each split: the vertex that is split and, while the split is applied, its
+    // position before, otherwise its position after; and where the lists of the triangles end that
+    // the split changes (in #moved) and adds.
     #from;
     #other;
     #movedEnd;
@@ -37,8 +41,8 @@ export class Levels {
     #moved = new Uint32Array(1024);
     #changed;
 
-    // The first arguments are those of ProgressiveReader's `begin`; the others are the frame of the
-    // mesh's geometry.
+    // The first argument is that of ProgressiveReader's `begin`, the second is the frame of the
+    // mesh's geometry, see geometry.js.
     constructor({ vertices, faces, splits, vertexIds, faceIds }, { origin, scale }) {
         [this.#origin, this.#scale] = [origin, scale];
         this.#base = { vertices, faces };
@@ -62,7 +66,7 @@ export class Levels {
         };
     }
 
-    // Whether the whole base has arrived.
+    // Whether the base, the coarsest level, has arrived completely.
     get hasBase() {
         const { vertexCount } = this.geometry;
         return vertexCount >= this.#base.vertices && this.#faces >= this.#base.faces;
@@ -167,7 +171,7 @@ export class Levels {
         return this.#find(this.#placeOf, id);
     }
 
-    // Returns the index of an element that has arrived.
+    // Returns the index of the element with this id. Throws a RangeError if it has not arrived.
     #find(places, id) {
         if (!(places[id] > 0)) {
             throw unreadable();
@@ -177,7 +181,7 @@ export class Levels {
 
     // --- levels ---
 
-    // Applies or undoes splits until `level` of those that have arrived are applied.
+    // Applies or undoes splits until `level` splits are applied, or all that have arrived.
     goTo(level) {
         const wanted = Math.max(Math.min(level, this.count), 0);
         for (; this.level < wanted; this.level++) {
@@ -193,8 +197,8 @@ export class Levels {
         geometry.triangleCount = wanted > 0 ? this.#faceEnd[wanted - 1] : this.#base.faces;
     }
 
-    // In the triangles that split i moves, replaces vertex `from` by `to`, and exchanges the
-    // position of the split vertex with that of the other level.
+    // Applies split i, or undoes it: replaces vertex `from` by `to` in the triangles that the split
+    // changes, and exchanges the position of the split vertex with the stored one.
     #exchange(i, from, to) {
         const { vertices, triangles } = this.geometry;
         const [moved, other, changed] = [this.#moved, this.#other, this.#changed];
@@ -225,10 +229,10 @@ export class Levels {
     }
 }
 
-// The blocks of an array that are shown and whose copy in graphics memory is outdated.
+// Records which blocks of an array are outdated in graphics memory, among those that are shown.
 class Changes {
     #blocks;
-    #shown = 0; // number of texels at the last call; those after them may be outdated
+    #shown = 0; // number of texels shown at the last call of take(); later ones may be outdated
 
     constructor(length) {
         this.#blocks = new Uint8Array(length / BLOCK);

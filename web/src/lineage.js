@@ -1,6 +1,6 @@
-// lineage.js - which elements replaced elements that are gone, as far as edits reported it. Pure.
+// lineage.js - remembers which elements replaced deleted ones, as far as edits reported it. Pure.
 
-// Maximum number of entries of each map; the oldest are forgotten.
+// Each map holds at most this many entries; the oldest entries are forgotten.
 const MOST = 10000;
 
 const KINDS = { vertices: 'vertex', edges: 'edge', faces: 'face' };
@@ -9,8 +9,9 @@ export class Lineage {
     #merged = new Map(); // 'face:3' -> the id of the face into which it was merged
     #parents = new Map(); // 'face:3' -> the id of the face from which it was split
 
-    // Records the answer to an edit, or its event: `merged` and `parents` are {faces: [[of, id]],
-    // ...}.
+    // Records what an edit reported, in its answer or its event: `merged` and `parents` are {faces:
+    // [[id, other], ...], edges: ..., vertices: ...}, where `other` is the id of the element into
+    // which `id` was merged, or from which it was split.
     note({ merged = {}, parents = {} }) {
         for (const [map, told] of [[this.#merged, merged], [this.#parents, parents]]) {
             for (const [plural, pairs] of Object.entries(told)) {
@@ -21,8 +22,8 @@ export class Lineage {
         }
     }
 
-    // Returns the element that replaced one that is gone: {kind, id}, or null. A half-edge follows
-    // its edge.
+    // Returns the element that replaced a deleted element, {kind, id}, or null. If the deleted
+    // element is a half-edge, this is the edge that replaced the half-edge's edge.
     heirOf({ kind, id }) {
         const [whole, at] = kind === 'halfedge' ? ['edge', Math.floor(id / 2)] : [kind, id];
         const key = `${whole}:${at}`;

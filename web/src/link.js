@@ -1,10 +1,11 @@
-// link.js - what is shown as the fragment of the page's address, such as
+// link.js - writes and reads the fragment of the page's address, which says what is shown, such as
 // #mesh=cube&face=3&camera=1,2,3,... Pure.
 
 const KINDS = ['vertex', 'halfedge', 'edge', 'face'];
 const CAMERA_NUMBERS = 6;
 
-// Returns {mesh, kind, id, camera}; null for members that are missing or invalid.
+// Returns what a fragment says, {mesh, kind, id, camera}; members are null if the fragment does not
+// have them or has invalid values.
 export function parseLink(fragment) {
     const members = new URLSearchParams(fragment.replace(/^#/, ''));
     const kind = KINDS.find((name) => /^\d{1,10}$/.test(members.get(name) ?? '')) ?? null;

@@ -12,7 +12,8 @@ export class MeshList {
     #cursor = null;
     #reading = 0;
 
-    // `readPage(cursor)` returns {items, next}; `onOpen(id)` is called when a mesh is chosen.
+    // `readPage(cursor)` reads a page of the list, {items, next}; `onOpen(id)` is called when the
+    // user chooses a mesh.
     constructor({ list, more }, { readPage, onOpen, onError }) {
         this.#list = list;
         this.#more = more;
@@ -41,7 +42,7 @@ export class MeshList {
         }
     }
 
-    // Updates one row from a summary.
+    // Updates the row of the mesh that a summary describes.
     update(summary) {
         for (const row of this.#list.children) {
             if (row.firstElementChild.dataset.mesh === summary.id) {

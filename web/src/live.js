@@ -1,23 +1,24 @@
 // live.js - the event stream of a mesh, which reports edits of all clients. It is opened again when
-// it ends, unless the mesh was deleted. No page in here.
+// it ends, unless the mesh was deleted. This module does not touch the page.
 //
 //            first open         ends            opens
 //   opening ------------> on ---------> lost ---------> on ...
 //                                         |
 //                                         | the mesh is not there any more
-//      (or from any state by `bye`)       v
+//   (in any state, after an event `bye`)  v
 //                                       gone
 //
-// The stream continues after the last event received. The delay grows with each attempt.
+// A stream that is opened again continues after the last event received. The delay before each
+// attempt to open it is longer than the one before.
 
 import { listen, getHistory } from './api.js';
 
-// Milliseconds before another attempt; a random part of up to a half is added, so that many pages
-// do not reconnect at once.
+// Milliseconds before the stream is opened again: SOON at first, then twice as long each time, up
+// to LATEST. A random part of up to a half is added, so that many pages do not reconnect at once.
 const SOON = 250;
 const LATEST = 15000;
 
-// If no stream opens within this time, the page shows the mesh without it.
+// If the stream has not opened after this many milliseconds, the page shows the mesh without it.
 const PATIENCE = 3000;
 
 export class Live {
@@ -26,21 +27,21 @@ export class Live {
     #mesh;
     #on;
     #source = null;
-    #last = null; // the id of the last event
+    #last = null; // the id of the last event received
     #delay = SOON;
     #timer = 0;
-    #isLate = false; // the page did not wait for the stream
+    #isLate = false; // PATIENCE ended before the stream opened
     #isClosed = false;
 
-    // `on.event(name, data)` is called for each event, `on.state(state)` after a change of state,
-    // `on.back()` when a lost stream continues, or the first one opens after the page has stopped waiting
-    // for it: events may have been missed.
+    // `on.event(name, data)` is called for each event, and `on.state(state)` after a change of
+    // state. `on.back()` is called when events may have been missed: when a lost stream continues,
+    // or when the first stream opens after the page has stopped waiting for it.
     constructor(mesh, on) {
         this.#mesh = mesh;
         this.#on = on;
     }
 
-    // Opens the stream; resolves when it is open, or when there is none for now.
+    // Opens the stream. The promise resolves when it is open, if opening fails, or after PATIENCE.
     open() {
         return new Promise((resolve) => {
             const timer = setTimeout(() => {
@@ -94,7 +95,7 @@ export class Live {
     }
 
     #receive(name, data) {
-        // A stream that delivers something works.
+        // Since an event arrived, the connection works, so the next delay is short again.
         this.#delay = SOON;
         if (name === 'bye' && data.reason === 'deleted') {
             this.close();
@@ -117,7 +118,8 @@ export class Live {
         this.#delay = Math.min(2 * this.#delay, LATEST);
     }
 
-    // A failed stream does not say why it was refused; another request does.
+    // Opens the stream again, unless the mesh was deleted: listen() does not report why the stream
+    // failed, so another request finds out.
     async #retry() {
         try {
             await getHistory(this.#mesh);

@@ -1,4 +1,4 @@
-// main.js - puts the page together: the session in the centre, panels and view around it.
+// main.js - builds the page: makes the session, the panels and the 3D view, and connects them.
 
 import { Address } from './address.js';
 import * as api from './api.js';
@@ -134,7 +134,7 @@ function importOf({ counts, import: report }) {
 
 // --- showing the session ---
 
-// Called when the session has changed; see Session for `what`.
+// Called when the session has changed; the constructor of Session explains `what` and `change`.
 function update(what, change) {
     const isNew = what === 'mesh' || what === 'content';
     const isChanged = isNew || what === 'change';
@@ -176,7 +176,7 @@ function update(what, change) {
     showWhatMayBeDone();
 }
 
-// Returns the label of a frame.
+// Returns a label that says what the next frame will show.
 function label() {
     const { mesh, shown: content, selection } = session;
     return content === null
@@ -189,7 +189,7 @@ function label() {
           };
 }
 
-// Tests use this; they compare it with what the server sends.
+// The property `geometry` of the canvas is for tests, which compare it with what the server sends.
 Object.defineProperty(canvas, 'geometry', { get: () => session.shown?.geometry ?? null });
 
 function showSelection() {
@@ -203,7 +203,7 @@ function showSelection() {
     address.write();
 }
 
-// `change` is a result of Materials.note(), null for everything.
+// Shows the materials. `change` is a result of Materials.note(), or null if any may have changed.
 function showMaterials(change) {
     const { materials } = session;
     if (change === null) {
@@ -236,7 +236,8 @@ function showWhatMayBeDone() {
     history.setEnabled(ready);
 }
 
-// Ends the showing of levels, because those of another mesh or revision do not fit what is shown.
+// Ends the showing of levels of detail. Called when another mesh or revision is shown, to which
+// these levels do not belong.
 function endLevels() {
     refining.end();
     if (session.loading === null) {
@@ -248,7 +249,8 @@ function tellStale() {
     toasts.tell('Back to the mesh', 'It was changed, so these levels are out of date.');
 }
 
-// Shows the empty state if there is no mesh.
+// Reads the list of meshes again, and shows a hint if there are none. Returns the ids in its first
+// page.
 async function refreshList() {
     const ids = await list.refresh();
     byId('empty').hidden = ids.length > 0 || session.mesh !== null;
@@ -257,7 +259,7 @@ async function refreshList() {
 
 // --- buttons ---
 
-// Frames the selection, or the whole mesh if nothing is selected.
+// Moves the camera to the selection, or to the whole mesh if nothing is selected.
 function frameSelection() {
     const geometry = session.shown?.geometry;
     stage.frame(geometry === undefined ? null : framing(geometry, session.selection));
@@ -340,7 +342,7 @@ api.getOperations()
     .catch(fail);
 start().catch(fail);
 
-// Opens what the address says, or else the first mesh of the list.
+// Opens the mesh that the page's address names, or else the first mesh of the list.
 async function start() {
     await signIn.start();
     const [first] = await refreshList();

@@ -1,21 +1,22 @@
 // materials.js - the materials of a mesh and of its faces, as arrays for the renderer. They are
-// read once and then updated by edit events. No page in here.
+// read once and then updated by edit events. This module does not touch the page.
 //
-//   labels    u32 per face: the index of its material's name among the labels of the attribute
-//             `material`; four to a texel
-//   palette   two texels per label: red, green, blue, opacity; red, green and blue of the emitted
-//             light, and SIDES. Colours are sRGB here and linear in the API
+//   labels    one u32 per face, four in a texel: the label of the face's material, which is an
+//             index into the list of names that the face attribute `material` has
+//   palette   two texels per label: the first has red, green, blue and opacity; the second has red,
+//             green and blue of the emitted light, and a number from SIDES. Colours are sRGB here
+//             and linear in the API
 
 import * as api from './api.js';
 import { wholeRows } from './geometry.js';
 
-// The last number of a palette's entry: the material is unknown, or how many sides of the face show
-// its colour.
+// The last of the eight numbers that the palette has for a material: how many sides of a face show
+// its colour, or that the colour is unknown.
 export const SIDES = { unknown: 0, one: 1, two: 2 };
 
 const NAME = 'material'; // name of the attribute
-const FEW = 1e4; // if more labels changed, all of them are uploaded
-const TRIES = 5; // attempts to read everything from one revision while other clients edit
+const FEW = 1e4; // if more labels than this have changed, all labels are uploaded
+const TRIES = 5; // attempts to read everything from one revision while other clients edit the mesh
 
 export class Materials {
     revision = 0;
@@ -23,23 +24,24 @@ export class Materials {
     palette = wholeRows(new Float32Array());
 
     #mesh;
-    #rows = []; // the table of materials
-    #names = []; // the labels; empty if faces have no such attribute
+    #rows = []; // the materials of the mesh, as the server sent them
+    #names = []; // names of the attribute's labels; empty if faces have no attribute `material`
     #fallback = 0; // the label of faces without a value
-    #held = null; // edits that arrived while it is being read
-    #reading = null; // identifies the latest read
+    #held = null; // edits that arrived while the materials are being read; null otherwise
+    #reading = null; // identifies the latest call of read()
 
     constructor(mesh) {
         this.#mesh = mesh;
     }
 
-    // Whether there are no materials.
+    // Whether the mesh has no materials and its faces name none.
     get isEmpty() {
         return this.#rows.length === 0 && this.#names.every((name) => name === '');
     }
 
-    // Returns {name, look} of each material, in the order of the table; look is its row, null if
-    // faces name a material that the table does not have.
+    // Returns {name, look} of each material, in the server's order; `look` are the material's
+    // properties as the server sent them. Materials that faces name but the mesh does not have
+    // follow, with null as `look`.
     get list() {
         const known = new Set(this.#rows.map(({ name }) => name));
         const others = this.#names.filter((name) => name !== '' && !known.has(name));
@@ -49,13 +51,13 @@ export class Materials {
         ];
     }
 
-    // Returns the name of a face's material, '' for none.
+    // Returns the name of a face's material, or '' if the face has none.
     nameOf(face) {
         return this.#names[this.labels[face] ?? this.#fallback] ?? '';
     }
 
-    // Reads everything. Edits passed to note() meanwhile are applied afterwards. A later call
-    // supersedes an earlier one.
+    // Reads all materials from the server. Edits passed to note() meanwhile are applied afterwards.
+    // If read() is called again before it has ended, only the later call counts.
     async read(signal) {
         const reading = {};
         this.#reading = reading;
@@ -106,7 +108,8 @@ export class Materials {
             : null;
     }
 
-    // Takes a new list of labels, or none (null); all faces get its default.
+    // Takes the description of the attribute `material`, or null if faces have no such attribute;
+    // all faces get its default value.
     #setColumn(column) {
         const isUsable = column?.labels !== undefined && column.components === 1;
         this.#names = isUsable ? column.labels : [];
@@ -114,7 +117,8 @@ export class Materials {
         this.labels.fill(this.#fallback);
     }
 
-    // Takes [[face, label], ...]. Returns the changed texels in ascending order, null for many.
+    // Sets the labels of some faces: [[face, label], ...]. Returns the indices of the changed
+    // texels in ascending order, or null if there are more than FEW.
     #put(values) {
         const most = values.reduce((last, [face]) => Math.max(last, face), -1);
         if (most >= this.labels.length) {
@@ -160,8 +164,9 @@ export function toScreen(linear) {
         : Math.min(1.055 * linear ** (1 / 2.4) - 0.055, 1);
 }
 
-// Reads one revision: {revision, materials, column, values}; column is null if no face names a
-// material.
+// Reads the materials of one revision: {revision, materials, column, values}, where `column`
+// describes the attribute `material` and `values` are its values by face; both are null if faces
+// have no such attribute.
 async function readAll(mesh, signal) {
     for (let tries = 1; ; tries++) {
         const { revision, attributes } = await api.getAttributes(mesh, signal);
@@ -173,7 +178,8 @@ async function readAll(mesh, signal) {
             ]);
             return { revision, materials, column, values };
         } catch (error) {
-            // The history has dropped this revision by now, so the newest one is read.
+            // With 410 the server says that it no longer has this revision, because the mesh was
+            // edited meanwhile: then the newest revision is read.
             if (error.status !== 410 || tries === TRIES) {
                 throw error;
             }

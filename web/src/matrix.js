@@ -1,12 +1,12 @@
-// matrix.js - the control of an affine map: scaling, rotation and translation, or its 16 numbers.
-// See controls.js.
+// matrix.js - the form control for an affine map, with fields for scaling, rotation and translation
+// or a text area for the 16 numbers of its matrix. See controls.js.
 
 import { compose, textOf } from './affine.js';
 import { Vector, WithText } from './controls.js';
 import { make } from './dom.js';
 import { numbersOf } from './numbers.js';
 
-// [member of compose(), its label, the value of an empty field]
+// Each row is [parameter of compose(), its label in the form, the value of an empty field].
 const STEPS = [
     ['scale', 'Scale', 1],
     ['rotate', 'Rotate, degrees', 0],
@@ -18,7 +18,8 @@ class Steps {
     #vectors;
     #about;
 
-    // `pickable(name, control)` returns a control's node with a button that lets a click fill it.
+    // `pickable(name, control)` returns a control's node with a button after which a click in the
+    // view fills the control.
     constructor(pickable) {
         const all = [...STEPS, ['about', 'Around the point', 0]];
         this.#vectors = Object.fromEntries(

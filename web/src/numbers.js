@@ -1,8 +1,8 @@
-// numbers.js - parsing numbers as people write and paste them. Pure.
+// numbers.js - parses numbers as people write and paste them. Pure.
 
 import { Problem } from './api.js';
 
-// Separators of numbers, also around lists of them.
+// Characters that may separate numbers or enclose a list of numbers.
 const BETWEEN = /[\s,;()[\]]+/;
 
 export function wordsOf(text) {
@@ -21,12 +21,12 @@ export function numbersOf(text, name) {
     });
 }
 
-// Makes a problem for a mistake in a parameter's text, like one of the server.
+// Makes a problem for a mistake in a parameter's text, in the form that the server's problems have.
 export function slip(name, title, detail) {
     return new Problem({ title, detail, pointer: `/ops/0/${name}` });
 }
 
-// Adds a word to the text of a list, or removes it if it is there.
+// Returns the text of a list with a word added, or removed if it is in the list.
 export function toggleWord(text, word) {
     const words = wordsOf(text);
     const others = words.filter((one) => one !== `${word}`);

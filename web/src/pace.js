@@ -1,5 +1,5 @@
-// pace.js - which level each position of the slider shows, and how long playing all levels takes.
-// Pure.
+// pace.js - computes which level of detail each position of the slider shows, and how long it takes
+// to play all levels from coarse to fine. Pure.
 //
 // Each step of the slider refines a mesh by about the same part of its faces, because that is what
 // the eye notices. If there are few levels, each has a position; of many levels, the fine ones
@@ -8,19 +8,22 @@
 // The largest position of the slider; the smallest is 0.
 const MOST = 1000;
 
-// A split adds two faces; playing takes SECONDS each time the number of faces doubles.
+// A vertex split, which leads from one level to the next, adds two faces. Playing takes SECONDS
+// each time the number of faces doubles, but in all at least LEAST_SECONDS and at most
+// MOST_SECONDS.
 const FACES = 2;
 const SECONDS = 0.35;
 const [LEAST_SECONDS, MOST_SECONDS] = [1.5, 7];
 
 export class Pace {
     positions;
-    seconds; // to play all levels
+    seconds; // time to play all levels
     #faces;
     #levels;
-    #growth; // final number of faces divided by that of the base
+    #growth; // number of faces of the finest level divided by that of the base
 
-    // `faces` of the base, and the number of levels besides it.
+    // `faces` is the number of faces of the base, the coarsest level; `levels` is the number of
+    // levels besides the base.
     constructor(faces, levels) {
         this.#faces = Math.max(faces, 1);
         this.#levels = levels;
@@ -30,7 +33,7 @@ export class Pace {
         this.seconds = Math.min(Math.max(seconds, LEAST_SECONDS), MOST_SECONDS);
     }
 
-    // Returns the level at a position, which may be fractional.
+    // Returns the level at a position of the slider, which need not be a whole number.
     levelAt(position) {
         if (position >= this.positions) {
             return this.#levels;
@@ -41,7 +44,7 @@ export class Pace {
         return Math.min(Math.max(level, Math.floor(position)), this.#levels);
     }
 
-    // Returns the first position with this level, or a finer one.
+    // Returns the first position of the slider that has this level or a finer one.
     positionOf(level) {
         let [low, high] = [0, this.positions];
         while (low < high) {

@@ -1,22 +1,24 @@
 // pick.js - chooses one element from the contents of the id buffer around the pointer. Pure.
 //
-// The renderer reads which triangles and vertices are visible near the pointer. Kinds are never
-// mixed: in edge mode only an edge can be picked, and so on. A visible edge or vertex near the
-// pointer is chosen first, otherwise an edge or a corner of the face under the pointer.
+// The id buffer is an image in which each pixel has the id of what is visible there. From it the
+// renderer reads which triangles and vertices are near the pointer. In edge mode only edges can be
+// picked, in vertex mode only vertices, and so on. If an edge or a vertex is visible near the
+// pointer, it is chosen; otherwise an edge or a corner of the face under the pointer.
 
 import { edgesOfTriangles, faceOf, pointAt, trianglesOfFace } from './geometry.js';
 import { distanceToPoint, distanceToSegment } from './view.js';
 
-// A visible edge or vertex within this many CSS pixels of the pointer is chosen.
+// An edge or vertex is chosen if it is visible within this many CSS pixels of the pointer.
 export const REACH = 8;
 
-// Kinds in the id buffer, see shaders.js.
+// Numbers for the kinds of elements in the id buffer, see shaders.js.
 const TRIANGLE = 1;
 const VERTEX = 2;
 
-// Returns what a square of `size` x `size` pixels of the id buffer shows, nearest to its middle
-// first: {under, away, triangles, vertices}, where `under` is the nearest triangle or -1 and `away`
-// its distance in pixels. `ids` has kind, id, 0, 0 for each pixel.
+// Returns which elements a square of `size` x `size` pixels of the id buffer contains: {under,
+// away, triangles, vertices}. `triangles` and `vertices` are indices, nearest to the middle of the
+// square first; `under` is the nearest triangle, or -1 if there is none, and `away` its distance in
+// pixels. `ids` has four numbers for each pixel: kind, id, 0, 0.
 export function readSquare(ids, size) {
     const radius = (size - 1) / 2;
     const found = [];
@@ -40,9 +42,10 @@ export function readSquare(ids, size) {
     };
 }
 
-// Returns {kind: 'face', id}, {kind: 'vertex', id}, {kind: 'edge', from, to} or {kind: 'halfedge',
-// from, to}, or null if there is nothing. `seen` is {under, triangles, vertices}; `screen` is
-// {matrix, width, height, x, y} in CSS pixels.
+// Returns the element to pick at the pointer: {kind: 'face', id}, {kind: 'vertex', id}, {kind:
+// 'edge', from, to} or {kind: 'halfedge', from, to}, or null if there is none. `mode` is the kind
+// that may be picked, `seen` a result of readSquare(), and `screen` {matrix, width, height, x, y}:
+// the camera's matrix, and the size of the canvas and the place of the pointer in CSS pixels.
 export function choose(mode, geometry, seen, screen) {
     if (mode === 'face') {
         return seen.under < 0
@@ -74,8 +77,9 @@ function chooseEdge(geometry, seen, screen) {
     return edge === undefined ? null : { kind: 'edge', from: edge[0], to: edge[1] };
 }
 
-// Chooses the half-edge of the face under the pointer on its nearest edge. Beside the surface,
-// chooses the boundary half-edge of the nearest visible edge, or the half-edge of its other face.
+// If a face is under the pointer, chooses its half-edge on the edge nearest to the pointer. If the
+// pointer is beside the surface, chooses from the nearest visible edge the half-edge on the side of
+// the pointer, which usually is a boundary half-edge.
 function chooseHalfedge(geometry, seen, screen) {
     if (seen.under >= 0 && seen.away === 0) {
         const face = trianglesOfFace(geometry, faceOf(geometry.triangles, seen.under));
@@ -110,7 +114,8 @@ function edgesUnder(geometry, seen) {
     return edgesOfTriangles(triangles, trianglesOfFace(geometry, faceOf(triangles, seen.under)));
 }
 
-// Returns [candidate, distance] of the nearest within reach, or null.
+// Returns the candidate nearest to the pointer and its distance, [candidate, pixels], or null if
+// none is within `reach`.
 function nearest(candidates, distance, reach) {
     let best = null;
     for (const candidate of candidates) {

@@ -7,10 +7,10 @@
 //   faces      u32 id, three corners
 //   splits     coarse to fine:
 //
-//           c                       c          `moved` faces take u where they have v, and `left`
-//           o                       o          and `right`, (u, v, c) and (v, u, d), are new; a
-//         /   \                   / | \        side without a face has none
-//        o  v  o      --->       o u-v o
+//           c                       c          u is the new vertex. In the faces of the list
+//           o                       o          `moved`, u replaces v. The faces `left`, (u, v, c),
+//         /   \                   / | \        and `right`, (v, u, d), are new; if v is on a
+//        o  v  o      --->       o u-v o       boundary, one of them may be absent.
 //         \   /                   \ | /
 //           o                       o
 //           d                       d
@@ -19,7 +19,8 @@ const MAGIC = 0x50444548; // "HEDP"
 const VERSION = 1;
 const NONE = 0xffffffff;
 
-// The parts in their order, and the bytes per row of each; a split is longer if it moves faces.
+// The parts of the answer in their order, and how many bytes a row of each part has; the row of a
+// split is longer if `moved` is not empty.
 const [HEADER, VERTICES, EDGES, FACES, SPLITS] = [0, 1, 2, 3, 4];
 const ROW_BYTES = [104, 32, 16, 16, 96];
 
@@ -33,11 +34,13 @@ export class ProgressiveReader {
     #part = HEADER;
     #left = [1, 0, 0, 0, 0]; // rows of each part that are still to arrive
 
-    // `begin({revision, vertices, faces, splits, vertexIds, faceIds})` is called with the mesh's
-    // revision, the counts of the base and of the splits, and upper bounds of ids. It returns an
-    // object that receives the rows: addVertex(id, place), addFace(id, corners) and
-    // addSplit({vertex, from, left, right, at, fromAt, moved}), where `left` and `right` are {face,
-    // corner} or null. `moved` is valid only during the call.
+    // `begin({revision, vertices, faces, splits, vertexIds, faceIds})` is called after the header
+    // with the revision of the mesh, the numbers of vertices and faces in the coarse mesh, the
+    // number of splits, and upper bounds of ids. It returns an object with the functions that
+    // receive the rows: addVertex(id, place), addFace(id, corners) and addSplit({vertex, from,
+    // left, right, at, fromAt, moved}). In a split, `vertex` is the id of u, `from` that of v, `at`
+    // and `fromAt` are their positions, `left` and `right` are {face, corner} or null. `moved` is
+    // valid only during the call.
     constructor(begin) {
         this.#begin = begin;
         this.#view();
@@ -67,7 +70,7 @@ export class ProgressiveReader {
         }
     }
 
-    // Ends the input. Throws a RangeError if bytes are missing.
+    // Called when all bytes were passed to push(). Throws a RangeError if some are missing.
     end() {
         if (this.#part <= SPLITS) {
             throw new RangeError('The levels of the mesh did not arrive completely.');
@@ -86,14 +89,15 @@ export class ProgressiveReader {
         this.#held = length;
     }
 
-    // All rows are multiples of 8 bytes long, so numbers are aligned.
+    // Makes the arrays that read #bytes as words and as numbers. Every row is a multiple of 8 bytes
+    // long, so all numbers are aligned.
     #view() {
         this.#words = new Uint32Array(this.#bytes.buffer);
         this.#numbers = new Float64Array(this.#bytes.buffer);
     }
 
-    // Returns the length of the row at an offset, or a lower bound if it has not arrived
-    // completely.
+    // Returns the number of bytes in the row at an offset, or a lower bound of it if the row has
+    // not arrived completely.
     #lengthAt(at) {
         const least = ROW_BYTES[this.#part];
         if (this.#part !== SPLITS || this.#held - at < least) {
@@ -152,7 +156,7 @@ export class ProgressiveReader {
     }
 }
 
-// Returns the error for invalid bytes, also for faults that the receiver of the rows finds.
+// Returns the error to throw for invalid bytes, also by the functions that receive the rows.
 export function unreadable() {
     return new RangeError('This page cannot read the levels that the server sent.');
 }

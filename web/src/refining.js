@@ -1,6 +1,6 @@
-// refining.js - shows the open mesh from coarse to fine: its levels of detail as they arrive, a
-// slider to choose one, and playing them. While a level is shown nothing can be picked or edited,
-// because its elements are not those of the mesh.
+// refining.js - shows levels of detail of the open mesh: plays them from coarse to fine as they
+// arrive, and has a slider to choose one. While a level is shown nothing can be picked or edited,
+// because the elements of the level are not those of the mesh.
 
 import * as api from './api.js';
 import { formatCount } from './dom.js';
@@ -8,8 +8,8 @@ import { Levels } from './levels.js';
 import { Pace } from './pace.js';
 import { ProgressiveReader } from './progressive.js';
 
-// The longest step while playing, in seconds: after a hidden page or a slow frame, playing does not
-// jump further.
+// The longest time between two frames that counts while playing, in seconds: if the page was hidden
+// or a frame was slow, playing does not jump further.
 const LONGEST = 0.5;
 
 const isStill = window.matchMedia('(prefers-reduced-motion: reduce)');
@@ -23,19 +23,20 @@ export class Refining {
     #elements;
     #stage;
     #acts;
-    #mesh = null; // {mesh, revision, faces} of the levels that are read or shown
-    #reading = null; // cancels the read
+    #mesh = null; // {mesh, revision, faces} of the mesh whose levels are read or shown
+    #reading = null; // AbortController of the request for the levels
     #levels = null;
-    #pace = null; // set when the base is shown
-    #position = 0; // the wanted position of the slider, if it has arrived
+    #pace = null; // null until the coarsest level is shown
+    #position = 0; // the position of the slider that is to be shown, if its level has arrived
     #isPlaying = false;
-    #time = 0; // of the last step; 0 before the first
+    #time = 0; // time of the last frame while playing; 0 before the first
     #scheduled = 0;
 
-    // `button` begins and ends it; `box` is shown meanwhile and contains `slider`, `faces` (what is
-    // shown), `hint`, `progress` (what has arrived), `play` and `done`. `onBegin()` is called when
-    // the base is shown, `onEnd()` when the mesh is to be shown again, `onStale()` when the server
-    // has levels of another revision than the one shown, which also ends it.
+    // `button` begins and ends the showing of levels; `box` is shown meanwhile and contains
+    // `slider`, `faces` (the number of faces shown), `hint`, `progress` (what has arrived), `play`
+    // and `done`. `onBegin()` is called when the coarsest level is shown, `onEnd()` when the mesh
+    // is to be shown again, `onStale()` if the showing ends because the server sends levels of
+    // another revision than the one shown.
     constructor(elements, stage, { onBegin, onEnd, onStale, onError }) {
         [this.#elements, this.#stage] = [elements, stage];
         this.#acts = { onBegin, onEnd, onStale, onError };
@@ -47,7 +48,7 @@ export class Refining {
             this.#position = Number(slider.value);
             this.#schedule();
         });
-        // Until the base has arrived, the focus may be on the button.
+        // Esc must work on the button, too, which has the focus until the coarsest level is shown.
         for (const element of [button, box]) {
             element.addEventListener('keydown', (event) => {
                 if (event.key === 'Escape') {
@@ -62,12 +63,12 @@ export class Refining {
         return this.#pace !== null;
     }
 
-    // Whether levels were requested.
+    // Whether levels were requested or are shown.
     get isWanted() {
         return this.#mesh !== null;
     }
 
-    // Reads the levels of a Content and plays them as they arrive.
+    // Reads the levels of the mesh in a Content and plays them as they arrive.
     async begin({ mesh, revision, geometry, summary }) {
         this.end();
         const reading = new AbortController();
@@ -103,7 +104,7 @@ export class Refining {
         }
     }
 
-    // Shows the mesh again.
+    // Ends the showing of levels and shows the mesh again.
     end() {
         const { box, button } = this.#elements;
         const { isOn } = this;
@@ -198,7 +199,7 @@ export class Refining {
         }
     }
 
-    // Before a frame: goes to the level that it is to show.
+    // Called before a frame: goes to the level that the frame is to show.
     #step(now) {
         const [levels, pace] = [this.#levels, this.#pace];
         const wasPlaying = this.#isPlaying;
@@ -206,7 +207,7 @@ export class Refining {
             const seconds = this.#time > 0 ? Math.min((now - this.#time) / 1000, LONGEST) : 0;
             this.#time = now;
             const further = this.#position + (seconds / pace.seconds) * pace.positions;
-            // Playing waits for levels that have not arrived.
+            // Playing does not go beyond the levels that have arrived.
             const most = levels.count < levels.most ? pace.positionOf(levels.count) : Infinity;
             this.#position = Math.min(further, pace.positions, Math.max(most, this.#position));
             this.#isPlaying = this.#position < pace.positions;
@@ -216,8 +217,8 @@ export class Refining {
         if (levels.level !== before) {
             this.#stage.refine(levels.takeChanges(), this.#label);
         }
-        // While playing, screen readers are not told every level; the slider, which may have the
-        // focus, announces its own.
+        // Screen readers announce the number of faces only at the end of playing. When the user
+        // moves the slider, the slider itself is announced.
         const isAtEnd = wasPlaying && !this.#isPlaying;
         this.#elements.faces.setAttribute('aria-live', isAtEnd ? 'polite' : 'off');
         this.#showLevel();

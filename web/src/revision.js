@@ -1,21 +1,23 @@
-// revision.js - everything that is shown of a mesh, and how it is updated. Only this module decides
-// which arrays and which answers of the server belong together.
+// revision.js - reads and updates everything that is shown of a mesh, a Content. Only this module
+// decides which arrays and which answers of the server belong together. Its members are
 //
-//   mesh        its id
-//   geometry    the arrays to draw, see geometry.js: updated in place within their layout
+//   mesh        the id of the mesh
+//   geometry    the arrays to draw, see geometry.js; changes are applied to them in place
 //   history     the newest page of the history, as the server sent it
-//   summary     as the server sent it; for a large mesh possibly of an earlier revision
-//   boundary    half-edges of all boundary loops: origin, target, origin, target, ...; as `summary`
+//   summary     counts and measures, as the server sent them; if the mesh is large, they may be of
+//               an earlier revision
+//   boundary    ids of the origin and the target of each half-edge of all boundary loops, one after
+//               another; of the revision of `summary`
 //
-// Functions that read return a function that installs the result, so that everything for one frame
-// is installed at once.
+// A function that reads returns a function that puts the result into the Content, so that
+// everything for one frame is put there at once.
 
 import * as api from './api.js';
 import { VERTEX_ISOLATED, findFaces, headerOf, unpack } from './geometry.js';
 import { applyDelta } from './geometry_delta.js';
 
-// The server visits the whole mesh for its summary and its loops. If it has more triangles than
-// this, they are read only when nothing else happens.
+// The server must visit the whole mesh to compute its summary and its boundary loops. If the mesh
+// has more triangles than this, both are read only when the mesh is not changing.
 const LARGE = 100000;
 
 const NO_BOUNDARY = new Uint32Array();
@@ -30,7 +32,8 @@ export class Content {
         this.geometry = geometry;
     }
 
-    // Reads the present mesh; calls `onProgress` with the fraction read, 0 to 1.
+    // Reads a mesh in its present revision and returns its Content; calls `onProgress` with the
+    // fraction of the arrays that has been read, 0 to 1.
     static async read(mesh, withBoundary, onProgress, signal) {
         const geometry = unpack(await api.getGeometry(mesh, onProgress, signal));
         const content = new Content(mesh, geometry);
@@ -55,9 +58,9 @@ export class Content {
         return this.summary.revision >= this.revision;
     }
 
-    // Reads the changed arrays; `whole` reads everything again. The returned function returns the
-    // result of applyDelta(), or null if all arrays are new. It throws a RangeError if the change
-    // is not of these arrays: then `whole` is needed.
+    // Reads what has changed in the arrays, or all arrays (`whole`). The returned function puts it
+    // into the Content and returns the result of applyDelta(), or null if all arrays are new. It
+    // throws a RangeError if the changes belong to other arrays: then all arrays must be read.
     async readGeometry(whole) {
         if (whole) {
             const buffer = await api.getGeometry(this.mesh, () => {});

@@ -1,11 +1,11 @@
-// schema.js - JSON Schema in words, for the manual. Pure: no document, no server.
+// schema.js - describes JSON Schemas in words, for the manual. Pure: no document, no server.
 
-// Returns the last segment of a reference.
+// Returns the name of the schema that a reference points to, which is the reference's last segment.
 function nameOf(reference) {
     return reference.slice(reference.lastIndexOf('/') + 1);
 }
 
-// Returns the members of oneOf, anyOf or allOf.
+// Returns the schemas that a schema lists in oneOf, anyOf or allOf; none if it lists none.
 export function alternatives(schema) {
     return schema.oneOf ?? schema.anyOf ?? schema.allOf ?? [];
 }
@@ -54,7 +54,8 @@ function basic(schema) {
     return [`${type ?? 'anything'}${range(schema)}${form === undefined ? '' : ` (${form})`}`];
 }
 
-// Returns the values that a schema allows: text, and {ref: NAME} for other schemas.
+// Returns a description of the values that a schema allows, as an array: texts, and {ref: NAME} for
+// each reference to another schema.
 export function typeOf(schema) {
     const parts = schema.$ref
         ? [{ ref: nameOf(schema.$ref) }]

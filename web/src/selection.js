@@ -1,7 +1,8 @@
-// selection.js - the selection in a mesh, kept while the mesh changes. No page in here.
+// selection.js - the selected elements of a mesh, which stay selected while the mesh changes. This
+// module does not touch the page.
 //
-// While an element is read, another one may be selected and the mesh may change: the last selection
-// stays, and is read again if the mesh has changed since.
+// While an element is being read from the server, the user may select another one, and the mesh may
+// change. The last selection counts, and is read again if the mesh has changed since.
 
 import * as api from './api.js';
 import { describe } from './around.js';
@@ -9,14 +10,14 @@ import { hasVertex, trianglesOfFace } from './geometry.js';
 
 export class Selection {
     chosen = []; // {kind, id, element}, in the order of selection
-    around = null; // result of describe() for the last one
-    gone = []; // {kind, id, detail} of selected elements that an edit removed
+    around = null; // result of describe() for the element selected last
+    gone = []; // {kind, id, detail} of elements that were selected until an edit deleted them
 
     #mesh = null;
     #onChange;
     #choice = 0; // counts selections by the user
     #change = 0; // counts changes of the mesh
-    #seen = 0; // the change after which the shown data was read
+    #seen = 0; // value of #change when the data of `chosen` was read
 
     // `onChange()` is called when the selection changes.
     constructor(onChange) {
@@ -34,7 +35,7 @@ export class Selection {
         return this.chosen.at(-1);
     }
 
-    // Selects an element; `also` keeps elements selected before it, if they are of the same kind.
+    // Selects an element; `also`: elements of its kind that were selected before stay selected.
     async select(kind, id, also = false) {
         const choice = ++this.#choice;
         const change = this.#change;
@@ -61,7 +62,7 @@ export class Selection {
         }
     }
 
-    // Selects what pick.js chose; null selects nothing.
+    // Selects the element that choose() in pick.js returned; if it is null, clears the selection.
     async pick(chosen, also) {
         if (chosen === null) {
             this.clear();
@@ -73,7 +74,8 @@ export class Selection {
         }
     }
 
-    // Returns the id of what pick.js chose, or null if it is gone.
+    // Returns the id of the element that choose() in pick.js returned, or null if the mesh does not
+    // have it any more.
     async idOf({ kind, id, from, to }) {
         if (id !== undefined) {
             return id;
@@ -83,7 +85,7 @@ export class Selection {
         return halfedge !== null && kind === 'edge' ? Math.floor(halfedge / 2) : halfedge;
     }
 
-    // Follows a link of the selected half-edge: 'next', 'prev' or 'twin'.
+    // Selects the half-edge that is 'next', 'prev' or 'twin' of the selected half-edge.
     async step(link) {
         if (this.last?.kind === 'halfedge') {
             await this.select('halfedge', this.last.element[link]);
@@ -102,8 +104,9 @@ export class Selection {
         Object.assign(this, { chosen, around, gone });
     }
 
-    // The mesh has changed: reads the selected elements again. Returns a function that installs the
-    // result; it does nothing if the selection or the mesh changed meanwhile.
+    // Called when the mesh has changed: reads the selected elements again. Returns a function that
+    // puts them into this object, which does nothing if the user selected something else or the
+    // mesh changed again meanwhile.
     async read() {
         const change = ++this.#change;
         const choice = this.#choice;
@@ -131,13 +134,15 @@ export class Selection {
             : describe(chosen.kind, chosen.element, (queries) => api.query(this.#mesh, queries));
     }
 
-    // Returns the selected elements that the renderer's arrays contain: {kind: 'face', id}, {kind:
-    // 'vertex', id}, or {kind: 'edge' or 'halfedge', from, to}.
+    // Returns those selected elements that the arrays `geometry` contain, as marks for the
+    // renderer: {kind: 'face', id}, {kind: 'vertex', id}, or {kind: 'edge' or 'halfedge', from,
+    // to}.
     marksIn(geometry) {
         return this.chosen.map(markOf).filter((mark) => isIn(geometry, mark));
     }
 
-    // Returns the half-edges near the last selected element that the arrays contain.
+    // Returns the half-edges to draw as arrows: those around the element selected last, if the
+    // arrays `geometry` contain them.
     arrowsIn(geometry) {
         return (this.around?.halfedges ?? []).filter(({ origin, target, face, across }) =>
             isIn(geometry, { kind: 'edge', from: origin, to: target }) &&
@@ -146,7 +151,7 @@ export class Selection {
     }
 }
 
-// Returns whether the arrays contain the element.
+// Returns whether the arrays `geometry` contain an element, given as a mark for the renderer.
 export function isIn(geometry, { kind, id, from, to }) {
     if (kind === 'face') {
         return trianglesOfFace(geometry, id).length > 0;
@@ -156,7 +161,7 @@ export function isIn(geometry, { kind, id, from, to }) {
         : hasVertex(geometry, from) && hasVertex(geometry, to);
 }
 
-// Converts an element for the renderer, see Selection.marksIn().
+// Returns the mark that the renderer draws for an element, see Selection.marksIn().
 export function markOf({ kind, id, element }) {
     if (kind === 'face' || kind === 'vertex') {
         return { kind, id };
@@ -165,8 +170,8 @@ export function markOf({ kind, id, element }) {
     return { kind, from, to };
 }
 
-// Reads some elements, {kind, id} each, and returns those that are still live and those that are
-// not.
+// Reads some elements, {kind, id} each. Returns two arrays: {kind, id, element} of those that
+// exist, and {kind, id, detail} of those that were deleted.
 export async function readAll(mesh, chosen) {
     if (chosen.length === 0) {
         return [[], []];

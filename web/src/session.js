@@ -1,10 +1,10 @@
-// session.js - the open mesh, its selection, and the operations on it. No page in here: the page
-// passes `onChange` and reads the properties.
+// session.js - the open mesh, its selection, and the operations on it. This module does not touch
+// the page: the page passes `onChange` and reads the properties.
 //
 // The session follows the mesh: events report edits of other clients, and the changes are fetched
 // with one request at a time, however many edits there were. An edit names the revision that is
-// shown. If another client has changed the mesh since, the server refuses it; the page then fetches
-// the changes and shows the refusal.
+// shown. If another client has changed the mesh since then, the server refuses the edit; the page
+// then fetches the changes and shows the refusal.
 
 import * as api from './api.js';
 import { Lineage } from './lineage.js';
@@ -13,31 +13,41 @@ import { Materials } from './materials.js';
 import { Content } from './revision.js';
 import { Selection } from './selection.js';
 
-// A large mesh is at rest if nothing happened to it for this many milliseconds.
+// After a change of a large mesh, its summary is read when there was no further change for this
+// many milliseconds.
 const REST = 400;
 
 export class Session {
     shown = null; // a Content; null if no mesh is open
     selection;
-    loading = null; // fraction of the mesh that has been read, 0 to 1, or null
-    busy = false; // an edit of this page is in progress
+    loading = null; // fraction of a mesh to open that has been read, 0 to 1; null if none is opened
+    busy = false; // whether an edit of this page is in progress
 
     #onChange;
     #onError;
     #withBoundary = true;
     #opening = null;
-    // About the open mesh: {live, latest, hasMissed, lineage, materials}; `latest` is the newest
-    // revision known, `hasMissed` says that events may have been missed.
+    // What is kept about the open mesh beside its Content: {live, latest, hasMissed, lineage,
+    // materials}; `latest` is its newest revision as far as events and answers have told,
+    // `hasMissed` says that events may have been missed.
     #followed = null;
-    #running = null; // promise of the running fetch
+    #running = null; // promise of #fetchAll() while it fetches changes
     #wanted = { once: false, whole: false };
     #rest = 0;
 
-    // `onChange(what, change)` is called with 'mesh' (another mesh), 'content' (new arrays),
-    // 'change' (with the result of applyDelta()), 'facts' (summary, boundary), 'name', 'selection',
-    // 'materials' (with the result of Materials.note(), null for everything), 'gone' (the mesh was
-    // deleted) or 'state' (loading, busy, connection). `onError` is called with errors of work in
-    // the background.
+    // `onChange(what, change)` is called when something has changed; `what` is
+    //
+    //   'mesh'        another mesh was opened
+    //   'content'     all arrays of the mesh are new
+    //   'change'      the arrays have changed; `change` is the result of applyDelta()
+    //   'facts'       the summary or the boundary loops have changed
+    //   'name'        the name of the mesh has changed
+    //   'selection'   other elements are selected
+    //   'materials'   `change` is the result of Materials.note(), or null if any may have changed
+    //   'gone'        the mesh was deleted
+    //   'state'       `loading`, `busy` or `connection` has changed
+    //
+    // `onError` is called with errors of work that no caller waits for.
     constructor(onChange, onError) {
         this.#onChange = onChange;
         this.#onError = onError;
@@ -59,8 +69,9 @@ export class Session {
         return this.#followed?.live.state ?? null;
     }
 
-    // Opens a mesh and shows it when it is complete. A later call supersedes an earlier one. The
-    // stream is opened first, so that no edit is missed between it and the arrays.
+    // Opens a mesh and shows it when it has arrived completely. If open() is called again before
+    // that, only the later call counts. The event stream is opened before the arrays are read, so
+    // that no edit is missed.
     async open(mesh) {
         this.#opening?.abort();
         const opening = new AbortController();
@@ -111,8 +122,8 @@ export class Session {
         return followed;
     }
 
-    // Asks for what events may not have told. While a mesh is still being read, this waits until it is
-    // shown.
+    // If events may have been missed, fetches what they would have reported. While the mesh is
+    // still being opened, does nothing: open() calls this again at its end.
     #catchUp(followed) {
         if (followed.hasMissed && followed === this.#followed) {
             followed.hasMissed = false;
@@ -128,7 +139,7 @@ export class Session {
             this.#heardOf(followed, data.revision);
         } else if (name === 'resync') {
             this.#readMaterials(followed);
-            // The replaced content may have been fetched already, after an edit of this page.
+            // If this page replaced the mesh itself, it may have fetched the new mesh already.
             followed.latest = Math.max(followed.latest, data.revision);
             const isKnown = data.reason === 'replaced' && this.shown?.revision === data.revision;
             this.#fetchSoon(followed, { whole: !isKnown });
@@ -164,15 +175,15 @@ export class Session {
             return;
         }
         this.#fetch(wanted).catch((error) => {
-            // If there is no connection, the event stream ends, too, which is shown instead.
+            // Without a connection the event stream ends, too. This is shown, so the error is not.
             if (error.status !== 0) {
                 this.#onError(error);
             }
         });
     }
 
-    // Fetches until the newest known revision is shown; `once` makes at least one request, `whole`
-    // fetches everything. Calls in the meantime wait for the same end.
+    // Fetches changes until the newest known revision is shown; `once`: makes at least one request;
+    // `whole`: fetches all arrays again. Calls while it is fetching return the same promise.
     #fetch({ once = false, whole = false }) {
         this.#wanted.once ||= once;
         this.#wanted.whole ||= whole;
@@ -190,8 +201,8 @@ export class Session {
             try {
                 await this.#advance(whole);
             } catch (error) {
-                // The change is for other arrays, or the mesh was replaced by a newer one with its
-                // name.
+                // The changes belong to other arrays than those shown, for example because the mesh
+                // was replaced: then all arrays are fetched.
                 if (whole || !(error instanceof RangeError || error.status === 400)) {
                     throw error;
                 }
@@ -233,7 +244,7 @@ export class Session {
         }
     }
 
-    // Sets whether boundary loops are read and shown.
+    // Sets whether the boundary loops of the mesh are read and shown.
     async showBoundary(isShown) {
         this.#withBoundary = isShown;
         if (this.shown !== null) {
@@ -241,12 +252,13 @@ export class Session {
         }
     }
 
-    // Returns the element that replaced one that is gone: {kind, id} or null.
+    // Returns the element that replaced a deleted element, {kind, id}, or null.
     heirOf(element) {
         return this.#followed?.lineage.heirOf(element) ?? null;
     }
 
-    // The operation of Split: 'edge_split', 'face_poke', 'face_split' or null.
+    // The operation that the button Split runs on the selected elements: 'edge_split', 'face_poke'
+    // or 'face_split', or null if they cannot be split.
     get split() {
         const kinds = this.selection.chosen.map(({ kind }) => kind).join();
         const operations = {
@@ -271,7 +283,7 @@ export class Session {
         }
     }
 
-    // Returns the face that has two vertices as corners.
+    // Returns a face that has both vertices as corners. Throws a Problem if there is none.
     async #sharedFace(a, b) {
         const [ofA, ofB] = await Promise.all(
             [a, b].map((id) => api.getAdjacent(this.mesh, 'vertex', id, 'faces')),
@@ -286,12 +298,13 @@ export class Session {
         return face;
     }
 
-    // Runs an operation of the server's table; `work` shows one that may take long, see api.js.
+    // Runs an operation on the open mesh; if it may take long, `work` shows its progress, see
+    // edit() in api.js.
     run(operation, work = null) {
         return this.#edit((revision) => api.edit(this.mesh, operation, revision, work));
     }
 
-    // Undoes the last step, or all since a revision.
+    // Undoes the last step, or all steps since the revision `to`.
     undo(to = undefined) {
         return this.#edit((revision) => api.undo(this.mesh, revision, to));
     }
@@ -328,7 +341,8 @@ export class Session {
         }
     }
 
-    // Describes in words what happened since a revision.
+    // Returns a sentence that lists the edits of the mesh since a revision, or '' if there are
+    // none.
     #since(revision) {
         const entries = this.shown.history.entries.filter((entry) => entry.revision > revision);
         const words = entries.reverse().map(({ action, ops }) =>

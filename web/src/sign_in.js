@@ -1,4 +1,4 @@
-// sign_in.js - asks for a token, and shows its name and role.
+// sign_in.js - asks the user for an access token, and shows the name and the role of the token.
 
 import * as api from './api.js';
 import { byId } from './dom.js';
@@ -9,7 +9,7 @@ const ROLES = { read: 'may view', write: 'may edit', admin: 'may do everything' 
 export class SignIn {
     mayEdit = true; // until the server says otherwise
 
-    // `onChange` is called when the token is known.
+    // `onChange()` is called when the server has said what the token allows.
     constructor(onChange) {
         askBy((wasWrong) => this.#ask(wasWrong));
         byId('who').addEventListener('click', () => {
@@ -19,7 +19,8 @@ export class SignIn {
         this.onChange = onChange;
     }
 
-    // Asks the server for the present token; the user is asked if the server needs one.
+    // Asks the server what the present token allows. If the server requires a token and has none
+    // that is valid, the user is asked for one.
     async start() {
         const { name, role, prefixes } = await api.getToken();
         this.mayEdit = role !== 'read';

@@ -1,13 +1,14 @@
-// stage.js - the view: the renderer, or none without WebGL, and what a click on it does.
+// stage.js - the 3D view: the renderer, which is missing if the browser has no WebGL, and clicks.
 
 import { NoWebGL, Renderer } from './gl/render.js';
 import { REACH, choose } from './pick.js';
 
-// A pointer that moved further than this between down and up was orbiting.
+// If the pointer moved further than this between press and release, it turned the camera;
+// otherwise it clicked.
 const CLICK_PIXELS = 4;
 
-// Milliseconds after the last move until the camera is at rest: browsers limit how often the
-// address may change.
+// The camera is at rest if it has not moved for this many milliseconds. Only then the page's
+// address is updated, because browsers limit how often it may change.
 const REST = 250;
 
 export class Stage {
@@ -19,10 +20,10 @@ export class Stage {
     #acts;
     #timer = 0;
 
-    // `noWebGL` and `contextLost` are messages, `modes` contains the radio buttons for the kind of
-    // element to pick. `geometry()` returns the arrays that are shown, or null. `onPick(chosen,
-    // also)` is called with the result of choose() for a click, `also` with Shift; `onRest()` when
-    // the camera has come to rest.
+    // `noWebGL` and `contextLost` are elements with messages, `modes` contains the radio buttons
+    // for the kind of element to pick. `geometry()` returns the arrays that are shown, or null.
+    // `onPick(chosen, also)` is called after a click with the result of choose(); `also`: the Shift
+    // key was held. `onRest()` is called when the camera has come to rest.
     constructor(canvas, { noWebGL, contextLost, modes }, { geometry, onPick, onRest, onError }) {
         this.#canvas = canvas;
         this.#modes = modes;
@@ -46,15 +47,15 @@ export class Stage {
         this.#listenToClicks();
     }
 
-    // Whether there is a renderer.
+    // Whether there is a renderer, so that the mesh is drawn.
     get isThere() {
         return this.#renderer !== null;
     }
 
     // --- what is shown ---
 
-    // Shows new arrays. `label` marks the next frame: {mesh, revision, selection, materials}, for a
-    // level {mesh, revision, faces}.
+    // Shows the mesh in the arrays `geometry`. `label` says what the next frame shows: {mesh,
+    // revision, selection, materials}, or {mesh, revision, faces} for a level of detail.
     show(geometry, label) {
         this.#isLevel = false;
         this.#draw(label, () => this.#renderer?.show(geometry, label));
@@ -65,14 +66,14 @@ export class Stage {
         this.#draw(label, () => this.#renderer?.update(change, label));
     }
 
-    // Shows a level of detail until the mesh is shown again. Nothing can be picked or marked in it.
-    // Throws a RangeError, and goes on showing what it did, if it is too large.
+    // Shows a level of detail until the mesh is shown again. Nothing can be picked or marked in the
+    // level. Throws a RangeError if it is too large; then the mesh shown before stays.
     showLevel(geometry, label) {
         this.#renderer.show(geometry, label);
         this.#isLevel = true;
     }
 
-    // Shows another level, see Levels.
+    // Shows another level of detail, whose arrays have changed within `ranges`, see Levels.
     refine(ranges, label) {
         this.#renderer.refine(ranges, label);
     }
@@ -86,7 +87,8 @@ export class Stage {
         }
     }
 
-    // Marks the canvas with what the frame shows, so that tests can wait for it.
+    // Writes what the frame shows into data attributes of the canvas, so that tests can wait for a
+    // certain frame.
     #markFrame(label) {
         for (const name of ['mesh', 'revision', 'selection', 'materials', 'faces']) {
             if (label?.[name] === undefined) {
@@ -97,7 +99,7 @@ export class Stage {
         }
     }
 
-    // The target of marks: null if there is nothing to mark. See Renderer for the marks.
+    // The renderer if marks can be drawn on the mesh, or null. See Renderer for the marks.
     get #marked() {
         return this.#isLevel ? null : this.#renderer;
     }
@@ -142,7 +144,7 @@ export class Stage {
         this.#renderer?.fit();
     }
 
-    // Shows the result of framing(), or the whole mesh (null).
+    // Moves the camera to the ball that framing() returned, or to the whole mesh (null).
     frame(found) {
         if (found === null) {
             this.#renderer?.fit();
@@ -155,7 +157,8 @@ export class Stage {
         this.#renderer?.zoom(nearer);
     }
 
-    // Called when the camera moves. The canvas has `data-moving` until the listener was called.
+    // Called when the camera has moved. The canvas has the attribute `data-moving` from the first
+    // move until onRest() was called.
     #moved(isHeld) {
         this.#canvas.dataset.moving = '';
         clearTimeout(this.#timer);
@@ -172,7 +175,8 @@ export class Stage {
         return this.#renderer.view;
     }
 
-    // Position and target of the camera, six numbers; undefined without a renderer.
+    // Position of the camera and of the point that it looks at, six numbers; undefined without a
+    // renderer.
     get camera() {
         return this.#renderer?.camera;
     }
@@ -185,7 +189,7 @@ export class Stage {
 
     // --- clicks ---
 
-    // Scrolls to the view if the page is longer than the window.
+    // Scrolls the page so that the view is visible.
     bringIntoSight() {
         this.#canvas.scrollIntoView({ block: 'nearest' });
     }
@@ -194,7 +198,7 @@ export class Stage {
         return this.#modes.querySelector('input:checked').value;
     }
 
-    // Sets the kind of elements to pick.
+    // Sets the kind of elements that clicks pick.
     setPickMode(mode) {
         this.#modes.querySelector(`input[value="${mode}"]`).checked = true;
         this.#renderer?.showVertices(mode === 'vertex');
@@ -215,7 +219,7 @@ export class Stage {
         });
     }
 
-    // Returns the element at a place in the window.
+    // Returns the element that a click at a place in the window picks, see choose(), or null.
     #choose(clientX, clientY) {
         const box = this.#canvas.getBoundingClientRect();
         const [x, y] = [clientX - box.left, clientY - box.top];

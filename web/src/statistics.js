@@ -11,7 +11,7 @@ export class Statistics {
         this.#facts = facts;
     }
 
-    // `isCurrent` is false if the summary is of an earlier revision than the one shown.
+    // Shows a summary; `isCurrent` is false if it is of an earlier revision than the mesh shown.
     show(summary, isCurrent) {
         this.#sizes.replaceChildren(...sizesOf(summary));
         this.#facts.replaceChildren(...factsOf(summary));
@@ -42,7 +42,7 @@ function factsOf({ counts, euler, genus, closed, manifold, degrees, area, volume
     return rows.map(([name, title, value]) => pair('div', name, title, value));
 }
 
-// "12 × 3, 6 × 4": how many faces have how many corners.
+// Returns how many faces have how many corners, as in "12 × 3, 6 × 4".
 function degreesOf(degrees) {
     const parts = Object.entries(degrees).map(
         ([degree, count]) => `${formatCount(count)} \u00d7 ${degree}`,

@@ -1,5 +1,5 @@
-// toast.js - messages. Errors stay until they are closed, so that there is no time limit for
-// reading. Messages of success disappear.
+// toast.js - shows messages to the user. Errors stay until they are closed, so that there is no
+// time limit for reading. Messages of success disappear by themselves.
 
 import { make } from './dom.js';
 
@@ -15,12 +15,12 @@ export class Toasts {
         this.#region = region;
     }
 
-    // Shows an error, with the server's words if it has any. `again` (a label and a function) makes
-    // a button that corrects it.
+    // Shows an error, in the server's words if the error has them. If the user can correct it,
+    // `again` is {label, run}, the label and the function of a button.
     show(error, again) {
         const title = error.title || 'Something went wrong';
         const detail = error.detail || error.message || String(error);
-        // The page sends one operation at a time, so its index is left out.
+        // The page sends one operation at a time, so the operation's index is not shown.
         const pointer = error.pointer?.replace(/^\/ops\/0/, '');
         const where = pointer ? ` (at ${pointer})` : '';
         const toast = this.#add('alert', title, `${detail}${where}`);
@@ -35,7 +35,7 @@ export class Toasts {
         }
     }
 
-    // Shows a success.
+    // Shows a message of success for a while.
     tell(title, detail) {
         const toast = this.#add('status', title, detail);
         setTimeout(() => toast.remove(), SHORT);

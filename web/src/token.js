@@ -1,5 +1,5 @@
-// token.js - the token that requests carry, if the server asks for one. It is kept for the tab
-// only, and lost with it.
+// token.js - the access token that requests carry, if the server requires one. It is kept in the
+// storage of the browser's tab and lost when the tab is closed.
 
 const PLACE = 'hedge-token';
 
@@ -14,13 +14,15 @@ export function forgetToken() {
     sessionStorage.removeItem(PLACE);
 }
 
-// `show(wasWrong)` asks the user: it returns a promise of a token, or of null.
+// Sets the function that asks the user for a token. It returns a promise of the token, or of null
+// if the user gives none; `wasWrong`: the server has refused a token.
 export function askBy(show) {
     ask = show;
 }
 
-// A request with `refused`, a token or null, was answered 401. Returns whether there is another
-// token to try. The user is asked once, however many requests are refused at a time.
+// Called when a request with the token `refused`, or with none (null), was answered 401. Returns
+// whether there is another token to try. The user is asked only once, however many requests are
+// refused at a time.
 export async function renewToken(refused) {
     if (token() === refused) {
         asked ??= ask(refused !== null).finally(() => {

@@ -1,5 +1,6 @@
-// tools.js - a form for each operation of the server's table, filled with the selected elements. No
-// operation is known here: a new row of the table appears automatically.
+// tools.js - shows a form for the operation that the user chooses, filled with the selected
+// elements. The forms are made from the server's list of operations, so that a new operation
+// appears without a change here.
 
 import { Chooser } from './chooser.js';
 import { Flag } from './controls.js';
@@ -16,7 +17,8 @@ import {
     readField,
 } from './fields.js';
 
-// Links from a selected element to elements of other kinds.
+// By kind of element: the function that returns the ids of those elements of this kind to which a
+// selected element of another kind refers.
 const LINKS = {
     vertex: (element) => (element.origin === undefined ? [] : [element.origin]),
     edge: (element) => (element.edge === undefined ? [] : [element.edge]),
@@ -34,13 +36,13 @@ export class Tools {
     #armed = null; // {param, control, button} of the field that waits for a click
     #selection = [];
     #isEnabled = true;
-    #isChosen = false; // the user chose an operation, which is kept when the selection changes
+    #isChosen = false; // the user chose an operation, so that it stays when the selection changes
     #fields = new Map(); // name of the parameter -> {param, control, row, isTaken}
 
-    // `onRun(operation)` is called with the operation of the form, and shows errors.
-    // `onTouch(operation, error)` is called after a change of the form: null if it is incomplete,
-    // or the error in it. `onArm({name, kind, isList})` is called when a field waits for elements,
-    // and with undefined when none does any more. `meshes()` lists meshes.
+    // `onRun(operation)` runs the operation of the form and shows errors. `onTouch(operation,
+    // error)` is called after a change of the form: `operation` is null if the form is incomplete
+    // or has an error. `onArm({name, kind, isList})` is called when a field begins to wait for
+    // clicks in the view, and with undefined when it stops. `meshes()` returns the list of meshes.
     constructor({ select, form, search }, { onRun, onTouch, onArm, meshes, onError }) {
         this.#form = form;
         this.#onRun = onRun;
@@ -77,8 +79,8 @@ export class Tools {
         this.#chooser.setOperations(operations);
     }
 
-    // Fills in the selection: {kind, id, element}, in the order of selection. While it stays the
-    // same, text that the user typed in its place stays, too.
+    // Fills the form with the selected elements, {kind, id, element} each, in the order of
+    // selection. If these are the elements of the last call, text that the user has typed stays.
     setSelection(selection) {
         const isSame = keyOf(selection) === keyOf(this.#selection);
         this.#selection = selection;
@@ -97,7 +99,7 @@ export class Tools {
 
     // --- clicks ---
 
-    // Whether a field waits for a click.
+    // Whether a field waits for a click in the view.
     get isArmed() {
         return this.#armed !== null;
     }
@@ -108,7 +110,8 @@ export class Tools {
         }
     }
 
-    // Puts a clicked element into the field that waits; `place` is the position of a vertex.
+    // Puts a clicked element into the field that waits for it; `place` is the position of the
+    // element if it is a vertex.
     take(id, place) {
         const { param, control } = this.#armed;
         control.take(id, place);
@@ -125,7 +128,7 @@ export class Tools {
     #arm(armed) {
         if (this.#armed !== null) {
             this.#armed.button.setAttribute('aria-pressed', 'false');
-            // On a narrow page the view is above the form, so the click scrolled away from it.
+            // On a narrow page the view is above the form, so the form may have been scrolled away.
             this.#armed.button.scrollIntoView({ block: 'nearest' });
         }
         this.#armed = armed;
@@ -134,7 +137,8 @@ export class Tools {
         this.#onArm(param && { name: param.name, kind: kindOf(param), isList: isList(param) });
     }
 
-    // Only the last one typed of several alternative parameters is kept.
+    // Called when the user has typed into a field. If its parameter is one of several alternatives,
+    // the fields of the other alternatives are cleared.
     #typed(target) {
         const field = this.#fields.get(target.closest('.field').dataset.name);
         const { group } = field.param;
@@ -148,7 +152,7 @@ export class Tools {
         this.#touch();
     }
 
-    // Reports the operation of the form, once an operation was chosen.
+    // Reports the operation of the form to onTouch(), if the user has chosen an operation.
     #touch() {
         this.mark('');
         if (!this.#isChosen || this.#chooser.operation === undefined) {
@@ -163,7 +167,8 @@ export class Tools {
         }
     }
 
-    // The elements in the fields, {kind, id} each; none until an operation was chosen.
+    // The elements that the form's fields name, {kind, id} each; none until the user has chosen an
+    // operation.
     get elements() {
         const fields = this.#isChosen ? [...this.#fields.values()] : [];
         return fields
@@ -173,7 +178,7 @@ export class Tools {
             );
     }
 
-    // Marks the field that a problem's pointer refers to, or none ('').
+    // Marks the field that the pointer of a problem refers to as wrong; '' marks none.
     mark(pointer) {
         for (const field of this.#fields.values()) {
             const isWrong = isAbout(field, pointer);
@@ -182,7 +187,7 @@ export class Tools {
         }
     }
 
-    // Returns whether the first parameter takes elements of the selected kind.
+    // Returns whether the first parameter of an operation takes elements of the selected kind.
     #fits({ params } = { params: [] }) {
         return params.length > 0 && params[0].type === this.#selection.at(-1)?.kind;
     }
@@ -194,8 +199,8 @@ export class Tools {
         }
     }
 
-    // Makes an operation on the selection: on all of it if the operation takes several elements,
-    // else on the last one.
+    // Returns the request for an operation on all selected elements, or only on the one selected
+    // last if the operation takes one element.
     operationOn(name, selection) {
         const { kind, id } = selection.at(-1);
         const row = this.#chooser.find(name);
@@ -214,15 +219,15 @@ export class Tools {
         return this.#chooser.find(name) !== undefined;
     }
 
-    // Shows the form of an existing operation.
+    // Shows the form of an operation, which must exist.
     show(name) {
         this.#chooser.set(name);
         this.#isChosen = true;
         this.#build();
     }
 
-    // Shows the form and puts the focus into its first empty field, or on the button if there is
-    // none.
+    // Shows the form of an operation and moves the focus there: to the first empty field, else to
+    // the first field, else to the button.
     open(name) {
         this.show(name);
         const controls = [...this.#fields.values()].map(({ control }) => control);
@@ -252,8 +257,8 @@ export class Tools {
         this.#touch();
     }
 
-    // Returns the rows of a parameter in the form; `isOther`: it is an alternative to the one
-    // before it.
+    // Returns the rows of a parameter in the form; `isOther`: the parameter is an alternative to
+    // one before it.
     #rows(param, isOther) {
         const { name, doc } = param;
         const id = `param-${name}`;
@@ -261,7 +266,7 @@ export class Tools {
         const control = controlFor(param, this.#meshes, pickable);
         const field = { param, control, row: null, isTaken: false };
         this.#fields.set(name, field);
-        // Several inputs form a group, of which the first has the id.
+        // If a control consists of several inputs, they form a group and the first has the id.
         const isGroup = control.main !== control.node;
         const help = make('p', { id: `${id}-doc`, className: 'small' }, ...prose(doc));
         control.main.id = id;
@@ -286,7 +291,8 @@ export class Tools {
         return isOther ? [make('p', { className: 'or' }, 'or'), field.row] : [field.row];
     }
 
-    // Returns a control with a button that lets the next click fill it.
+    // Returns an element with a control and a button after which a click in the view fills the
+    // control.
     #pickable(param, control) {
         const armed = { param, control };
         armed.button = make(
@@ -302,9 +308,9 @@ export class Tools {
         return make('div', { className: 'picked' }, control.node, armed.button);
     }
 
-    // Fills in selected elements of the parameter's kind, in the order of selection; several
-    // parameters of one kind share them. Of alternatives only the first that fits is filled, and
-    // elements that were clicked for a field stay.
+    // Fills each field with selected elements of the kind that its parameter takes, in the order of
+    // selection; an element goes into one field only. Of several alternative parameters only the
+    // first that fits is filled. Fields that the user filled by clicks stay as they are.
     #fill() {
         const left = new Map(KINDS.map((kind) => [kind, this.#ids(kind)]));
         const fields = [...this.#fields.values()];
@@ -347,12 +353,12 @@ function keyOf(selection) {
     return selection.map(({ kind, id }) => `${kind}:${id}`).join();
 }
 
-// Deleting operations are never preselected.
+// Returns whether an operation deletes elements; such an operation is never preselected.
 function isDeletion({ name }) {
     return name.endsWith('_delete');
 }
 
-// Returns whether a parameter is an alternative to one of those before it.
+// Returns whether a parameter is an alternative to one of the parameters before it.
 function isOtherOf(before, { group }) {
     return group !== undefined && before.some((other) => other.group === group);
 }

@@ -1,6 +1,7 @@
-// trial.js - a dry run of an edit before it is sent, described in words.
+// trial.js - makes a dry run of the edit in a form before the user sends it, and shows the result
+// in words.
 
-// Milliseconds without a change of the form before its dry run.
+// A dry run starts when the form has not changed for this many milliseconds.
 const DELAY = 300;
 
 const LETTERS = { vertices: 'V', edges: 'E', faces: 'F' };
@@ -12,13 +13,15 @@ export class Trial {
     #running = null;
     #asked = null; // the operation of the last dry run
 
-    // `attempt(operation, signal)` returns the text to show, or null.
+    // `attempt(operation, signal)` makes a dry run and returns a promise of the text to show, or of
+    // null if there is nothing to show.
     constructor(box, attempt) {
         this.#box = box;
         this.#attempt = attempt;
     }
 
-    // Tries an operation soon; only the last call counts. Null: the form is incomplete.
+    // Makes a dry run of an operation soon; only the last call counts. `operation` is null if the
+    // form is incomplete: then nothing is shown.
     ask(operation) {
         this.clear();
         this.#asked = operation;
@@ -27,15 +30,14 @@ export class Trial {
         }
     }
 
-    // Called when the mesh has changed, because the last result may be wrong: tries the operation
-    // again.
+    // Called when the mesh has changed: makes the dry run again, because its result may be another.
     askAgain() {
         if (this.#asked !== null) {
             this.ask(this.#asked);
         }
     }
 
-    // Shows that the form cannot be sent.
+    // Shows why the form cannot be sent.
     refuse(error) {
         this.clear();
         this.#sayRefused(error);
@@ -74,7 +76,7 @@ export class Trial {
     }
 }
 
-// Returns the text for the answer to a dry run, null if there is none.
+// Returns the answer to a dry run in words, or null if there was no answer.
 export function wordsOf(answer) {
     if (answer === null) {
         return null;

@@ -13,10 +13,11 @@ export class Uploads {
     #queue = Promise.resolve();
     #depth = 0;
 
-    // `send(batch, onProgress, work)` uploads one batch, see batches.js; `onDone(summary, file)` is
-    // called with the result; `work` shows it, see work.js. `onError(error, again)`: if repairs
-    // would let the file pass, `again` has their names as its label and uploads it with them.
-    // Nothing can be dropped while `isOpen()` is false.
+    // `send(batch, onProgress, work, repairs)` uploads one batch, see batches.js; `onDone(summary,
+    // file)` is called with the summary of the new mesh; `work` shows the progress, see work.js.
+    // `onError(error, again)` is called if an upload fails; if the file could be read with repairs,
+    // `again` is {label, run}, where run() uploads it again with these repairs. Nothing can be
+    // dropped on the page while `isOpen()` is false.
     constructor({ input, work, area }, { isOpen, send, onDone, onError }) {
         this.#work = work;
         this.#isOpen = isOpen;
@@ -32,8 +33,8 @@ export class Uploads {
         this.#listenToDrops();
     }
 
-    // Entering a child fires a leave event of its parent: counts both, so that the hint does not
-    // flicker.
+    // Shows a hint while files are dragged over the page. When the pointer enters a child element,
+    // its parent gets a leave event; so both events are counted, and the hint does not flicker.
     #listenToDrops() {
         const hasFiles = (event) => this.#isOpen() && event.dataTransfer?.types.includes('Files');
         document.addEventListener('dragenter', (event) => {

@@ -1,6 +1,7 @@
-// view.js - the geometry of the camera and the screen. Pure.
+// view.js - computes what the camera sees and where it appears on the screen. Pure.
 //
-// The mesh is within the unit ball and z is up, as in the server's shapes.
+// The mesh is within the unit ball, and the z axis points up, as in the shapes that the server
+// makes.
 
 export const FIELD_OF_VIEW = 36; // vertical, in degrees
 export const UP = [0, 0, 1];
@@ -13,15 +14,16 @@ function unit(vector) {
     return vector.map((value) => value / length);
 }
 
-// Returns the distance at which the mesh fits a canvas of width / height = aspect, in radii of the
-// ball around the mesh.
+// Returns how far from the middle of a ball the camera must be to see the whole ball in a canvas of
+// width / height = aspect; the unit is the radius of the ball.
 export function fitDistance(aspect) {
     const vertical = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
     const narrow = Math.atan(vertical * Math.min(aspect, 1));
     return 1.1 / Math.sin(narrow);
 }
 
-// Returns the length of a CSS pixel at distance 1 of the camera, for a canvas of this height.
+// Returns the length that one CSS pixel covers at distance 1 from the camera, for a canvas of this
+// height in CSS pixels.
 export function pixelAtOne(height) {
     return (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360)) / height;
 }
@@ -34,19 +36,19 @@ export function middleOf(points) {
     return low.map((value, axis) => (value + high[axis]) / 2);
 }
 
-// Returns the distance from a place to the farthest of some points; 0 if there are none.
+// Returns the distance from a place to the farthest of some points, or 0 if there are no points.
 export function reachFrom(place, points) {
     const away = (point) => Math.hypot(...point.map((value, i) => value - place[i]));
     return Math.max(0, ...points.map(away));
 }
 
-// A side that looks along `normal` is visible if the cosine of its angle to the view is at least
-// this.
+// A surface counts as visible if the cosine of the angle between its normal and the direction to
+// the camera is at least this.
 const LEAST_SEEN = 0.3;
 
-// Returns a direction to look from; all directions have length 1. It is `direction` itself if there
-// is no normal or the side that looks along `normal` is visible from there; else one near the
-// normal, on the same side of the mesh.
+// Returns a direction from which a surface with this normal is visible; all directions have length
+// 1 and point to the camera. Returns `direction` itself if the surface is visible from there, or if
+// `normal` is null; otherwise a direction near the normal that leans towards `direction`.
 export function turnTo(direction, normal) {
     if (normal === null) {
         return direction;
@@ -57,8 +59,8 @@ export function turnTo(direction, normal) {
         : unit(normal.map((value, i) => value + 0.5 * (direction[i] - seen * normal[i])));
 }
 
-// Returns the clip coordinates [x, y, z, w] of a point; `matrix` is view and projection,
-// column-major.
+// Returns the clip coordinates [x, y, z, w] of a point; `matrix` is the product of projection and
+// view, column-major.
 function toClip(matrix, point) {
     const clip = [0, 0, 0, 0];
     for (let row = 0; row < 4; row++) {
@@ -78,7 +80,7 @@ function toScreen(clip, width, height) {
     ];
 }
 
-// A point nearer to the camera's plane than this has no place on the screen.
+// A point is on the screen only if it is at least this far in front of the camera.
 const NEAREST = 1e-6;
 
 // Returns the distance in pixels from (x, y) to a point; Infinity if it is behind the camera.
@@ -114,7 +116,8 @@ export function distanceToSegment(matrix, width, height, from, to, x, y) {
     return Math.hypot(ax + s * dx - x, ay + s * dy - y);
 }
 
-// Returns the point between `behind` and `before` where the segment meets the camera's plane.
+// Returns the point where a segment meets the plane at distance NEAREST in front of the camera; its
+// end points are `behind` and `before` this plane. All points are in clip coordinates.
 function cutAtCamera(behind, before) {
     const t = (NEAREST - behind[3]) / (before[3] - behind[3]);
     return behind.map((value, i) => value + t * (before[i] - value));

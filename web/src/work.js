@@ -1,4 +1,5 @@
-// work.js - shows long work: its name, its progress, and a button that cancels it.
+// work.js - shows an upload or an edit that takes long: its name, its progress, and a button that
+// cancels it. Such an activity is called work here.
 
 export class Work {
     #elements;
@@ -6,15 +7,14 @@ export class Work {
     #title = '';
     #cancel = null;
 
-    // `box` contains the others and is hidden when there is nothing to show.
+    // `box` contains the other elements and is hidden when there is no work to show.
     constructor({ box, label, progress, button }, onError) {
         this.#elements = { box, label, progress, button };
         this.#onError = onError;
         button.addEventListener('click', () => this.#giveUp());
     }
 
-    // Called when work is about to begin; `isShown`: it is shown at once, rather than when it turns
-    // out to take long.
+    // Called before work begins; `isShown`: it is shown at once, not only from begin() on.
     start(title, isShown) {
         const { box, label, progress, button } = this.#elements;
         this.#title = title;
@@ -24,7 +24,8 @@ export class Work {
         box.hidden = !isShown;
     }
 
-    // Called when the work begins: from now on `cancel()` cancels it, which may return a promise.
+    // Shows the work, and a button that cancels it by calling `cancel()`, which may return a
+    // promise.
     begin(cancel) {
         const { box, button } = this.#elements;
         this.#cancel = cancel;
@@ -33,7 +34,8 @@ export class Work {
         box.hidden = false;
     }
 
-    // Shows progress, 0 to 1, and the phase, as a job of the server reports them.
+    // Shows the progress, 0 to 1, and the name of the phase of the work, as the server's jobs
+    // report them.
     show({ progress, phase = null }) {
         const { label, progress: bar } = this.#elements;
         bar.value = progress;

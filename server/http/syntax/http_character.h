@@ -1,4 +1,5 @@
-/* http_character.h - which characters are allowed in which parts of a request (RFC 9110, RFC 3986).
+/* http_character.h - tells which characters are allowed in which parts of a request (RFC 9110, RFC
+ * 3986).
  *
  * The functions are inline because they check every byte of every request. */
 #ifndef HE_SERVER_HTTP_SYNTAX_HTTP_CHARACTER_H
@@ -7,7 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Sets of ASCII characters as bits: one word for those below 64, one for the others. */
+/* A set of ASCII characters is two words of 64 bits: `low` has a bit for each character below 64,
+ * `high` one for each of the others. */
 #define SRV_BIT(c)          (UINT64_C(1) << ((c)&63))
 #define SRV_RANGE(from, to) ((SRV_BIT(to) - SRV_BIT(from)) | SRV_BIT(to))
 #define SRV_DIGITS          SRV_RANGE('0', '9')
@@ -28,8 +30,8 @@ static inline bool srv_is_token(char c)
     return srv_is_in((unsigned char)c, low, high);
 }
 
-/* Returns true for a character of a host and port in RFC 3986: unreserved, percent, sub-delims,
- * colon, and the brackets of IPv6. */
+/* Returns true if the character may occur in "host:port" by RFC 3986: unreserved characters,
+ * percent, sub-delims, colon, and the brackets of IPv6. */
 static inline bool srv_is_host(char c)
 {
     static const uint64_t low = SRV_DIGITS | SRV_BIT('-') | SRV_BIT('.') | SRV_BIT('%') |
@@ -51,8 +53,8 @@ static inline bool srv_is_blank(char c)
     return c == ' ' || c == '\t';
 }
 
-/* Returns true if the character may occur in the value of a header: visible, blank, or beyond
- * ASCII. */
+/* Returns true if the character may occur in the value of a header: visible ASCII, a blank, or a
+ * byte beyond ASCII. */
 static inline bool srv_is_value(char c)
 {
     unsigned char u = (unsigned char)c;

@@ -1,4 +1,4 @@
-/* http_fault.h - faults in the bytes of a request, and how they are answered.
+/* http_fault.h - the faults that the bytes of a request may have, with the answer to each.
  *
  * http_syntax.h finds faults. The limits that it enforces are defined here, because the messages
  * contain them. */
@@ -10,18 +10,20 @@
 enum {
     SRV_MAX_EMPTY_LINES = 8,
     SRV_MAX_METHOD = 16,
-    SRV_MAX_PARAMETERS = 64, /* in a query, because libmicrohttpd stores each */
+    SRV_MAX_PARAMETERS = 64, /* of a query; libmicrohttpd needs memory for each */
     SRV_MAX_FIELDS = 100,
     SRV_MAX_HEAD = 16 * 1024,
     SRV_MAX_CHUNK_DIGITS = 16,
     SRV_MAX_EXTENSION = 256,
-    /* The most bytes of target and headers, including what libmicrohttpd stores with each header
-     * and parameter. Its buffer must still have space for the head of the answer. */
+    /* The most memory that libmicrohttpd may need for target and headers: their bytes, and
+     * SRV_POOLED_FIELD for each header and each parameter. The rest of the connection's buffer is
+     * for the head of the answer. */
     SRV_MAX_POOLED = 28 * 1024,
     SRV_POOLED_FIELD = 64
 };
 
-/* Each row: X(constant, api_code, message, limit to append or 0) */
+/* The table of faults. Each row is X(constant, code of api/json/problem.h without API_, message,
+ * limit that is appended to the message or 0). */
 #define SRV_FAULT_MAP(X)                                                                        \
     X(TLS, BAD_FRAMING, "the bytes begin a TLS handshake, and this port speaks plain HTTP", 0)  \
     X(EMPTY_LINES, BAD_FRAMING, "too many empty lines before a request", SRV_MAX_EMPTY_LINES)   \

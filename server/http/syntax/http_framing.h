@@ -1,8 +1,8 @@
 /* http_framing.h - finds path, query and body of a request.
  *
  * The bytes were checked before (http_syntax.h, rules F1 to F8): the target is visible ASCII,
- * Content-Length is a number, Transfer-Encoding is chunked, and neither of these nor Host is given
- * twice. This module refuses only targets that are neither path?query nor
+ * Content-Length is a number, Transfer-Encoding is chunked, and Content-Length, Transfer-Encoding
+ * and Host occur once at most. This module only refuses targets that are neither path?query nor
  * http://authority/path?query. The connection of a refused request is closed. */
 #ifndef HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
 #define HE_SERVER_HTTP_SYNTAX_HTTP_FRAMING_H
@@ -28,19 +28,19 @@ typedef struct srv_head {
 typedef struct srv_framing {
     const char *path; /* points into the target, up to '?' or the end */
     size_t path_length;
-    const char *query;     /* into the target, "" when absent */
-    const char *authority; /* of an absolute target, which overrides Host; else NULL */
+    const char *query;     /* points into the target, or to "" if there is no query */
+    const char *authority; /* host and port in a target like http://HOST/PATH; NULL if none */
     size_t authority_length;
-    const char *host; /* the Host header, NULL when absent */
+    const char *host; /* the value of the header Host, NULL if absent */
     bool chunked;
     bool has_length;
     uint64_t length;
 } srv_framing;
 
-/* Finds path, query and body of a request. `secure` says that it came over TLS, so that
- * https://authority/path?query is allowed, too. Returns false with bad_path. */
+/* Finds path, query and body of a request; `secure`: it came over TLS, so that the target may be
+ * https://authority/path?query, too. Returns false with bad_path if the target is refused. */
 bool srv_framing_read(const srv_head *head, bool secure, srv_framing *out, api_problem *problem);
-/* Finds a header, ignoring case; returns NULL when absent. */
+/* Returns the first header line with this name, ignoring case, or NULL if there is none. */
 const srv_field *srv_head_find(const srv_head *head, const char *name);
 
 #endif

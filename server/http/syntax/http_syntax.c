@@ -35,8 +35,10 @@ static const char version[] = "HTTP/1.1\r\n\r\n";
 
 enum { MAJOR = 5, MINOR = 7, VERSION_END = 8, TLS_HANDSHAKE = 0x16 };
 
-/* --- the moves: each reads from `at`, before `end`, and returns where it stopped. There the next
- *     move goes on, or the fault is. --- */
+/* --- reading one part of a request --- */
+
+/* Each of these functions reads from `at`, at most to `end`, and returns the position where it
+ * stopped: there the next function continues, or s->fault is set and the byte there is faulty. */
 
 static char *fail(srv_syntax *s, char *at, srv_fault fault)
 {
@@ -44,8 +46,8 @@ static char *fail(srv_syntax *s, char *at, srv_fault fault)
     return at;
 }
 
-/* Returns the fault for a character where a line should go on: a line feed in the wrong place is a
- * fault of its own. */
+/* Returns the fault of a character that is not allowed where it stands in a line: SRV_FAULT_BARE_LF
+ * for a line feed, `otherwise` for any other character. */
 static srv_fault line_fault(char c, srv_fault otherwise)
 {
     return c == '\n' ? SRV_FAULT_BARE_LF : otherwise;
@@ -60,7 +62,7 @@ static char *read_lf(srv_syntax *s, char *at, state next)
     return at + 1;
 }
 
-/* Begins a request. State START --> METHOD or START_LF. */
+/* Begins a request. The state changes from START to METHOD or START_LF. */
 static char *begin(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -79,7 +81,7 @@ static char *begin(srv_syntax *s, char *at)
     return at;
 }
 
-/* METHOD --> TARGET */
+/* Reads the method. The state changes from METHOD to TARGET. */
 static char *read_method(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_token(*at); at++) {
@@ -98,7 +100,7 @@ static char *read_method(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* TARGET --> VERSION */
+/* Reads the request target. The state changes from TARGET to VERSION. */
 static char *read_target(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_target(*at); at++) {
@@ -126,7 +128,8 @@ static char *read_target(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the version. State VERSION --> LINE_LF. `digits` counts the characters of "HTTP/1.1". */
+/* Reads the version. The state changes from VERSION to LINE_LF. `digits` counts the characters of
+ * "HTTP/1.1". */
 static char *read_version(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && s->digits < VERSION_END; at++) {
@@ -137,7 +140,7 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
         if (s->digits == MINOR ? !is_digit : *at != version[s->digits]) {
             return fail(s, at, line_fault(*at, SRV_FAULT_VERSION));
         }
-        s->old = *at == '0'; /* its last digit stays */
+        s->old = *at == '0'; /* decided by the last character, the minor version */
         s->digits++;
     }
     if (at == end) {
@@ -150,7 +153,8 @@ static char *read_version(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* FIELD --> NAME or HEAD_LF */
+/* Begins a header line, or ends the headers at an empty line. The state changes from FIELD to NAME
+ * or HEAD_LF. */
 static char *begin_field(srv_syntax *s, char *at)
 {
     if (*at == '\r') {
@@ -181,7 +185,8 @@ static bool is_named(const srv_syntax *s, const char *name)
     return s->text_length == strlen(name) && memcmp(s->text, name, s->text_length) == 0;
 }
 
-/* Identifies the header at its colon. Returns false if it must not appear again. */
+/* Called at the colon after the name of a header: sets s->field. Returns false if the header may
+ * occur only once and has occurred before. */
 static bool choose_field(srv_syntax *s)
 {
     s->field = OTHER;
@@ -203,14 +208,15 @@ static bool choose_field(srv_syntax *s)
     return first;
 }
 
-/* Returns how far headers may be read: to the end of these bytes, or to the limit for headers. */
+/* Returns the position up to which a header may be read: the end of the bytes that have arrived, or
+ * the limit for the bytes of all headers. */
 static const char *stop_of(const srv_syntax *s, const char *at, const char *end)
 {
     size_t room = s->limit > s->head ? s->limit - s->head : 0;
     return (size_t)(end - at) > room ? at + room : end;
 }
 
-/* NAME --> VALUE */
+/* Reads the name of a header. The state changes from NAME to VALUE. */
 static char *read_name(srv_syntax *s, char *at, const char *end)
 {
     static const char cookie[] = "cookie";
@@ -262,8 +268,8 @@ static srv_fault add_host(const srv_syntax *s, char c)
     return srv_is_host(c) && s->phase != AFTER ? SRV_FAULT_NONE : SRV_FAULT_HOST;
 }
 
-/* Collects the names of transfer codings, with one blank in place of several. A text that does not
- * fit into the buffer is certainly not "chunked". */
+/* Appends a character to the value of Transfer-Encoding in s->text, with one blank in place of
+ * several. A value that does not fit into s->text is cut; it is certainly not "chunked". */
 static srv_fault add_coding(srv_syntax *s, char c)
 {
     if (s->phase == AFTER && s->text_length < SRV_SYNTAX_TEXT) {
@@ -292,8 +298,9 @@ static srv_fault add_character(srv_syntax *s, char c)
     return SRV_FAULT_NONE;
 }
 
-/* Returns the fault of a list of transfer codings (RFC 9112, 6.1 and 6.3). A coding before chunked
- * is not supported. If chunked is not last, or is given twice, the end of the body is unknown. */
+/* Returns the fault of the value of Transfer-Encoding (RFC 9112, 6.1 and 6.3). Codings before
+ * "chunked" are not supported. If "chunked" is not the last coding or occurs twice, the end of the
+ * body is unknown. */
 static srv_fault coding_fault(const srv_syntax *s)
 {
     static const char chunked[] = "chunked";
@@ -315,7 +322,7 @@ static srv_fault coding_fault(const srv_syntax *s)
     return is_last ? SRV_FAULT_OTHER_CODING : SRV_FAULT_CODING;
 }
 
-/* Reads the value of a header that is checked, up to its CR. */
+/* Reads the value of Host, Content-Length or Transfer-Encoding, which is checked, up to the CR. */
 static char *read_known_value(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -337,7 +344,7 @@ static char *read_known_value(srv_syntax *s, char *at, const char *end)
     return at;
 }
 
-/* Reads the value of any other header, up to its CR. */
+/* Reads the value of any other header, up to the CR. */
 static char *read_other_value(srv_syntax *s, char *at, const char *end)
 {
     const char *stop = stop_of(s, at, end);
@@ -350,7 +357,7 @@ static char *read_other_value(srv_syntax *s, char *at, const char *end)
     return full ? fail(s, at, SRV_FAULT_LARGE_HEAD) : at;
 }
 
-/* VALUE --> VALUE_LF */
+/* Reads the value of a header. The state changes from VALUE to VALUE_LF. */
 static char *read_value(srv_syntax *s, char *at, const char *end)
 {
     bool known = s->field == HOST || s->field == LENGTH || s->field == CODING;
@@ -389,7 +396,8 @@ static srv_fault head_fault(const srv_syntax *s)
     return !has(s, HOST) && !s->old ? SRV_FAULT_NO_HOST : SRV_FAULT_NONE;
 }
 
-/* Ends the headers. State HEAD_LF --> BODY, CHUNK_SIZE, or START of the next request. */
+/* Ends the headers. The state changes from HEAD_LF to BODY, CHUNK_SIZE, or START of the next
+ * request. */
 static char *end_head(srv_syntax *s, char *at)
 {
     srv_fault fault = s->trailers ? SRV_FAULT_NONE : head_fault(s);
@@ -410,7 +418,8 @@ static char *end_head(srv_syntax *s, char *at)
     return at + 1;
 }
 
-/* Passes data of a body on. State BODY or CHUNK_DATA --> `next`. */
+/* Skips data of a body, which need no check. The state changes from BODY or CHUNK_DATA to `next`.
+ */
 static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
 {
     uint64_t here = (uint64_t)(end - at);
@@ -424,7 +433,7 @@ static char *pass_data(srv_syntax *s, char *at, const char *end, state next)
     return at;
 }
 
-/* Reads the size of a chunk. State CHUNK_SIZE --> CHUNK_EXTENSION or CHUNK_LF. */
+/* Reads the size of a chunk. The state changes from CHUNK_SIZE to CHUNK_EXTENSION or CHUNK_LF. */
 static char *read_size(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_hexadecimal(*at) >= 0; at++) {
@@ -453,8 +462,8 @@ static char *read_size(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Reads the extensions of a chunk. State CHUNK_EXTENSION --> CHUNK_LF. The phase is BEFORE up to
- * the first semicolon. */
+/* Reads the extensions of a chunk. The state changes from CHUNK_EXTENSION to CHUNK_LF. s->phase is
+ * BEFORE until the first semicolon was read. */
 static char *read_extension(srv_syntax *s, char *at, const char *end)
 {
     for (; at < end && srv_is_value(*at); at++) {
@@ -484,7 +493,8 @@ static char *read_extension(srv_syntax *s, char *at, const char *end)
     return at + 1;
 }
 
-/* Ends the line with a chunk's size. State CHUNK_LF --> CHUNK_DATA, or FIELD of the trailers. */
+/* Ends the line with the size of a chunk. The state changes from CHUNK_LF to CHUNK_DATA, or FIELD
+ * if the size is 0, which is followed by trailers. */
 static char *end_size(srv_syntax *s, char *at)
 {
     s->trailers = s->left == 0;
@@ -492,7 +502,7 @@ static char *end_size(srv_syntax *s, char *at)
     return read_lf(s, at, s->trailers ? FIELD : CHUNK_DATA);
 }
 
-/* Ends the data of a chunk. State CHUNK_END --> CHUNK_END_LF. */
+/* Ends the data of a chunk. The state changes from CHUNK_END to CHUNK_END_LF. */
 static char *end_chunk(srv_syntax *s, char *at)
 {
     if (*at != '\r') {
@@ -546,9 +556,9 @@ static char *move(srv_syntax *s, char *at, const char *end)
 
 /* --- faults --- */
 
-/* Returns the bytes that end a faulty request for libmicrohttpd (rule S3). If a chunk was
- * announced, one byte of data follows: more would make libmicrohttpd wait, and with the first byte
- * it calls the handler. */
+/* Returns the bytes that libmicrohttpd gets in place of the rest of a faulty request (rule S3). If
+ * the size of a chunk was read, they include one byte of data, with which libmicrohttpd calls the
+ * handler. */
 static const char *ending_of(const srv_syntax *s)
 {
     switch ((state)s->state) {
@@ -563,7 +573,7 @@ static const char *ending_of(const srv_syntax *s)
     case VERSION:
         return version + s->digits;
     case NAME:
-        return "-: \r\n\r\n"; /* a name without a meaning */
+        return "-: \r\n\r\n"; /* the '-' makes the name one that no known header has */
     case VALUE:
         return s->field == LENGTH && s->phase == BEFORE ? "0\r\n\r\n" : "\r\n\r\n";
     case LINE_LF:

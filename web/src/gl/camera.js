@@ -6,16 +6,16 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { FIELD_OF_VIEW, UP, fitDistance, turnTo } from '../view.js';
 
-const ZOOM = 0.8; // factor of the distance for one step of the keyboard
+const ZOOM = 0.8; // factor by which one zoom step changes the distance
 
 export class Camera {
-    // The camera object of three.js.
+    // The object of three.js that represents the camera.
     three = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 10);
     #canvas;
     #controls;
 
-    // `onMove(isHeld)` is called after each move and when it ends; `isHeld`: a pointer or a finger
-    // continues it.
+    // `onMove(isHeld)` is called each time the camera has moved, and when the user releases it;
+    // `isHeld`: a pointer or a finger is still dragging.
     constructor(canvas, onMove) {
         this.#canvas = canvas;
         this.three.up.set(...UP);
@@ -36,13 +36,14 @@ export class Camera {
         });
     }
 
-    // Width / height of the canvas.
+    // Sets the shape of the picture; `aspect` is width / height of the canvas.
     setAspect(aspect) {
         this.three.aspect = aspect;
         this.three.updateProjectionMatrix();
     }
 
-    // Looks at a ball from a direction of length 1.
+    // Moves the camera so that it sees a whole ball; `direction`, a vector of length 1, points from
+    // the ball to the camera.
     look(center, direction, radius) {
         const distance = fitDistance(this.three.aspect) * radius;
         this.#controls.target.set(...center);
@@ -51,8 +52,9 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Looks at a ball with its surroundings; `normal` is the direction in which its contents look,
-    // or null. A camera behind them goes around the mesh; otherwise it stays on its side.
+    // Moves the camera so that it sees a ball and what is around it. `normal` is the direction in
+    // which the surface in the ball looks, or null. If the camera sees the front of that surface,
+    // it comes closer from where it is; otherwise it goes around to the front.
     frame({ center, radius, normal }) {
         const away = this.three.position.clone().sub(this.#controls.target).normalize();
         const direction = turnTo(away.toArray(), normal);
@@ -69,7 +71,7 @@ export class Camera {
         this.#controls.update();
     }
 
-    // Position and target: six numbers.
+    // Position of the camera and of the point that it looks at: six numbers.
     get numbers() {
         return [...this.three.position.toArray(), ...this.#controls.target.toArray()];
     }
@@ -97,7 +99,8 @@ export class Camera {
         ).elements;
     }
 
-    // The mesh is within 1 of the origin; a tight depth range keeps the depth buffer exact.
+    // Sets the near and the far plane close to the mesh, which is within 1 of the origin: the
+    // smaller the range, the more exact is the depth buffer.
     setDepthRange() {
         const distance = this.three.position.length();
         const near = 0.02 * this.#controls.getDistance();

@@ -1,5 +1,5 @@
-// marks.js - marks on the mesh: the selection, the elements in the fields of a form, half-edges as
-// arrows, boundary loops, and lines that preview an edit.
+// marks.js - draws marks on the mesh: the selection, the elements that the fields of a form name,
+// half-edges as arrows, boundary loops, and lines that preview an edit.
 
 import {
     AlwaysDepth,
@@ -44,7 +44,7 @@ const LINE_WIDTH = 4;
 const BOUNDARY_WIDTH = 3;
 const PREVIEW_WIDTH = 2;
 const FIELD_WIDTH = 3;
-const RAISED = 0.996; // factor of the distance, as for dots in shaders.js
+const RAISED = 0.996; // lines are drawn at this part of their distance from the camera
 
 export class Marks {
     // The objects of three.js that are drawn.
@@ -62,7 +62,7 @@ export class Marks {
 
     // `material` is the material of selected triangles.
     constructor(material) {
-        // Draws the triangles of the mesh again, a little nearer.
+        // Selected triangles are drawn a second time, a little nearer than the rest of the mesh.
         this.chosen = new Mesh(new BufferGeometry(), material);
         material.polygonOffsetFactor = 0.5;
         material.polygonOffsetUnits = 0.5;
@@ -78,7 +78,8 @@ export class Marks {
                 blending: NoBlending,
             }),
         );
-        // Lines are drawn twice: the parts behind the surface faintly.
+        // Lines are drawn twice: clearly where they are in front of the surface, and faintly where
+        // they are behind it.
         this.lines = segments(line(LessEqualDepth, 1));
         this.hiddenLines = new LineSegments2(this.lines.geometry, line(GreaterDepth, 0.3));
         this.vertices = dots(new Vector3(1, 0.7, 0.28));
@@ -88,7 +89,7 @@ export class Marks {
         this.preview.visible = false;
     }
 
-    // Called for another mesh, or for none (null): removes all marks.
+    // Removes all marks; `geometry` is the mesh that will be marked from now on, or null.
     reset(geometry) {
         this.#geometry = geometry;
         this.setBoundary([]);
@@ -96,7 +97,7 @@ export class Marks {
         this.select([], []);
     }
 
-    // Marks elements and draws half-edges as arrows, see Renderer.select().
+    // Marks the selected elements and draws half-edges as arrows, see Renderer.select().
     select(marks, halfedges) {
         if (this.#geometry === null) {
             [marks, halfedges] = [[], []];
@@ -117,7 +118,7 @@ export class Marks {
         this.#setArrows(halfedges);
     }
 
-    // Outlines the elements in the fields of a form; `marks` are as for select().
+    // Outlines the elements that the fields of a form name; `marks` are as in select().
     setField(marks) {
         const edges = marks.flatMap(({ kind, id, from, to }) => {
             if (kind === 'face') {
@@ -130,7 +131,8 @@ export class Marks {
         this.#setDots(this.fieldVertices, idsOf(marks, 'vertex'));
     }
 
-    // Draws lines over everything: pairs of end points, or null.
+    // Draws the preview of an edit over everything: lines, given by the coordinates of their end
+    // points; null removes it.
     setPreview(coordinates) {
         const geometry = new LineSegmentsGeometry();
         if (coordinates !== null && coordinates.length > 0) {
@@ -139,8 +141,8 @@ export class Marks {
         replace(this.preview, geometry, (coordinates?.length ?? 0) > 0);
     }
 
-    // Draws the edges of boundary loops: pairs of vertices. They may be from an earlier revision:
-    // edges whose vertices are gone are left out.
+    // Draws the edges of boundary loops; `ends` are the ids of their vertices in pairs. The ids may
+    // be from an earlier revision, so edges whose vertices were deleted are left out.
     setBoundary(ends) {
         const live = [];
         for (let i = 0; this.#geometry !== null && i < ends.length; i += 2) {
@@ -170,7 +172,7 @@ export class Marks {
         this.hiddenLines.visible = ends.length > 0;
     }
 
-    // Makes lines between pairs of vertices.
+    // Returns the geometry of lines between vertices, whose ids come in pairs.
     #between(ends) {
         const geometry = new LineSegmentsGeometry();
         if (ends.length > 0) {
@@ -222,8 +224,8 @@ export class Marks {
         this.#pixel.value = pixelAtOne(height);
     }
 
-    // Scales the object towards the camera, which does not change its place on the screen:
-    // otherwise a slanted surface would hide parts of the lines.
+    // Scales lines towards the camera at `position`, so that a slanted surface does not hide parts
+    // of them. Their places on the screen stay the same.
     raise(position) {
         for (const lines of [this.lines, this.hiddenLines, this.boundary]) {
             lines.scale.setScalar(RAISED);
@@ -266,7 +268,7 @@ function line(depthFunc, opacity) {
     });
 }
 
-// Gives a line material one colour, without colours of its vertices.
+// Gives a line material a width, and one colour instead of a colour for each vertex.
 function plain(material, width, color) {
     material.linewidth = width;
     material.vertexColors = false;

@@ -5,8 +5,8 @@
 //   marks.js     the marks on it: selection, arrows, boundary loops, previews
 //   camera.js    the position of the camera
 //
-// A frame is drawn only after a change. After each frame `onFrame` is called with what it shows, so
-// that a test can wait for a frame instead of for a time.
+// A frame is drawn only after a change. After each frame `onFrame` is called with a label that says
+// what the frame shows, so that a test can wait for a certain frame instead of a time.
 
 import {
     NearestFilter,
@@ -42,8 +42,9 @@ export class Renderer {
     #scheduled = false;
     #onFrame;
 
-    // Throws NoWebGL. `onFrame(label)` is called after each frame with the argument of show(),
-    // `onLost(lost)` when the graphics context is lost and restored, `onMove(isHeld)` as by Camera.
+    // Throws NoWebGL if the browser cannot draw. `onFrame(label)` is called after each frame with
+    // the label of the last change, `onLost(lost)` when the graphics context is lost or restored,
+    // `onMove(isHeld)` when the camera moves, see Camera.
     constructor(canvas, { onFrame, onLost, onMove }) {
         const context = canvas.getContext('webgl2', { antialias: true, alpha: false });
         if (context === null) {
@@ -89,8 +90,8 @@ export class Renderer {
         new ResizeObserver(() => this.#resize()).observe(canvas);
     }
 
-    // Shows a mesh, or nothing (null). `label` is passed to onFrame. Throws a RangeError, and goes
-    // on showing what it did, if the mesh is too large for a texture.
+    // Shows a mesh, or nothing (null). `label` is passed to onFrame. Throws a RangeError if the
+    // mesh is too large for a texture; then the mesh shown before stays.
     show(geometry, label) {
         this.#surface.show(geometry);
         this.#geometry = geometry;
@@ -99,8 +100,9 @@ export class Renderer {
         this.#draw();
     }
 
-    // The arrays of the mesh were changed, see applyDelta(): uploads only what changed. Boundary
-    // and selection stay. Throws as show() does.
+    // Called when the arrays of the mesh have changed at some places, see applyDelta(): uploads
+    // only what has changed. The marks of boundary loops and of the selection stay. Throws a
+    // RangeError if the mesh is too large for a texture.
     update(places, label) {
         if (this.#geometry !== null) {
             this.#surface.update(places);
@@ -109,7 +111,8 @@ export class Renderer {
         this.#draw();
     }
 
-    // The arrays were changed within ranges, and the number of entries shown as well, see Levels.
+    // Called when another level of detail is to be shown: the arrays have changed within `ranges`,
+    // and their counts have changed, see Levels.
     refine(ranges, label) {
         this.#surface.refine(ranges);
         this.#label = label;
@@ -136,21 +139,23 @@ export class Renderer {
         this.#draw();
     }
 
-    // Marks elements: {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to} or {kind:
-    // 'vertex', id}, and draws half-edges as arrows, see around.js. Replaces earlier marks.
+    // Marks the selected elements, each {kind: 'face', id}, {kind: 'edge' or 'halfedge', from, to}
+    // or {kind: 'vertex', id}, and draws `halfedges` as arrows, see around.js. Both replace those
+    // of earlier calls.
     select(marks, halfedges, label) {
         this.#label = label;
         this.#marks.select(marks, halfedges);
         this.#draw();
     }
 
-    // Marks the elements in the fields of a form; `marks` are as for select().
+    // Marks the elements that the fields of a form name; `marks` are as in select().
     markField(marks) {
         this.#marks.setField(this.#geometry === null ? [] : marks);
         this.#draw();
     }
 
-    // Draws lines over everything that preview an edit: pairs of end points, or null.
+    // Draws the preview of an edit over everything: lines, given by the coordinates of their end
+    // points; null removes it.
     preview(coordinates) {
         this.#marks.setPreview(coordinates);
         this.#draw();
@@ -176,7 +181,7 @@ export class Renderer {
         this.#move(() => this.#camera.look(center, DIRECTION, radius));
     }
 
-    // Shows some elements, see Camera.frame().
+    // Moves the camera so that it sees some elements, see Camera.frame().
     frame(found) {
         this.#move(() => this.#camera.frame(found));
     }
@@ -187,7 +192,7 @@ export class Renderer {
     }
 
     #move(act) {
-        // Panels that appeared with the mesh may have resized the canvas.
+        // The panels that appear with a mesh may have changed the size of the canvas.
         this.#resize();
         act();
     }
@@ -197,7 +202,7 @@ export class Renderer {
         return this.#camera.view;
     }
 
-    // Position and target of the camera: six numbers.
+    // Position of the camera and of the point that it looks at: six numbers.
     get camera() {
         return this.#camera.numbers;
     }
@@ -221,8 +226,8 @@ export class Renderer {
         return new Promise((resolve) => this.#canvas.toBlob(resolve, 'image/png'));
     }
 
-    // Returns what is visible within `reach` of a place on the canvas, as readSquare() of pick.js
-    // does; vertices are those shown as dots.
+    // Returns which triangles and vertices are visible within `reach` CSS pixels of a place on the
+    // canvas, in the form of readSquare() in pick.js. Only vertices that are shown as dots count.
     look(x, y, reach) {
         const ratio = this.#renderer.getPixelRatio();
         const radius = Math.ceil(reach * ratio);
@@ -257,7 +262,7 @@ export class Renderer {
         const ratio = window.devicePixelRatio;
         const size = `${width} ${height} ${ratio}`;
         if (size === this.#size) {
-            return; // a frame of a large mesh takes long
+            return; // without a new frame, because drawing a large mesh takes long
         }
         this.#size = size;
         this.#renderer.setPixelRatio(ratio);
@@ -287,7 +292,8 @@ export class Renderer {
     }
 }
 
-// three cannot compute bounds, since positions are in textures.
+// Adds objects to a scene, to be drawn in this order. Culling is switched off, because three.js
+// cannot compute bounds from positions that are in textures.
 function add(scene, objects) {
     objects.forEach((object, order) => {
         object.frustumCulled = false;

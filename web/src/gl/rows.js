@@ -1,12 +1,12 @@
 // rows.js - an array of geometry.js as a texture that is ROW texels wide, which can be uploaded in
-// parts. With render.js the only module that knows three.
+// parts.
 
 import { DataTexture, NearestFilter } from 'three';
 
 import { ROW } from '../geometry.js';
 
-// If more than this part of all texels changed, all are uploaded: MANY for single texels, MOST for
-// changes that come as long ranges.
+// If more than this part of all texels has changed, the whole texture is uploaded: MANY if single
+// texels have changed, MOST if long ranges of texels have changed.
 const MANY = 1 / 8;
 const MOST = 1 / 2;
 
@@ -23,8 +23,8 @@ export class Rows extends DataTexture {
         };
     }
 
-    // Called when the array was changed at some places, or anywhere (null), or replaced. Returns
-    // the texture to use from now on, a new one if the array was replaced.
+    // Called when the texels at `places` of the array have changed (null: any texels), or when the
+    // array was replaced. Returns the texture to use from now on, a new one if the array is new.
     update(array, places) {
         if (array !== this.image.data) {
             const longer = new Rows(array, this.format, this.type);
@@ -36,8 +36,8 @@ export class Rows extends DataTexture {
         return this;
     }
 
-    // Called when the array was changed in some ranges [begin, end], which are in ascending order
-    // and each within one row.
+    // Called when the array has changed within some ranges of texels, [begin, end], which are in
+    // ascending order and each within one row of the texture.
     updateWithin(ranges) {
         const texels = ranges.reduce((sum, [begin, end]) => sum + end - begin, 0);
         this.#send(texels >= MOST * (this.image.data.length / 4) ? null : ranges);
@@ -57,8 +57,8 @@ export class Rows extends DataTexture {
         this.needsUpdate = true;
     }
 
-    // Called when the copy in graphics memory is lost or outdated: the next upload is of
-    // everything.
+    // Called when the copy in graphics memory is lost or outdated: next time the whole texture is
+    // uploaded.
     forget() {
         this.#isSent = false;
         this.clearUpdateRanges();

@@ -22,9 +22,9 @@ uvec4 triangleAt(int index) {
 }
 `;
 
-// Three vertices per triangle. bary is 1 at its corner and 0 on the opposite side. Normals are
-// computed from derivatives in the fragment shader: otherwise all three corners would be fetched
-// three times.
+// The vertex shader of faces, which runs for each corner of a triangle. `bary` are barycentric
+// coordinates. Normals are computed from derivatives in the fragment shader: otherwise each of the
+// three runs would have to fetch all three corners.
 export const SURFACE_VERTEX = `${TEXTURES}
 uniform usampler2D labels;
 uniform sampler2D palette;
@@ -65,9 +65,10 @@ void main() {
 }
 `;
 
-// Draws fill and polygon edges in one pass; `chosen`: the face is selected. A translucent face
-// discards a part of its pixels in a pattern, so triangles need not be sorted. The back of a face
-// with a one-sided material is drawn as without material, because its orientation may be wrong.
+// The fragment shader of faces, which draws fill and polygon edges in one pass; `chosen`: the face
+// is selected. If a face is translucent, a part of its pixels is discarded in a pattern, so that
+// triangles need not be sorted. The back of a face with a one-sided material is drawn as if it had
+// no material, because the face may be oriented wrongly.
 export const SURFACE_FRAGMENT = `
 precision highp float;
 precision highp int;
@@ -134,7 +135,8 @@ void main() {
 }
 `;
 
-// One point per vertex row; vertices that are not wanted are moved out of the clip volume.
+// The vertex shader of dots, which runs for each vertex of the mesh. Vertices that are not to be
+// shown are moved out of the clip volume.
 export const DOT_VERTEX = `${TEXTURES}
 uniform float size;
 uniform bool isolatedOnly;
@@ -176,7 +178,7 @@ void main() {
 }
 `;
 
-// The program for points given by position, which are the selected vertices.
+// The vertex shader of points whose positions are in a vertex buffer: the marked vertices.
 export const MARK_VERTEX = `
 precision highp float;
 in vec3 position;
@@ -193,8 +195,8 @@ void main() {
 }
 `;
 
-// The program for half-edges: coloured triangles in front of the surface. See arrows.js; `pixel` is
-// the length of a CSS pixel at depth 1.
+// The vertex shader of half-edges: coloured triangles in front of the surface, see arrows.js.
+// `pixel` is the length of a CSS pixel at depth 1.
 export const ARROW_VERTEX = `
 precision highp float;
 in vec3 position;

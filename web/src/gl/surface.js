@@ -33,9 +33,9 @@ const DOT_SIZE = 7; // in CSS pixels, as all sizes here
 const EDGE_WIDTH = 0.75; // on each side of an edge
 
 export class Surface {
-    fill; // the objects that are drawn
+    fill; // faces with their edges; `dots` are the vertices
     dots;
-    pickFill; // the objects that draw ids
+    pickFill; // draws ids of triangles instead of colours; `pickDots` draws ids of vertices
     pickDots;
     #mostRows;
     #textures = { vertices: { value: null }, triangles: { value: null } };
@@ -68,7 +68,7 @@ export class Surface {
         this.pickDots = new Points(this.dots.geometry, dots(DOT_PICK, dotUniforms));
     }
 
-    // Makes the material of triangles, in the colour of selected ones or of others.
+    // Returns a material that draws triangles; `isChosen`: in the colour of selected faces.
     material(isChosen) {
         const uniforms = { chosen: { value: isChosen }, edgeWidth: this.#edgeWidth };
         return this.#material(SURFACE_FRAGMENT, uniforms);
@@ -87,15 +87,15 @@ export class Surface {
             },
             side: DoubleSide,
             blending: NoBlending,
-            // Faces are moved back a little, so that the marks on them are visible.
+            // Faces are drawn a little farther away, so that they do not hide the marks on them.
             polygonOffset: true,
             polygonOffsetFactor: 1,
             polygonOffsetUnits: 1,
         });
     }
 
-    // Shows a mesh, or nothing (null). Throws a RangeError, and goes on showing what it did, if the
-    // mesh is too large for a texture.
+    // Shows a mesh, or nothing (null). Throws a RangeError if the mesh is too large for a texture;
+    // then the mesh shown before stays.
     show(geometry) {
         const arrays = this.#arraysOf(geometry);
         const { vertices, triangles } = this.#textures;
@@ -107,7 +107,8 @@ export class Surface {
         this.#setRanges();
     }
 
-    // The arrays were changed in places, see applyDelta(). Throws as show() does.
+    // Called when the arrays of the mesh have changed at some places, see applyDelta(). Throws a
+    // RangeError if the mesh is now too large for a texture.
     update(places) {
         const arrays = this.#arraysOf(this.#geometry);
         for (const [name, texture] of Object.entries(this.#textures)) {
@@ -116,7 +117,8 @@ export class Surface {
         this.#setRanges();
     }
 
-    // The arrays and their counts were changed within some ranges, see Levels.takeChanges().
+    // Called when the arrays have changed within some ranges, and their counts have changed: see
+    // Levels.takeChanges().
     refine(ranges) {
         for (const [name, texture] of Object.entries(this.#textures)) {
             texture.value.updateWithin(ranges[name]);
@@ -141,8 +143,8 @@ export class Surface {
         );
     }
 
-    // The materials were changed: {palette, places} says whether the palette was replaced, and
-    // which texels of the labels changed (null: any).
+    // Called when the materials have changed; `change` is {palette, places}: whether the palette
+    // was replaced, and which texels of `labels` have changed (null: any).
     updateMaterials(materials, change) {
         const { labels, palette } = this.#looks;
         labels.value = labels.value.update(materials.labels, change.places);
@@ -163,7 +165,8 @@ export class Surface {
             .forEach(({ value }) => value.forget());
     }
 
-    // Returns the arrays of a mesh, or zeros if there is none.
+    // Returns the arrays of a mesh, or arrays of zeros if there is no mesh. Throws a RangeError if
+    // an array is too large for a texture.
     #arraysOf(geometry) {
         const vertices = geometry?.vertices ?? new Float32Array(4 * ROW);
         const triangles = geometry?.triangles ?? new Uint32Array(4 * ROW);
