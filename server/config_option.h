@@ -50,11 +50,19 @@ bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 /* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
-/* Sets an option. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or "hedged.conf:3:
- * listen", and begins the sentence in `message` if the value is refused. Items of a list from one
- * source add up and replace those of a source that it overrides; `seen`, with an entry per row that
- * is false at first, says which lists the present source has begun. */
-bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
-                    bool *seen, char *message, size_t size);
+/* The value that an option is given. */
+typedef struct srv_option_value {
+    const srv_option *row;
+    const char *text;
+    /* What the user wrote: "--listen", "HEDGE_LISTEN" or "hedged.conf:3: listen". It begins the
+     * sentence that refuses the value. */
+    const char *source;
+} srv_option_value;
+
+/* Sets an option. Returns false with a sentence in `message` if the value is refused. Items of a
+ * list from one source add up and replace those of a source that it overrides; `seen`, with an
+ * entry per row that is false at first, says which lists the present source has begun. */
+bool srv_option_set(srv_config *config, const srv_option_value *given, bool *seen, char *message,
+                    size_t size);
 
 #endif
