@@ -27,11 +27,12 @@ void srv_ids_init(srv_ids *ids);
  * letters, digits and . _ -, or makes a new one. */
 void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1]);
 
-/* The client of a request. */
+/* The client of a request, and the headers for browsers that its answer has. */
 typedef struct srv_client {
     char address[SRV_ADDRESS_TEXT]; /* without a port; "unix:uid=1000" on a Unix socket */
     srv_scheme scheme;
-    bool told_name; /* the answer has the header of P6 (http_policy.h) */
+    bool told_name;   /* the answer has the header of P6 (http_policy.h) */
+    const char *cors; /* the origin that the answer names in CORS headers (P4); NULL: none */
 } srv_client;
 
 /* Reads what a trusted proxy at the other end of the connection says about its client (proxy.h).
@@ -41,8 +42,8 @@ bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_clien
                        api_problem *problem);
 
 /* Applies rules P1 to P6 of http_policy.h to a request with valid framing. Returns false with the
- * problem filled if it is refused. `cors` is set to the origin to name in the answer, or NULL. */
+ * problem filled if it is refused. Sets what `client` says about its answer in both cases. */
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
-               srv_client *client, const char **cors, api_problem *problem);
+               srv_client *client, api_problem *problem);
 
 #endif

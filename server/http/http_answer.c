@@ -168,8 +168,8 @@ static void describe(srv_request *r, srv_wire *wire)
     if (r->trace.answered[0] != '\0') {
         srv_wire_add(wire, "traceparent", r->trace.answered);
     }
-    if (r->cors != NULL) {
-        srv_wire_cors(wire, r->cors, r->preflight);
+    if (r->client.cors != NULL) {
+        srv_wire_cors(wire, r->client.cors, r->preflight);
     }
     wire->close = wire->close || atomic_load(&r->http->stopping) || srv_recv_has_ended(r->socket);
 }

@@ -79,7 +79,6 @@ typedef struct srv_request {
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* headers whose lines were joined (http_headers.h); NULL: none */
     srv_client client;
-    const char *cors; /* origin to name in CORS headers; NULL: none */
     bool close;
 
     api_exchange *exchange; /* NULL: the answer is `refusal` */
