@@ -2,6 +2,7 @@
  * for it, so no events are queued for slow listeners. */
 #include "api/job/job_entry.h"
 
+#include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "base/mem.h"
 
@@ -149,7 +150,11 @@ st_status api_job_follow(api_job_table *table, const api_token *viewer, const ch
         return status;
     }
     l->job = job;
-    *out = (api_source){
-        .self = l, .start = start, .read = read_messages, .finish = finish, .free = leave};
+    *out = (api_source){.self = l,
+                        .start = start,
+                        .read = read_messages,
+                        .finish = finish,
+                        .free = leave,
+                        .idle = API_EVENT_IDLE};
     return ST_OK;
 }

@@ -117,7 +117,7 @@ void api_job_events(api_exchange *x)
     } else if (status != ST_OK) {
         api_fail_store(x, status);
     } else {
-        api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+        api_answer_live(x, 200, "text/event-stream", &source);
         api_answer_header(x, "X-Accel-Buffering", "no");
     }
 }

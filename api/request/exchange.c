@@ -476,8 +476,7 @@ void api_answer_blob(api_exchange *x, int status, const char *type, const api_bl
     x->answer.slow = true;
 }
 
-void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
-                     const char *idle)
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source)
 {
     x->live = *source;
     if (x->token != NULL &&
@@ -489,7 +488,6 @@ void api_answer_live(api_exchange *x, int status, const char *type, const api_so
     api_answer_bytes(x, status, type, NULL, 0);
     x->answer.length = -1;
     x->answer.live = &x->live;
-    x->answer.idle = idle;
     x->stream = x->live.self;
     x->free_stream = x->live.free;
 }

@@ -231,10 +231,8 @@ void api_answer_stream(api_exchange *x, int status, const char *type, int64_t le
  * without copying it. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
 /* Answers with a stream without a known end, which is sent while the token is valid. Takes `source`
- * and frees it with the exchange. `idle`, which is sent to keep an idle connection open, must be a
- * literal. */
-void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
-                     const char *idle);
+ * and frees it with the exchange. */
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source);
 /* Sets a header of the answer, replacing one with this name; `value` is copied. Call it before or
  * after the answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);

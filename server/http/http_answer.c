@@ -117,8 +117,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     if (r->stream.live == NULL) {
         int socket =
             MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-        srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, socket,
-                       resume_stream);
+        srv_live_begin(r->http->live, &r->stream, answer->live, socket, resume_stream);
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {

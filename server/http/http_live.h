@@ -24,7 +24,6 @@ typedef struct srv_live srv_live;
 typedef struct srv_stream {
     srv_live *live; /* NULL: not begun */
     const api_source *source;
-    const char *idle; /* sent as a heartbeat */
     void (*resume)(struct srv_stream *stream);
     bool aside;
     bool woken;    /* woken while it was pulled */
@@ -44,8 +43,8 @@ void srv_live_free(srv_live *live);
 
 /* Begins a stream. The thread calls `resume` once for each srv_live_aside. `socket` is the client's
  * socket, which is watched for the end of the connection; -1 means that it is not watched. */
-void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
-                    int socket, void (*resume)(srv_stream *stream));
+void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, int socket,
+                    void (*resume)(srv_stream *stream));
 /* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
  * the stream was not begun. */
 void srv_live_end(srv_stream *stream);
