@@ -271,9 +271,9 @@ static bool decode_json(api_exchange *x, writing *w)
     static const char *const members[] = {
         "type",   "components", "rule",    "default",           "labels",
         "values", "value",      "dry_run", "expected_revision", NULL};
-    api_in_limits limits = {.values = API_MAX_EDITS_VALUES};
-    bool good = api_document_parse(w->body.bytes, w->body.length, &limits, &w->document, &w->root,
-                                   &x->problem);
+    const api_in_options options = {.values = API_MAX_EDITS_VALUES};
+    bool good =
+        api_document_parse(api_text_bytes(&w->body), &options, &w->document, &w->root, &x->problem);
     api_text_clear(&w->body);
     return good && api_in_only(&w->root, members) && read_common(w, &w->root) &&
            api_read_column(&w->root, x->kind, x->attribute, &w->column) &&

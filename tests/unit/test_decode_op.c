@@ -95,8 +95,9 @@ typedef struct parsed {
 static void parse(parsed *p, const char *body)
 {
     *p = (parsed){0};
-    api_in_limits limits = {.values = 10000};
-    if (!api_document_parse(body, strlen(body), &limits, &p->document, &p->root, &p->problem)) {
+    const api_in_options options = {.values = 10000};
+    const api_bytes text = {body, strlen(body)};
+    if (!api_document_parse(text, &options, &p->document, &p->root, &p->problem)) {
         fail_msg("%s: %s", body, p->problem.detail);
     }
 }
@@ -375,11 +376,11 @@ static void every_failed_allocation_is_a_problem(void **state)
     while (failing_next(&f)) {
         parsed p = {0};
         api_names names;
-        api_in_limits limits = {.values = 1000};
+        const api_in_options options = {.values = 1000};
+        const api_bytes text = {body, strlen(body)};
         api_names_init(&names, (const uint64_t[2]){1, 2});
-        bool good =
-            api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
-            check_list(&p.root, &names, &p.arena);
+        bool good = api_document_parse(text, &options, &p.document, &p.root, &p.problem) &&
+                    check_list(&p.root, &names, &p.arena);
         failing_end(&f, good);
         assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
         api_names_clear(&names);
