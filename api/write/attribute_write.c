@@ -403,7 +403,6 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
                      size_t *count)
 {
     static const char *const all[] = {"all", NULL};
-    const char *name;
     int choice;
     if (api_in_is_string(in)) {
         *ids = NULL;
@@ -411,8 +410,7 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
         return api_in_choice(in, all, &choice);
     }
     if (api_in_is_object(in)) {
-        return api_in_set(in, &name) &&
-               api_find_set(in, name, mesh, x->kind, &x->arena, ids, count);
+        return api_find_set(in, mesh, x->kind, &x->arena, ids, count);
     }
     return api_in_ids(in, 1, &x->arena, ids, count);
 }
