@@ -32,6 +32,7 @@ typedef struct api_source {
     int64_t (*read)(void *self, char *buffer, size_t size);
     void (*finish)(void *self);
     void (*free)(void *self);
+    const char *idle; /* a literal that is sent now and then to keep an idle connection open */
 } api_source;
 
 #endif

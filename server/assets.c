@@ -107,14 +107,21 @@ static char *read_all(int fd, size_t length)
     return bytes;
 }
 
+/* A file of the page: the folder it lies in, and the path it is served under. */
+typedef struct file {
+    int folder;
+    const char *name;
+    const char *prefix; /* comes before the name in the path of a request */
+} file;
+
 /* Reads a file of the page into memory and adds it, or skips it if it is not a regular file.
  * Returns false, with a sentence in `message`, if the file cannot be added. */
-static bool add_file(srv_assets *assets, int folder, const char *name, const char *prefix,
-                     char *message, size_t size)
+static bool add_file(srv_assets *assets, const file *from, char *message, size_t size)
 {
     char path[PATH_SIZE];
     struct stat facts;
-    int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    const char *name = from->name;
+    int fd = openat(from->folder, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0 || fstat(fd, &facts) != 0 || !S_ISREG(facts.st_mode)) {
         if (fd >= 0) {
             close(fd);
@@ -124,7 +131,7 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     bool ok = false;
     char *bytes = NULL;
     size_t length = (size_t)facts.st_size;
-    if (snprintf(path, sizeof path, "%s%s", prefix, name) >= (int)sizeof path) {
+    if (snprintf(path, sizeof path, "%s%s", from->prefix, name) >= (int)sizeof path) {
         snprintf(message, size, "the page's file name %.60s... is too long", name);
     } else if (assets->count == SRV_ASSET_COUNT ||
                length > (size_t)SRV_ASSET_BYTES - assets->bytes) {
@@ -140,14 +147,15 @@ static bool add_file(srv_assets *assets, int folder, const char *name, const cha
     return ok;
 }
 
-/* Adds an HTML file, which is served under `path`, without the suffix .html. */
-static bool add_page(srv_assets *assets, int folder, const char *name, const char *path,
-                     char *message, size_t size)
+/* Adds an HTML file, which is served under its name without the suffix .html, or as "/" if it is
+ * index.html. */
+static bool add_page(srv_assets *assets, int folder, const char *name, char *message, size_t size)
 {
     size_t before = assets->count;
-    bool ok = add_file(assets, folder, name, "/", message, size);
+    bool ok = add_file(assets, &(file){folder, name, "/"}, message, size);
     if (assets->count > before) {
-        snprintf(assets->items[before].path, PATH_SIZE, "%s", path);
+        char *path = assets->items[before].path;
+        path[strcmp(name, "index.html") == 0 ? 1 : strcspn(path, ".")] = '\0';
     }
     return ok;
 }
@@ -159,19 +167,20 @@ static bool load(srv_assets *assets, const char *folder, char *message, size_t s
         snprintf(message, size, "%.200s is not a folder with the page", folder);
         return false;
     }
-    bool ok = add_page(assets, root, "index.html", "/", message, size);
+    bool ok = add_page(assets, root, "index.html", message, size);
     if (ok && assets->count == 0) {
         snprintf(message, size, "%.200s has no index.html", folder);
         ok = false;
     }
-    ok = ok && add_page(assets, root, "docs.html", "/docs", message, size);
+    ok = ok && add_page(assets, root, "docs.html", message, size);
     int inner = ok ? openat(root, "assets", O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
     DIR *listing = inner < 0 ? NULL : fdopendir(inner);
     if (listing != NULL) {
         const struct dirent *entry;
         while (ok && (entry = readdir(listing)) != NULL) {
             if (entry->d_name[0] != '.') {
-                ok = add_file(assets, inner, entry->d_name, "/assets/", message, size);
+                const file from = {inner, entry->d_name, "/assets/"};
+                ok = add_file(assets, &from, message, size);
             }
         }
         closedir(listing);

@@ -148,17 +148,17 @@ static void *member_of(srv_config *config, const srv_option *row)
     return (char *)config + row->member;
 }
 
-static bool read_list(srv_config *config, srv_names *names, const char *text, char *message,
-                      size_t size, const char *source)
+static bool read_list(srv_config *config, const srv_option_value *given, char *message, size_t size)
 {
-    size_t length = strlen(text);
+    srv_names *names = member_of(config, given->row);
+    size_t length = strlen(given->text);
     char *copy = he_mem_alloc(length + 1);
     if (copy == NULL || config->owned_count == SRV_MAX_LISTS) {
         he_mem_free(copy);
-        snprintf(message, size, "%s is given too often", source);
+        snprintf(message, size, "%s is given too often", given->source);
         return false;
     }
-    memcpy(copy, text, length + 1);
+    memcpy(copy, given->text, length + 1);
     config->owned[config->owned_count++] = copy;
     for (char *item = copy; item != NULL;) {
         char *comma = strchr(item, ',');
@@ -171,7 +171,7 @@ static bool read_list(srv_config *config, srv_names *names, const char *text, ch
         }
         if (*item != '\0') {
             if (names->count == SRV_MAX_NAMES) {
-                snprintf(message, size, "%s takes at most %d names", source, SRV_MAX_NAMES);
+                snprintf(message, size, "%s takes at most %d names", given->source, SRV_MAX_NAMES);
                 return false;
             }
             names->items[names->count++] = item;
@@ -191,10 +191,11 @@ static bool read_switch(const char *text, bool *out)
     return true;
 }
 
-/* Reads the value of an option. `source` is what the user wrote: "--listen" or "HEDGE_LISTEN". */
-static bool read_value(srv_config *config, const srv_option *row, const char *text,
-                       const char *source, char *message, size_t size)
+static bool read_value(srv_config *config, const srv_option_value *given, char *message,
+                       size_t size)
 {
+    const srv_option *row = given->row;
+    const char *text = given->text, *source = given->source;
     void *member = member_of(config, row);
     uint64_t number = 0;
     bool on;
@@ -211,7 +212,7 @@ static bool read_value(srv_config *config, const srv_option *row, const char *te
         memcpy(member, &text, sizeof text);
         return true;
     case SRV_LIST:
-        return read_list(config, member, text, message, size, source);
+        return read_list(config, given, message, size);
     case SRV_BYTES:
     case SRV_COUNT:
         if (!api_amount_parse(text, strlen(text), row->kind == SRV_BYTES, &number) ||
@@ -302,11 +303,11 @@ static void begin_list(srv_config *config, const srv_option *row, bool *seen)
     seen[i] = true;
 }
 
-bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
-                    bool *seen, char *message, size_t size)
+bool srv_option_set(srv_config *config, const srv_option_value *given, bool *seen, char *message,
+                    size_t size)
 {
-    begin_list(config, row, seen);
-    return read_value(config, row, text, source, message, size);
+    begin_list(config, given->row, seen);
+    return read_value(config, given, message, size);
 }
 
 static bool read_environment(srv_config *config, char *(*environment)(const char *name),
@@ -320,9 +321,9 @@ static bool read_environment(srv_config *config, char *(*environment)(const char
         }
         char variable[SRV_VARIABLE_TEXT];
         srv_option_variable(row, variable);
-        const char *text = environment(variable);
-        if (text != NULL && *text != '\0' &&
-            !srv_option_set(config, row, text, variable, seen, message, size)) {
+        const srv_option_value given = {row, environment(variable), variable};
+        if (given.text != NULL && *given.text != '\0' &&
+            !srv_option_set(config, &given, seen, message, size)) {
             return false;
         }
     }
@@ -378,7 +379,8 @@ static bool read_flags(srv_config *config, int argc, char *const *argv, char *me
             snprintf(message, size, "%s needs a value, %s", source, row->argument);
             return false;
         }
-        if (!srv_option_set(config, row, value, source, seen, message, size)) {
+        const srv_option_value given = {row, value, source};
+        if (!srv_option_set(config, &given, seen, message, size)) {
             return false;
         }
     }
@@ -465,32 +467,31 @@ static bool check(const srv_config *config, char *message, size_t size)
 
 /* Sets the defaults, then reads the configuration file, the environment and the arguments, in this
  * order. `file` is NULL if there is no configuration file. */
-static bool read_places(srv_config *config, const char *file, int argc, char *const *argv,
-                        char *(*environment)(const char *name), char *message, size_t size)
+static bool read_places(srv_config *config, const srv_config_sources *from, const char *file,
+                        char *message, size_t size)
 {
     *config = (srv_config){0};
     bool ok = true;
     for (size_t i = 0; i < OPTIONS && ok; i++) {
-        ok = srv_options[i].kind == SRV_COMMAND ||
-             read_value(config, &srv_options[i], srv_options[i].fallback, srv_options[i].name,
-                        message, size);
+        const srv_option *row = &srv_options[i];
+        const srv_option_value given = {row, row->fallback, row->name};
+        ok = row->kind == SRV_COMMAND || read_value(config, &given, message, size);
     }
     return ok && (file == NULL || srv_config_read_file(config, file, message, size)) &&
-           read_environment(config, environment, message, size) &&
-           read_flags(config, argc, argv, message, size);
+           read_environment(config, from->environment, message, size) &&
+           read_flags(config, from->argc, from->argv, message, size);
 }
 
 /* Reads the configuration. Flags and environment are read twice: once because they name the
  * configuration file, and once after the file, because they override it. */
-bool srv_config_read(srv_config *config, int argc, char *const *argv,
-                     char *(*environment)(const char *name), char *message, size_t size)
+bool srv_config_read(srv_config *config, const srv_config_sources *from, char *message, size_t size)
 {
-    bool ok = read_places(config, NULL, argc, argv, environment, message, size);
+    bool ok = read_places(config, from, NULL, message, size);
     uint64_t format = config->log_format;
     if (ok && config->config[0] != '\0') {
         const char *file = config->config;
         srv_config_clear(config);
-        ok = read_places(config, file, argc, argv, environment, message, size);
+        ok = read_places(config, from, file, message, size);
         format = ok ? config->log_format : format;
     }
     ok = ok && (config->help || config->version ||

@@ -72,12 +72,18 @@ typedef struct srv_config {
     char *file_text;
 } srv_config;
 
-/* Fills `config` from arguments (without the program's name) and from `environment` (getenv, or a
- * test's function), and borrows their texts. Returns false with a sentence in `message` if a value
- * is wrong; then `config` is empty except for log_format, the format in which the caller is to
- * print the sentence. */
-bool srv_config_read(srv_config *config, int argc, char *const *argv,
-                     char *(*environment)(const char *name), char *message, size_t size);
+/* Where settings come from, beside the configuration file that one of them may name. */
+typedef struct srv_config_sources {
+    int argc;
+    char *const *argv;                      /* the arguments, without the program's name */
+    char *(*environment)(const char *name); /* getenv, or a test's function */
+} srv_config_sources;
+
+/* Fills `config` from its sources and borrows their texts. Returns false with a sentence in
+ * `message` if a value is wrong; then `config` is empty except for log_format, the format in which
+ * the caller is to print the sentence. */
+bool srv_config_read(srv_config *config, const srv_config_sources *from, char *message,
+                     size_t size);
 void srv_config_clear(srv_config *config);
 
 /* Returns the folder of the store, or NULL if meshes are kept in memory only. */

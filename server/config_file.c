@@ -53,55 +53,64 @@ static char *trim(char *text)
     return text;
 }
 
-static bool read_line(srv_config *config, const char *path, size_t number, char *line, bool *seen,
-                      char *message, size_t size)
+/* A line of the file; reading it overwrites its text. */
+typedef struct line {
+    const char *path;
+    size_t number; /* from 1 */
+    char *text;
+} line;
+
+static bool read_line(srv_config *config, const line *at, bool *seen, char *message, size_t size)
 {
     char source[SOURCE_TEXT];
-    line = trim(line);
-    if (*line == '\0' || *line == '#') {
+    char *text = trim(at->text);
+    if (*text == '\0' || *text == '#') {
         return true;
     }
-    char *equals = strchr(line, '=');
+    char *equals = strchr(text, '=');
     if (equals != NULL) {
         *equals = '\0';
     }
-    const char *name = trim(line), *value = equals == NULL ? NULL : trim(equals + 1);
+    const char *name = trim(text), *value = equals == NULL ? NULL : trim(equals + 1);
     const srv_option *row = srv_option_find(name, strlen(name));
     if (row == NULL || !srv_option_is_setting(row)) {
         snprintf(message, size, "%s:%zu: %s \"%.40s\"; hedged --print-config lists the settings",
-                 path, number, row == NULL ? "there is no setting" : "a file cannot say", name);
+                 at->path, at->number, row == NULL ? "there is no setting" : "a file cannot say",
+                 name);
         return false;
     }
-    snprintf(source, sizeof source, "%s:%zu: %s", path, number, row->name);
+    snprintf(source, sizeof source, "%s:%zu: %s", at->path, at->number, row->name);
     if (value == NULL && !srv_option_is_switch(row)) {
         snprintf(message, size, "%s needs a value, as in \"%s = %s\"", source, row->name,
                  row->argument);
         return false;
     }
-    return srv_option_set(config, row, value == NULL ? "1" : value, source, seen, message, size);
+    const srv_option_value given = {row, value == NULL ? "1" : value, source};
+    return srv_option_set(config, &given, seen, message, size);
 }
 
 bool srv_config_read_file(srv_config *config, const char *path, char *message, size_t size)
 {
     bool seen[SRV_MOST_OPTIONS] = {false};
-    size_t length = 0, number = 1;
+    size_t length = 0;
     config->file_text = load(path, &length, message, size);
     if (config->file_text == NULL) {
         return false;
     }
     char *end = config->file_text + length;
-    for (char *line = config->file_text; line < end; number++) {
-        char *stop = memchr(line, '\n', (size_t)(end - line));
+    line at = {.path = path, .number = 1, .text = config->file_text};
+    for (; at.text < end; at.number++) {
+        char *stop = memchr(at.text, '\n', (size_t)(end - at.text));
         stop = stop == NULL ? end : stop;
         *stop = '\0';
-        if (strlen(line) != (size_t)(stop - line)) {
-            snprintf(message, size, "%s:%zu: a zero byte: this is no text", path, number);
+        if (strlen(at.text) != (size_t)(stop - at.text)) {
+            snprintf(message, size, "%s:%zu: a zero byte: this is no text", path, at.number);
             return false;
         }
-        if (!read_line(config, path, number, line, seen, message, size)) {
+        if (!read_line(config, &at, seen, message, size)) {
             return false;
         }
-        line = stop + 1;
+        at.text = stop + 1;
     }
     return true;
 }

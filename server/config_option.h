@@ -52,12 +52,20 @@ bool srv_option_choice(const srv_option *row, const char *text, uint64_t *out);
 /* Appends the value of a setting or a source to `out`, as a configuration file would have it. */
 void srv_option_write(const srv_option *row, const srv_config *config, api_text *out);
 
-/* Sets an option. `source` is what the user wrote, "--listen", "HEDGE_LISTEN" or "hedged.conf:3:
- * listen"; the sentence in `message` begins with it if the value is refused. Items that one source
- * (the file, the environment or the flags) gives for a list add up, and replace those of sources
- * that it overrides. So `seen` has an entry per row that says whether the present source has set
- * that option before; all are false at first. */
-bool srv_option_set(srv_config *config, const srv_option *row, const char *text, const char *source,
-                    bool *seen, char *message, size_t size);
+/* The value that an option is given. */
+typedef struct srv_option_value {
+    const srv_option *row;
+    const char *text;
+    /* What the user wrote: "--listen", "HEDGE_LISTEN" or "hedged.conf:3: listen". It begins the
+     * sentence that refuses the value. */
+    const char *source;
+} srv_option_value;
+
+/* Sets an option. Returns false with a sentence in `message` if the value is refused. Items that
+ * one source (the file, the environment or the flags) gives for a list add up, and replace those of
+ * sources that it overrides. So `seen` has an entry per row that says whether the present source
+ * has set that option before; all are false at first. */
+bool srv_option_set(srv_config *config, const srv_option_value *given, bool *seen, char *message,
+                    size_t size);
 
 #endif

@@ -16,7 +16,15 @@ typedef struct options {
     he_weight weight;
     double crease;
     he_watch *watch; /* the exchange's */
+    /* Limits the sum of the squared numbers of corners of the faces around listed elements. */
+    uint64_t most;
 } options;
+
+/* The elements that are measured. */
+typedef struct selection {
+    const uint32_t *ids; /* NULL: all live elements, in the order of ids */
+    size_t count;
+} selection;
 
 typedef struct measure {
     he_kind of;
@@ -25,11 +33,9 @@ typedef struct measure {
     enum { PLAIN, WEIGHTS, CREASE } option;
     /* Measures one element; NULL if `many` is used for that, too. */
     he_status (*one)(const he_mesh *m, uint32_t id, const options *o, double *out, he_error *err);
-    /* Measures the listed elements, or, if `of` is NULL, all live elements in the order of ids. If
-     * this function is missing (NULL), elements are measured one by one. `most` limits the sum of
-     * the squared numbers of corners of the faces around listed elements. */
-    he_status (*many)(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
-                      uint64_t most, double *out, he_error *err);
+    /* Measures many elements. If this function is missing (NULL), they are measured one by one. */
+    he_status (*many)(const he_mesh *m, const selection *of, const options *o, double *out,
+                      he_error *err);
 } measure;
 
 static void put(he_vec3 v, double *out)
@@ -71,10 +77,10 @@ static he_vec3 *rows_new(const he_mesh *m, he_kind kind, he_error *err)
     return rows;
 }
 
-static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t count,
-                                const options *o, uint64_t most, double *out, he_error *err)
+static he_status vertex_normals(const he_mesh *m, const selection *of, const options *o,
+                                double *out, he_error *err)
 {
-    (void)of, (void)count, (void)most;
+    (void)of;
     he_vec3 *rows = rows_new(m, HE_VERTEX, err);
     if (rows == NULL) {
         return HE_NO_MEMORY;
@@ -88,16 +94,16 @@ static he_status vertex_normals(const he_mesh *m, const uint32_t *of, size_t cou
 }
 
 /* Computes one kind of curvature, which is the member at offset `at` of he_curvature. */
-static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
-                           uint64_t most, size_t at, double *out, he_error *err)
+static he_status curvature(const he_mesh *m, const selection *of, const options *o, size_t at,
+                           double *out, he_error *err)
 {
-    he_curvature *all = he_mem_array(NULL, count + 1, sizeof *all);
+    he_curvature *all = he_mem_array(NULL, of->count + 1, sizeof *all);
     if (all == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the curvature of %zu vertices",
-                             count);
+                             of->count);
     }
-    he_status status = he_curvatures(m, of, count, most, o->watch, all, err);
-    for (size_t i = 0; i < count && status == HE_OK; i++) {
+    he_status status = he_curvatures(m, of->ids, of->count, o->most, o->watch, all, err);
+    for (size_t i = 0; i < of->count && status == HE_OK; i++) {
         memcpy(&out[i], (const char *)&all[i] + at, sizeof out[i]);
     }
     he_mem_free(all);
@@ -105,10 +111,10 @@ static he_status curvature(const he_mesh *m, const uint32_t *of, size_t count, c
 }
 
 #define CURVATURE(name, member)                                                                 \
-    static he_status name(const he_mesh *m, const uint32_t *of, size_t count, const options *o, \
-                          uint64_t most, double *out, he_error *err)                            \
+    static he_status name(const he_mesh *m, const selection *of, const options *o, double *out, \
+                          he_error *err)                                                        \
     {                                                                                           \
-        return curvature(m, of, count, o, most, offsetof(he_curvature, member), out, err);      \
+        return curvature(m, of, o, offsetof(he_curvature, member), out, err);                   \
     }
 CURVATURE(vertex_areas, area)
 CURVATURE(angle_defects, angle_defect)
@@ -135,10 +141,10 @@ static he_status corner_normal(const he_mesh *m, uint32_t id, const options *o, 
     return status;
 }
 
-static he_status corner_normals(const he_mesh *m, const uint32_t *of, size_t count,
-                                const options *o, uint64_t most, double *out, he_error *err)
+static he_status corner_normals(const he_mesh *m, const selection *of, const options *o,
+                                double *out, he_error *err)
 {
-    (void)of, (void)count, (void)most;
+    (void)of;
     he_vec3 *rows = rows_new(m, HE_HALFEDGE, err);
     if (rows == NULL) {
         return HE_NO_MEMORY;
@@ -171,10 +177,10 @@ static he_status dihedral(const he_mesh *m, uint32_t id, const options *o, doubl
     return HE_OK;
 }
 
-static he_status dihedrals(const he_mesh *m, const uint32_t *of, size_t count, const options *o,
-                           uint64_t most, double *out, he_error *err)
+static he_status dihedrals(const he_mesh *m, const selection *of, const options *o, double *out,
+                           he_error *err)
 {
-    (void)of, (void)count, (void)most;
+    (void)of;
     uint32_t issued = he_mesh_issued(m, HE_EDGE);
     double *rows = he_mem_array(NULL, (size_t)issued + 1, sizeof *rows);
     if (rows == NULL) {
@@ -190,10 +196,10 @@ static he_status dihedrals(const he_mesh *m, const uint32_t *of, size_t count, c
     return status;
 }
 
-static he_status edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
-                                 const options *o, uint64_t most, double *out, he_error *err)
+static he_status edge_cotangents(const he_mesh *m, const selection *of, const options *o,
+                                 double *out, he_error *err)
 {
-    return he_edge_cotangents(m, of, count, most, o->watch, out, err);
+    return he_edge_cotangents(m, of->ids, of->count, o->most, o->watch, out, err);
 }
 
 /* --- faces --- */
@@ -362,10 +368,10 @@ static uint64_t cost_of_cutting(const he_mesh *m)
     return cost;
 }
 
-static bool pay(api_asker *a, const api_in *question, const asked *q, const uint32_t *of,
-                size_t count)
+static bool pay(api_asker *a, const api_in *question, const asked *q, const selection *of)
 {
-    if (of == NULL) {
+    const size_t count = of->count;
+    if (of->ids == NULL) {
         uint64_t pass = api_elements_of(a->mesh);
         pass += q->as_text ? (uint64_t)count * q->measure->components : 0;
         if (!api_asker_waits(a, (double)pass / API_MEASURE_PER_SECOND)) {
@@ -381,7 +387,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
     }
     uint64_t cost = 0;
     for (size_t i = 0; i < count && cost <= api_asker_left(a); i++) {
-        cost += cost_of(a->mesh, q, of[i], api_asker_left(a));
+        cost += cost_of(a->mesh, q, of->ids[i], api_asker_left(a));
     }
     if (cost > api_asker_left(a)) {
         return api_asker_exceed(a, question);
@@ -392,16 +398,16 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const uint
 
 /* --- answers --- */
 
-static he_status each(const he_mesh *m, const asked *q, const uint32_t *of, size_t count,
-                      he_watch *watch, double *out, he_error *err)
+static he_status each(const he_mesh *m, const asked *q, const selection *of, he_watch *watch,
+                      double *out, he_error *err)
 {
     const measure *what = q->measure;
     he_status status = HE_OK;
-    for (size_t i = 0; of != NULL && i < count && status == HE_OK; i++) {
-        status = what->one(m, of[i], &q->options, out, err);
+    for (size_t i = 0; of->ids != NULL && i < of->count && status == HE_OK; i++) {
+        status = what->one(m, of->ids[i], &q->options, out, err);
         out += what->components;
     }
-    uint32_t issued = of == NULL ? he_mesh_issued(m, q->target.kind) : 0;
+    uint32_t issued = of->ids == NULL ? he_mesh_issued(m, q->target.kind) : 0;
     for (uint32_t id = 0; id < issued && status == HE_OK; id++) {
         status = he_watch_at(watch, id, issued, err);
         if (status == HE_OK && he_mesh_is_live(m, q->target.kind, id)) {
@@ -412,19 +418,20 @@ static he_status each(const he_mesh *m, const asked *q, const uint32_t *of, size
     return status;
 }
 
-static bool find(api_asker *a, const api_in *question, const asked *q, const uint32_t *of,
-                 size_t count, double *out)
+static bool find(api_asker *a, const api_in *question, const asked *q, const selection *of,
+                 double *out)
 {
     he_error err = {0};
-    if (!pay(a, question, q, of, count)) {
+    if (!pay(a, question, q, of)) {
         return false;
     }
-    uint64_t most = of == NULL ? UINT64_MAX : api_asker_left(a);
-    bool whole = q->measure->one == NULL || (of == NULL && q->measure->many != NULL);
+    bool all = of->ids == NULL;
+    bool whole = q->measure->one == NULL || (all && q->measure->many != NULL);
     options chosen = q->options;
     chosen.watch = &a->x->watch;
-    he_status status = whole ? q->measure->many(a->mesh, of, count, &chosen, most, out, &err)
-                             : each(a->mesh, q, of, count, &a->x->watch, out, &err);
+    chosen.most = all ? UINT64_MAX : api_asker_left(a);
+    he_status status = whole ? q->measure->many(a->mesh, of, &chosen, out, &err)
+                             : each(a->mesh, q, of, &a->x->watch, out, &err);
     return status == HE_OK || api_asker_refuse(a, question, &err);
 }
 
@@ -445,7 +452,7 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, dou
     if (values == NULL) {
         return api_in_fail(question, HE_NO_MEMORY, "no memory for %zu values", *count);
     }
-    if (!find(a, question, q, q->target.of, *count, values)) {
+    if (!find(a, question, q, &(selection){q->target.of, *count}, values)) {
         he_mem_free(values);
         return false;
     }
@@ -511,7 +518,7 @@ bool api_measure_ask(api_asker *a, const api_in *question)
     if (q.target.dense) {
         return ask_many(a, question, &q);
     }
-    if (!find(a, question, &q, &q.target.id, 1, value)) {
+    if (!find(a, question, &q, &(selection){&q.target.id, 1}, value)) {
         return false;
     }
     api_out_object_begin(a->out);

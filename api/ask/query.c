@@ -147,8 +147,9 @@ static void answer_octets(api_exchange *x, api_asker *a, const api_in *question)
         free_octets(o);
         return;
     }
-    int64_t length = (int64_t)(o->blocks[0].length + o->blocks[1].length);
-    api_answer_stream(x, 200, "application/octet-stream", length, read_octets, o, free_octets);
+    const int64_t length = (int64_t)(o->blocks[0].length + o->blocks[1].length);
+    const api_stream stream = {length, read_octets, o, free_octets};
+    api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
 /* --- the handler --- */

@@ -16,21 +16,27 @@
  * is lower. */
 enum { FLOOD_COST = 8 };
 
-static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds,
-                     he_kind *kind, uint32_t *id)
+/* An element at which a walk begins or ends. */
+typedef struct end {
+    he_kind kind;
+    uint32_t id;
+} end;
+
+/* Reads the member `name` of a walk: a live element of one of the kinds in this bit set. */
+static bool read_end(api_asker *a, const api_in *walk, const char *name, unsigned kinds, end *out)
 {
     api_in in;
-    return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, kind, id);
+    return api_in_need(walk, name, &in) && api_asker_element(a, &in, kinds, &out->kind, &out->id);
 }
 
 /* Writes the beginning of every answer. */
-static void begin_answer(api_asker *a, const char *walk, he_kind kind, uint32_t from)
+static void begin_answer(api_asker *a, const char *walk, end from)
 {
     api_out_object_begin(a->out);
     api_out_key_u64(a->out, "revision", a->revision);
     api_out_key_string(a->out, "walk", walk);
     api_out_key(a->out, "from");
-    api_write_reference(a->out, kind, from);
+    api_write_reference(a->out, from.kind, from.id);
 }
 
 /* Returns true if a walk has more elements than an answer may have. */
@@ -47,7 +53,7 @@ static const char *const until_names[] = {"start", "boundary", NULL};
 static const he_until untils[] = {HE_UNTIL_START, HE_UNTIL_BOUNDARY};
 
 typedef struct path {
-    uint32_t from;
+    end from;
     he_path_steps steps;
     bool has_repeat;
     const char *until_name; /* NULL: only the count ends the path */
@@ -78,11 +84,10 @@ static bool read_path(api_asker *a, const api_in *walk, path *out)
 {
     static const char *const members[] = {"walk", "from", "path", "repeat", "until", NULL};
     api_in in;
-    he_kind kind;
     int choice;
     *out = (path){.steps = {.repeat = 1, .until = HE_UNTIL_COUNT}};
     if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &out->from) ||
+        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &out->from) ||
         !read_steps(a, walk, out)) {
         return false;
     }
@@ -100,7 +105,7 @@ static bool read_path(api_asker *a, const api_in *walk, path *out)
 
 static void write_path(api_asker *a, const path *p)
 {
-    begin_answer(a, "path", HE_HALFEDGE, p->from);
+    begin_answer(a, "path", p->from);
     api_out_key(a->out, "path");
     api_out_array_begin(a->out);
     for (size_t i = 0; i < p->steps.count; i++) {
@@ -133,8 +138,8 @@ static bool ask_path(api_asker *a, const api_in *walk)
         return api_asker_exceed(a, walk);
     }
     p.steps.limit = limit;
-    if (he_traverse_path(a->mesh, (he_halfedge){p.from}, &p.steps, &a->x->watch, &a->first, &err) !=
-        HE_OK) {
+    if (he_traverse_path(a->mesh, (he_halfedge){p.from.id}, &p.steps, &a->x->watch, &a->first,
+                         &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     api_asker_pay(a, a->first.count);
@@ -147,24 +152,23 @@ static bool ask_path(api_asker *a, const api_in *walk)
 static bool ask_loop(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", NULL};
-    he_kind kind;
-    uint32_t from;
+    end from;
     he_error err = {0};
     if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &kind, &from)) {
+        !read_end(a, walk, "from", API_KIND_BIT(HE_HALFEDGE), &from)) {
         return false;
     }
     if (a->reads_only) {
         return true;
     }
-    if (he_traverse_loop(a->mesh, (he_halfedge){from}, &a->first, &err) != HE_OK) {
+    if (he_traverse_loop(a->mesh, (he_halfedge){from.id}, &a->first, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     if (is_too_long(&a->first)) {
         return api_asker_exceed(a, walk);
     }
     api_asker_pay(a, 2 * a->first.count);
-    begin_answer(a, "loop", kind, from);
+    begin_answer(a, "loop", from);
     api_out_key_ids(a->out, "halfedges", a->first.ids, a->first.count);
     api_out_key(a->out, "vertices");
     api_out_array_begin(a->out);
@@ -172,7 +176,7 @@ static bool ask_loop(api_asker *a, const api_in *walk)
         api_out_id(a->out, he_origin(a->mesh, (he_halfedge){a->first.ids[i]}).i);
     }
     api_out_array_end(a->out);
-    api_out_key_id(a->out, "face", he_face_of(a->mesh, (he_halfedge){from}).i);
+    api_out_key_id(a->out, "face", he_face_of(a->mesh, (he_halfedge){from.id}).i);
     api_out_object_end(a->out);
     return true;
 }
@@ -213,29 +217,27 @@ static bool ask_rings(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "depth", NULL};
     api_in in;
-    he_kind kind;
-    uint32_t from;
+    end from;
     uint64_t depth;
-    if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &kind, &from) ||
+    if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &from) ||
         !api_in_need(walk, "depth", &in) || !api_in_u64(&in, 0, API_MAX_WALK, &depth)) {
         return false;
     }
     if (a->reads_only) {
         return true;
     }
-    if (!flood(a, walk, &(he_breadth_first){kind, from, (uint32_t)depth, 0})) {
+    if (!flood(a, walk, &(he_breadth_first){from.kind, from.id, (uint32_t)depth, 0})) {
         return false;
     }
-    begin_answer(a, "rings", kind, from);
+    begin_answer(a, "rings", from);
     api_out_key_u64(a->out, "depth", depth);
     api_out_key(a->out, "rings");
     api_out_array_begin(a->out);
-    for (size_t i = 0, end; i < a->first.count; i = end) {
-        for (end = i + 1; end < a->first.count && a->second.ids[end] == a->second.ids[i];) {
-            end++;
+    for (size_t i = 0, next; i < a->first.count; i = next) {
+        for (next = i + 1; next < a->first.count && a->second.ids[next] == a->second.ids[i];) {
+            next++;
         }
-        api_out_ids(a->out, a->first.ids + i, end - i);
+        api_out_ids(a->out, a->first.ids + i, next - i);
     }
     api_out_array_end(a->out);
     api_out_object_end(a->out);
@@ -246,11 +248,10 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "depth", "limit", NULL};
     api_in in;
-    he_kind kind;
-    uint32_t from;
+    end from;
     uint64_t depth = HE_NONE, limit = 0;
     if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX) | API_KIND_BIT(HE_FACE), &kind, &from)) {
+        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX) | API_KIND_BIT(HE_FACE), &from)) {
         return false;
     }
     if (api_in_find(walk, "depth", &in) && !api_in_u64(&in, 0, API_MAX_WALK, &depth)) {
@@ -262,10 +263,10 @@ static bool ask_breadth_first(api_asker *a, const api_in *walk)
     if (a->reads_only) {
         return true;
     }
-    if (!flood(a, walk, &(he_breadth_first){kind, from, (uint32_t)depth, (size_t)limit})) {
+    if (!flood(a, walk, &(he_breadth_first){from.kind, from.id, (uint32_t)depth, (size_t)limit})) {
         return false;
     }
-    begin_answer(a, "breadth_first", kind, from);
+    begin_answer(a, "breadth_first", from);
     if (depth != HE_NONE) {
         api_out_key_u64(a->out, "depth", depth);
     }
@@ -300,12 +301,10 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
 {
     static const char *const members[] = {"walk", "from", "to", "by", NULL};
     api_in in;
-    he_kind kind;
-    uint32_t from, to;
+    end from, to;
     int by = HE_BY_LENGTH;
-    if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &kind, &from) ||
-        !read_end(a, walk, "to", API_KIND_BIT(HE_VERTEX), &kind, &to)) {
+    if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_VERTEX), &from) ||
+        !read_end(a, walk, "to", API_KIND_BIT(HE_VERTEX), &to)) {
         return false;
     }
     if (api_in_find(walk, "by", &in) && !api_in_choice(&in, measure_names, &by)) {
@@ -322,16 +321,16 @@ static bool ask_shortest_path(api_asker *a, const api_in *walk)
     }
     he_path found = {0};
     he_error err = {0};
-    if (he_traverse_shortest_path(a->mesh, (he_vertex){from}, (he_vertex){to}, (he_measure)by,
+    if (he_traverse_shortest_path(a->mesh, (he_vertex){from.id}, (he_vertex){to.id}, (he_measure)by,
                                   &found, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     bool short_enough = !is_too_long(&found.vertices) || api_asker_exceed(a, walk);
     if (short_enough) {
         api_asker_pay(a, found.visited);
-        begin_answer(a, "shortest_path", kind, from);
+        begin_answer(a, "shortest_path", from);
         api_out_key(a->out, "to");
-        api_write_reference(a->out, kind, to);
+        api_write_reference(a->out, to.kind, to.id);
         api_out_key_string(a->out, "by", measure_names[by]);
         write_shortest_path(a, &found);
         api_out_object_end(a->out);
@@ -346,25 +345,23 @@ static bool ask_edges(api_asker *a, const api_in *walk, const char *name,
                       he_status (*find)(const he_mesh *, he_edge, he_ids *, bool *, he_error *))
 {
     static const char *const members[] = {"walk", "from", NULL};
-    he_kind kind;
-    uint32_t from;
+    end from;
     bool closed;
     he_error err = {0};
-    if (!api_in_only(walk, members) ||
-        !read_end(a, walk, "from", API_KIND_BIT(HE_EDGE), &kind, &from)) {
+    if (!api_in_only(walk, members) || !read_end(a, walk, "from", API_KIND_BIT(HE_EDGE), &from)) {
         return false;
     }
     if (a->reads_only) {
         return true;
     }
-    if (find(a->mesh, (he_edge){from}, &a->first, &closed, &err) != HE_OK) {
+    if (find(a->mesh, (he_edge){from.id}, &a->first, &closed, &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }
     if (is_too_long(&a->first)) {
         return api_asker_exceed(a, walk);
     }
     api_asker_pay(a, 4 * (uint64_t)a->first.count);
-    begin_answer(a, name, kind, from);
+    begin_answer(a, name, from);
     api_out_key_ids(a->out, "edges", a->first.ids, a->first.count);
     api_out_key_bool(a->out, "closed", closed);
     api_out_object_end(a->out);

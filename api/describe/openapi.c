@@ -175,17 +175,25 @@ static void write_events_schema(api_out *out, const char *event)
     api_out_object_end(out);
 }
 
-/* Writes the media types of a body. `item` is the schema of an event or of a line; the latter is an
- * extension, since OpenAPI has a keyword for it (itemSchema) only from 3.2 on. `example` returns an
- * example body for `route`. */
-static void write_content(api_out *out, const char *const *types, const char *schema,
-                          const char *item,
-                          const char *(*example)(const char *route, const char *media),
-                          const char *route)
+/* The body of a request or of an answer. */
+typedef struct content {
+    const char *const *types; /* its media types; ends in NULL */
+    const char *schema;       /* of JSON; NULL: any */
+    /* The schema of an event or of a line; NULL: none. That of a line is an extension, since
+     * OpenAPI has a keyword for it (itemSchema) only from 3.2 on. */
+    const char *item;
+    /* Returns an example of the body for `route`, or NULL. */
+    const char *(*example)(const char *route, const char *media);
+    const char *route;
+} content;
+
+/* Writes the media types of a body. */
+static void write_content(api_out *out, const content *body)
 {
+    const char *schema = body->schema, *item = body->item;
     api_out_key(out, "content");
     api_out_object_begin(out);
-    for (; *types != NULL; types++) {
+    for (const char *const *types = body->types; *types != NULL; types++) {
         api_out_key(out, *types);
         api_out_object_begin(out);
         size_t length = strlen(*types);
@@ -208,12 +216,12 @@ static void write_content(api_out *out, const char *const *types, const char *sc
         } else {
             write_bytes_schema(out, *types);
         }
-        const char *body = example(route, *types);
-        if (body != NULL && json) {
+        const char *example = body->example(body->route, *types);
+        if (example != NULL && json) {
             api_out_key(out, "example");
-            api_out_raw(out, body, strlen(body));
-        } else if (body != NULL) {
-            api_out_key_string(out, "example", body);
+            api_out_raw(out, example, strlen(example));
+        } else if (example != NULL) {
+            api_out_key_string(out, "example", example);
         }
         api_out_object_end(out);
     }
@@ -318,11 +326,17 @@ static void write_success(api_out *out, const api_route *route, int status)
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
     if (status == 202) {
-        write_content(out, job_media, "job", NULL, api_example_response, "delete_job");
+        write_content(out, &(content){.types = job_media,
+                                      .schema = "job",
+                                      .example = api_example_response,
+                                      .route = "delete_job"});
     }
     if (status == 200 || status == 201) {
-        write_content(out, route->produces, route->response, route->item, api_example_response,
-                      route->name);
+        write_content(out, &(content){.types = route->produces,
+                                      .schema = route->response,
+                                      .item = route->item,
+                                      .example = api_example_response,
+                                      .route = route->name});
     }
     api_out_object_end(out);
 }
@@ -507,7 +521,10 @@ static void write_operation(api_out *out, const api_route *route)
         api_out_key(out, "requestBody");
         api_out_object_begin(out);
         api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
-        write_content(out, route->consumes, route->request, NULL, api_example_request, route->name);
+        write_content(out, &(content){.types = route->consumes,
+                                      .schema = route->request,
+                                      .example = api_example_request,
+                                      .route = route->name});
         api_out_object_end(out);
     }
     write_security(out, route);
@@ -593,7 +610,8 @@ static void write_problem(api_out *out, const char *name, const char *header, co
     refer_to_headers(out, coding_headers);
     refer_to_headers(out, rate_headers);
     api_out_object_end(out);
-    write_content(out, problem, "problem", NULL, example_problem, NULL);
+    write_content(out,
+                  &(content){.types = problem, .schema = "problem", .example = example_problem});
     api_out_object_end(out);
 }
 

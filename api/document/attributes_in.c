@@ -329,7 +329,7 @@ static bool take_key(api_attributes_in *in, const he_lexer *x, api_members **int
     return true;
 }
 
-static bool take_close(api_attributes_in *in, const he_lexer *x, bool *done)
+static bool take_close(api_attributes_in *in, const he_lexer *x)
 {
     switch (x->depth) {
     case IN_VALUES:
@@ -337,20 +337,19 @@ static bool take_close(api_attributes_in *in, const he_lexer *x, bool *done)
     case IN_LIST:
         return end_object(in);
     default:
-        *done = x->depth == IN_DOCUMENT;
         return true;
     }
 }
 
 bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, api_members **into,
-                            bool *done, api_problem *problem)
+                            api_problem *problem)
 {
     in->problem = problem;
     if (token == HE_TOKEN_KEY) {
         return take_key(in, x, into);
     }
     if (token == HE_TOKEN_CLOSE) {
-        return take_close(in, x, done);
+        return take_close(in, x);
     }
     return token == HE_TOKEN_ARRAY || token == HE_TOKEN_OBJECT || take_value(in, x, token);
 }

@@ -27,10 +27,10 @@ void api_attributes_in_free(api_attributes_in *in);
  * stand there. If it is an array of numbers, reads it at once and sets `*taken`. */
 bool api_attributes_in_expect(api_attributes_in *in, he_lexer *x, bool *taken,
                               api_problem *problem);
-/* Handles a token. `*into` is set if the next member is small and must be gathered, and `*done`
- * when the array has ended. */
+/* Handles a token. `*into` is set if the next member is small and must be gathered. The array ends
+ * with the token that closes it, when the lexer is in the document again. */
 bool api_attributes_in_take(api_attributes_in *in, he_lexer *x, he_token token, api_members **into,
-                            bool *done, api_problem *problem);
+                            api_problem *problem);
 /* Returns true if the document has attribute values of edges or half-edges. */
 bool api_attributes_in_has_edges(const api_attributes_in *in);
 /* Moves the values of vertices and faces into the soup of a document that is to be repaired before

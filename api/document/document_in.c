@@ -327,7 +327,6 @@ static bool expect(api_document_in *in, bool *taken)
 
 static bool take(api_document_in *in, he_token token)
 {
-    bool done = false;
     switch (in->member) {
     case NO_MEMBER:
         return token != HE_TOKEN_KEY || open_member(in);
@@ -335,11 +334,13 @@ static bool take(api_document_in *in, he_token token)
     case FACES:
         return take_in_list(in, token);
     case ATTRIBUTES:
-        if (!api_attributes_in_take(in->attributes, &in->lexer, token, &in->gathering, &done,
+        if (!api_attributes_in_take(in->attributes, &in->lexer, token, &in->gathering,
                                     in->problem)) {
             return false;
         }
-        in->member = done ? NO_MEMBER : ATTRIBUTES;
+        if (token == HE_TOKEN_CLOSE && in->lexer.depth == IN_DOCUMENT) {
+            in->member = NO_MEMBER;
+        }
         return in->gathering == NULL || gather(in, in->gathering);
     }
     return true;

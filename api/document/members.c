@@ -14,15 +14,15 @@ void api_members_empty(api_members *m)
 
 /* Appends bytes to the gathered members. The first of them is byte `place` of what the client
  * sent. */
-static bool add(api_members *m, const he_lexer *x, const char *bytes, size_t length, uint64_t place,
+static bool add(api_members *m, const he_lexer *x, api_bytes bytes, uint64_t place,
                 api_problem *problem)
 {
     size_t room = m->most - m->text.length;
-    if (length > room) {
+    if (bytes.length > room) {
         api_json_refuse_at(problem, place + room, HE_LIMIT, "%s exceed %zu bytes", m->what,
                            m->most);
     } else {
-        api_text_add(&m->text, bytes, length);
+        api_text_add(&m->text, bytes.at, bytes.length);
         if (!m->text.failed) {
             return true;
         }
@@ -46,9 +46,9 @@ bool api_members_begin(api_members *m, he_lexer *x, api_problem *problem)
     m->name_most = x->name_most;
     x->name_most = SIZE_MAX;
     x->depth_most = m->depth + API_MAX_DEPTH - 1;
-    return add(m, x, first ? "{\"" : ",\"", 2, place, problem) &&
-           add(m, x, object->name, object->name_length, place, problem) &&
-           add(m, x, "\":", 2, place, problem);
+    return add(m, x, (api_bytes){first ? "{\"" : ",\"", 2}, place, problem) &&
+           add(m, x, (api_bytes){object->name, object->name_length}, place, problem) &&
+           add(m, x, (api_bytes){"\":", 2}, place, problem);
 }
 
 /* Appends the bytes of the lexer's piece that it has passed. */
@@ -56,8 +56,8 @@ static bool add_passed(api_members *m, const he_lexer *x, api_problem *problem)
 {
     const char *from = m->from != NULL ? m->from : x->begin;
     m->from = NULL;
-    return add(m, x, from, (size_t)(x->at - from), x->offset + (uint64_t)(from - x->begin),
-               problem);
+    return add(m, x, (api_bytes){from, (size_t)(x->at - from)},
+               x->offset + (uint64_t)(from - x->begin), problem);
 }
 
 bool api_members_feed(api_members *m, he_lexer *x, bool *done, api_problem *problem)
@@ -86,6 +86,6 @@ bool api_members_parse(api_members *m, api_document *out, api_in *root, api_prob
 {
     api_text_add_string(&m->text, m->text.length == 0 ? "{}" : "}");
     return !m->text.failed
-               ? api_document_parse_scanned(m->text.bytes, m->text.length, out, root, problem)
+               ? api_document_parse_scanned(api_text_bytes(&m->text), out, root, problem)
                : api_problem_set(problem, HE_NO_MEMORY, "no memory for %s", m->what);
 }

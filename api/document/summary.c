@@ -218,7 +218,8 @@ void api_summary_cold(api_exchange *x, st_cold *cold)
          * answer. The answer to HEAD is the one without a coding, whose tag is as good as that of
          * the compressed answer in every precondition. */
         x->codings.best = API_IDENTITY;
-        api_answer_stream(x, 200, "application/json", -1, read_nothing, NULL, NULL);
+        const api_stream nothing = {.length = -1, .read = read_nothing};
+        api_answer_stream(x, 200, "application/json", &nothing);
     }
 }
 

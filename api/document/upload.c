@@ -610,19 +610,26 @@ static void write_note(api_out *out, const he_notes *notes, size_t i)
     api_out_object_end(out);
 }
 
-/* Writes a warning about vertices of the mesh, with the place of the first of them in the file. */
-static void write_vertices(api_out *out, const upload *u, const char *code, const char *detail,
-                           uint64_t count, const he_ids *ids)
+/* A warning about vertices of the mesh. */
+typedef struct vertex_warning {
+    const char *code, *detail;
+    uint64_t count;
+    const he_ids *ids; /* the first of them, or all */
+} vertex_warning;
+
+/* Writes a warning with the place of its first vertex in the file. */
+static void write_vertices(api_out *out, const upload *u, const vertex_warning *warning)
 {
+    const he_ids *ids = warning->ids;
     size_t named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
     const he_places *places = u->has_import ? &u->import.vertices : NULL;
-    if (count == 0) {
+    if (warning->count == 0) {
         return;
     }
     api_out_object_begin(out);
-    api_out_key_string(out, "code", code);
-    api_out_key_string(out, "detail", detail);
-    api_out_key_u64(out, "count", count);
+    api_out_key_string(out, "code", warning->code);
+    api_out_key_string(out, "detail", warning->detail);
+    api_out_key_u64(out, "count", warning->count);
     if (places != NULL && places->unit != HE_PLACE_NONE && places->count > 0) {
         uint32_t v = ids->ids[0];
         v = u->repaired.vertex_from == NULL ? v : u->repaired.vertex_from[v];
@@ -669,6 +676,11 @@ static void write_attributes(api_out *out, const upload *u)
 void api_upload_write_report(api_exchange *x)
 {
     const upload *u = x->state;
+    const vertex_warning bowties = {"bowtie",
+                                    "fans of faces meet at a vertex without sharing an edge",
+                                    u->bowties.count, &u->bowties};
+    const vertex_warning isolated = {"isolated_vertices", "no face has these vertices", u->isolated,
+                                     &u->isolated_ids};
     api_out *out = &x->out;
     api_out_key(out, "import");
     api_out_object_begin(out);
@@ -685,10 +697,8 @@ void api_upload_write_report(api_exchange *x)
     for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {
         write_note(out, &u->import.notes, i);
     }
-    write_vertices(out, u, "bowtie", "fans of faces meet at a vertex without sharing an edge",
-                   u->bowties.count, &u->bowties);
-    write_vertices(out, u, "isolated_vertices", "no face has these vertices", u->isolated,
-                   &u->isolated_ids);
+    write_vertices(out, u, &bowties);
+    write_vertices(out, u, &isolated);
     write_seams(out, u);
     api_out_array_end(out);
     if (u->has_import && u->import.notes.more > 0) {

@@ -203,7 +203,11 @@ st_status api_event_follow(st_mesh *mesh, const st_since *since, api_backfills *
         free_stream(s);
         return status;
     }
-    *out = (api_source){
-        .self = s, .start = start, .read = read_stream, .finish = finish, .free = free_stream};
+    *out = (api_source){.self = s,
+                        .start = start,
+                        .read = read_stream,
+                        .finish = finish,
+                        .free = free_stream,
+                        .idle = API_EVENT_IDLE};
     return ST_OK;
 }

@@ -15,20 +15,20 @@ static int hex(char c)
 
 /* Decodes percent escapes into the arena. Returns NULL with the problem filled if an escape is
  * malformed or memory is out. */
-static const char *decode(const char *raw, size_t length, int code, bool slash, api_arena *arena,
+static const char *decode(api_bytes raw, int code, bool slash, api_arena *arena,
                           api_problem *problem)
 {
-    char *out = api_arena_alloc(arena, length + 1);
+    char *out = api_arena_alloc(arena, raw.length + 1);
     if (out == NULL) {
         api_problem_set(problem, HE_NO_MEMORY, "no memory to read the request line");
         return NULL;
     }
     size_t used = 0;
-    for (size_t i = 0; i < length; i++) {
-        char c = raw[i];
+    for (size_t i = 0; i < raw.length; i++) {
+        char c = raw.at[i];
         if (c == '%') {
-            int high = i + 2 < length ? hex(raw[i + 1]) : -1;
-            int low = high >= 0 ? hex(raw[i + 2]) : -1;
+            int high = i + 2 < raw.length ? hex(raw.at[i + 1]) : -1;
+            int low = high >= 0 ? hex(raw.at[i + 2]) : -1;
             if (low < 0) {
                 api_problem_set(problem, code, "'%%' must be followed by two hexadecimal digits");
                 return NULL;
@@ -67,7 +67,8 @@ bool api_path_split(const char *raw, api_arena *arena, api_path *out, api_proble
             return api_problem_set(problem, API_NO_SUCH_ROUTE,
                                    "the path is longer than any path of this server");
         }
-        const char *segment = decode(at, length, API_BAD_PATH, end == NULL, arena, problem);
+        const char *segment =
+            decode((api_bytes){at, length}, API_BAD_PATH, end == NULL, arena, problem);
         if (segment == NULL) {
             return false;
         }
@@ -101,12 +102,13 @@ bool api_query_split(const char *raw, api_arena *arena, api_query *out, api_prob
                                    API_MAX_PARAMETERS);
         }
         api_pair *pair = &query.pairs[query.count++];
-        pair->name = decode(raw, (size_t)(equals - raw), API_BAD_QUERY, true, arena, problem);
+        const api_bytes name = {raw, (size_t)(equals - raw)};
+        const api_bytes value = {equals + 1, (size_t)(raw + length - equals - 1)};
+        pair->name = decode(name, API_BAD_QUERY, true, arena, problem);
         if (pair->name == NULL) {
             return false;
         }
-        pair->value = decode(equals + 1, (size_t)(raw + length - equals - 1), API_BAD_QUERY, true,
-                             arena, problem);
+        pair->value = decode(value, API_BAD_QUERY, true, arena, problem);
         if (pair->value == NULL) {
             return false;
         }

@@ -62,9 +62,8 @@ static inline bool api_job_entry_has_ended(const api_job_entry *job)
 {
     return job->facts.state >= API_JOB_DONE;
 }
-/* Finds a job. Returns NULL if no job has this id or the viewer may not see it. */
-api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *viewer,
-                                  const char *id);
+/* Finds a job. Returns NULL if no job has the id or the viewer may not see it. */
+api_job_entry *api_job_entry_find(const api_job_table *table, api_job_wanted wanted);
 static inline bool api_job_entry_is_seen(const api_job_entry *job, const api_token *viewer)
 {
     return api_token_owns(viewer, job->facts.holder, job->facts.mesh);

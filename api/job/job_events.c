@@ -2,6 +2,7 @@
  * for it, so no events are queued for slow listeners. */
 #include "api/job/job_entry.h"
 
+#include "api/event/events.h"
 #include "api/job/job_out.h"
 #include "base/mem.h"
 
@@ -127,15 +128,14 @@ static void leave(void *self)
     he_mem_free(l);
 }
 
-st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,
-                         api_source *out)
+st_status api_job_follow(api_job_table *table, api_job_wanted wanted, api_source *out)
 {
     api_job_listener *l = he_mem_zero(1, sizeof *l);
     if (l == NULL) {
         return ST_NO_MEMORY;
     }
     pthread_mutex_lock(&table->lock);
-    api_job_entry *job = api_job_entry_find(table, viewer, id);
+    api_job_entry *job = api_job_entry_find(table, wanted);
     st_status status = job == NULL                             ? ST_ABSENT
                        : table->listeners >= API_JOB_LISTENERS ? ST_LISTENERS
                                                                : ST_OK;
@@ -149,7 +149,11 @@ st_status api_job_follow(api_job_table *table, const api_token *viewer, const ch
         return status;
     }
     l->job = job;
-    *out = (api_source){
-        .self = l, .start = start, .read = read_messages, .finish = finish, .free = leave};
+    *out = (api_source){.self = l,
+                        .start = start,
+                        .read = read_messages,
+                        .finish = finish,
+                        .free = leave,
+                        .idle = API_EVENT_IDLE};
     return ST_OK;
 }

@@ -136,14 +136,13 @@ api_job_table *api_job_table_new(const api_job_table_options *options)
     return table;
 }
 
-api_job_entry *api_job_entry_find(const api_job_table *table, const api_token *viewer,
-                                  const char *id)
+api_job_entry *api_job_entry_find(const api_job_table *table, api_job_wanted wanted)
 {
     api_job_entry *j = table->first;
-    while (j != NULL && strcmp(j->facts.id, id) != 0) {
+    while (j != NULL && strcmp(j->facts.id, wanted.id) != 0) {
         j = j->next;
     }
-    return j != NULL && api_job_entry_is_seen(j, viewer) ? j : NULL;
+    return j != NULL && api_job_entry_is_seen(j, wanted.viewer) ? j : NULL;
 }
 
 /* --- running --- */
@@ -500,12 +499,12 @@ st_status api_job_submit(api_job_table *table, const api_job_work *work, const c
     return status;
 }
 
-bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
+bool api_job_find(api_job_table *table, api_job_wanted wanted,
                   void (*show)(void *context, const api_job *job), void *context)
 {
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, viewer, id);
+    api_job_entry *j = api_job_entry_find(table, wanted);
     if (j != NULL) {
         show(context, api_job_entry_facts(j));
     }
@@ -513,12 +512,11 @@ bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
     return j != NULL;
 }
 
-api_job_loan *api_job_lend(api_job_table *table, const api_token *viewer, const char *id,
-                           api_job *facts)
+api_job_loan *api_job_lend(api_job_table *table, api_job_wanted wanted, api_job *facts)
 {
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, viewer, id);
+    api_job_entry *j = api_job_entry_find(table, wanted);
     if (j != NULL) {
         j->uses++;
         *facts = *api_job_entry_facts(j);
@@ -535,7 +533,7 @@ void api_job_return(api_job_loan *loan)
     pthread_mutex_unlock(&table->lock);
 }
 
-bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
+bool api_job_list(api_job_table *table, const api_job_page *page,
                   void (*show)(void *context, const api_job *job), void *context)
 {
     size_t given = 0;
@@ -543,8 +541,8 @@ bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after,
     tidy(table, 0);
     bool more = false;
     for (api_job_entry *j = table->first; j != NULL && !more; j = j->next) {
-        if (j->facts.number > after && api_job_entry_is_seen(j, viewer)) {
-            more = given == limit;
+        if (j->facts.number > page->after && api_job_entry_is_seen(j, page->viewer)) {
+            more = given == page->limit;
             if (!more) {
                 show(context, api_job_entry_facts(j));
                 given++;
@@ -581,16 +579,15 @@ static api_job_work cancel(api_job_entry *j, st_mesh **about)
     return work;
 }
 
-st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
-                         bool *forgotten, void (*show)(void *context, const api_job *job),
-                         void *context)
+st_status api_job_remove(api_job_table *table, api_job_wanted wanted, bool *forgotten,
+                         void (*show)(void *context, const api_job *job), void *context)
 {
     api_job_work over = {.self = NULL};
     st_mesh *about = NULL;
     api_job facts = {.number = 0};
     pthread_mutex_lock(&table->lock);
     tidy(table, 0);
-    api_job_entry *j = api_job_entry_find(table, viewer, id);
+    api_job_entry *j = api_job_entry_find(table, wanted);
     st_status status = j == NULL ? ST_ABSENT : ST_OK;
     *forgotten = j != NULL && api_job_entry_has_ended(j);
     if (*forgotten) {

@@ -94,30 +94,39 @@ typedef struct api_job_work {
 st_status api_job_submit(api_job_table *table, const api_job_work *work, const char *operation,
                          const char *mesh, api_job *out);
 
-/* In the following functions `viewer` is the token of the client that asks. Jobs that it does not
- * own (api_token_owns) do not exist for it. */
+/* The job that a client asks for. */
+typedef struct api_job_wanted {
+    /* The client's token; NULL: the server asks for none. Jobs that it does not own
+     * (api_token_owns) do not exist for the client. */
+    const api_token *viewer;
+    const char *id;
+} api_job_wanted;
 
-/* Calls `show` with the job with this id, while the table's lock is held. Returns false if there is
- * no such job. */
-bool api_job_find(api_job_table *table, const api_token *viewer, const char *id,
+/* Calls `show` with a job, while the table's lock is held. Returns false if there is no such
+ * job. */
+bool api_job_find(api_job_table *table, api_job_wanted wanted,
                   void (*show)(void *context, const api_job *job), void *context);
-/* Borrows the job with this id, with its answer, until api_job_return; `*facts` describes the job
- * as it is now. Returns NULL if there is none. */
+/* Borrows a job, with its answer, until api_job_return; `*facts` describes the job as it is now.
+ * Returns NULL if there is no such job. */
 typedef struct api_job_entry api_job_loan;
-api_job_loan *api_job_lend(api_job_table *table, const api_token *viewer, const char *id,
-                           api_job *facts);
+api_job_loan *api_job_lend(api_job_table *table, api_job_wanted wanted, api_job *facts);
 void api_job_return(api_job_loan *loan);
-/* Calls `show` with up to `limit` jobs whose numbers are above `after`, in the order of numbers.
- * Returns true if there are more. */
-bool api_job_list(api_job_table *table, const api_token *viewer, uint64_t after, size_t limit,
+/* A page of the list of the jobs that a client's token owns, in the order of their numbers. */
+typedef struct api_job_page {
+    const api_token *viewer; /* as in api_job_wanted */
+    uint64_t after;          /* the number of the last job before the page */
+    size_t limit;            /* how many jobs the page has at most */
+} api_job_page;
+
+/* Calls `show` with the jobs of a page. Returns true if there are more after it. */
+bool api_job_list(api_job_table *table, const api_job_page *page,
                   void (*show)(void *context, const api_job *job), void *context);
 /* Cancels a job that has not ended and calls `show`; or deletes a job that has ended and sets
  * `*forgotten`.
  * Returns ST_ABSENT if there is no such job, or ST_BEHIND, ST_FULL, ST_FAILED or ST_NO_MEMORY if
  * the store cannot delete it. */
-st_status api_job_remove(api_job_table *table, const api_token *viewer, const char *id,
-                         bool *forgotten, void (*show)(void *context, const api_job *job),
-                         void *context);
+st_status api_job_remove(api_job_table *table, api_job_wanted wanted, bool *forgotten,
+                         void (*show)(void *context, const api_job *job), void *context);
 /* The number of jobs in each state, and statistics since the server started. */
 typedef struct api_job_measures {
     size_t in_state[API_JOB_STATES];
@@ -133,7 +142,6 @@ void api_job_measure(api_job_table *table, api_job_measures *out);
  * one or when the server stops. The caller frees the source.
  * Returns ST_ABSENT if there is no such job, ST_LISTENERS if it has too many listeners, or
  * ST_NO_MEMORY. */
-st_status api_job_follow(api_job_table *table, const api_token *viewer, const char *id,
-                         api_source *out);
+st_status api_job_follow(api_job_table *table, api_job_wanted wanted, api_source *out);
 
 #endif

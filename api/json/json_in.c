@@ -69,11 +69,11 @@ static bool check_objects(const api_in *in)
 }
 
 /* Parses one value of a text that was scanned; `*end` is set to where the value ends. */
-static bool parse(const char *bytes, size_t length, const api_in *at, api_document *out,
-                  api_in *root, const char **end)
+static bool parse(api_bytes text, const api_in *at, api_document *out, api_in *root,
+                  const char **end)
 {
     api_in in = *at;
-    in.value = out->root = cJSON_ParseWithLengthOpts(bytes, length, end, false);
+    in.value = out->root = cJSON_ParseWithLengthOpts(text.at, text.length, end, false);
     if (out->root == NULL) {
         /* The text was scanned, so only memory can have failed. */
         return api_problem_set(at->problem, HE_NO_MEMORY, "no memory to read the body");
@@ -86,39 +86,32 @@ static bool parse(const char *bytes, size_t length, const api_in *at, api_docume
     return true;
 }
 
-bool api_document_parse_scanned(const char *bytes, size_t length, api_document *out, api_in *root,
+bool api_document_parse_scanned(api_bytes text, api_document *out, api_in *root,
                                 api_problem *problem)
 {
     const char *end;
-    return parse(bytes, length, &(api_in){.problem = problem}, out, root, &end);
+    return parse(text, &(api_in){.problem = problem}, out, root, &end);
 }
 
-bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
-                        api_document *out, api_in *root, api_problem *problem)
+bool api_document_parse(api_bytes text, const api_in_options *options, api_document *out,
+                        api_in *root, api_problem *problem)
 {
-    return api_json_scan(bytes, length, limits, NULL, problem) &&
-           api_document_parse_scanned(bytes, length, out, root, problem);
-}
-
-bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,
-                            api_items *items, api_document *out, api_in *root, api_problem *problem)
-{
-    const char *end;
-    api_in at = {.problem = problem};
-    if (!api_json_scan(bytes, length, limits, items, problem)) {
+    const api_items *items = options->items;
+    if (!api_json_scan(text, options, problem)) {
         return false;
     }
-    if (items->at == NULL) {
-        return parse(bytes, length, &at, out, root, &end);
+    if (items == NULL || items->at == NULL) {
+        return api_document_parse_scanned(text, out, root, problem);
     }
-    size_t before = (size_t)(items->at - bytes), after = (size_t)(bytes + length - items->end);
+    size_t before = (size_t)(items->at - text.at);
+    size_t after = (size_t)(text.at + text.length - items->end);
     char *rest = he_mem_alloc(before + after);
     if (rest == NULL) {
         return api_problem_set(problem, HE_NO_MEMORY, "no memory to read the body");
     }
-    memcpy(rest, bytes, before);
+    memcpy(rest, text.at, before);
     memcpy(rest + before, items->end, after);
-    bool good = parse(rest, before + after, &at, out, root, &end);
+    bool good = api_document_parse_scanned((api_bytes){rest, before + after}, out, root, problem);
     he_mem_free(rest);
     return good;
 }
@@ -127,7 +120,7 @@ bool api_item_read(const api_items *items, size_t i, const api_in *list, api_ite
 {
     const char *from = i == 0 ? items->at : item->next + strspn(item->next, " \t\r\n,");
     api_item_clear(item);
-    return parse(from, (size_t)(items->end - from),
+    return parse((api_bytes){from, (size_t)(items->end - from)},
                  &(api_in){.parent = list, .index = i, .problem = list->problem}, &item->document,
                  &item->in, &item->next);
 }

@@ -35,11 +35,6 @@ typedef struct api_document {
     struct cJSON *root;
 } api_document;
 
-/* What a text may contain. */
-typedef struct api_in_limits {
-    size_t values;
-} api_in_limits;
-
 /* The items of an array that is kept out of its document. They are parsed one at a time, so that a
  * long list needs no more memory than its text. */
 typedef struct api_items {
@@ -47,6 +42,12 @@ typedef struct api_items {
     const char *at, *end; /* their text; NULL: the root has no such array */
     size_t count;
 } api_items;
+
+/* What a text may contain, and what is kept out of its document. */
+typedef struct api_in_options {
+    size_t values;    /* the largest number of values */
+    api_items *items; /* with its name set; NULL: nothing is kept out */
+} api_in_options;
 
 /* One parsed item; reading the next item replaces it. {0} is no item. */
 typedef struct api_item {
@@ -58,20 +59,16 @@ typedef struct api_item {
 /* Makes cJSON allocate through mem.h. api_service_new calls it once, before threads start. */
 void api_in_setup(void);
 
-/* Parses the text into `out`, which the caller clears, and puts `root` at its root.
+/* Parses the text into `out`, which the caller clears, and puts `root` at its root. If items are
+ * kept out, their array is empty in the document, and the caller reads them one by one; the text
+ * must outlive them. A repeated member inside an item is found when the item is read.
  * Returns false with malformed_json, duplicate_member, limit_exceeded (413) or no_memory. */
-bool api_document_parse(const char *bytes, size_t length, const api_in_limits *limits,
-                        api_document *out, api_in *root, api_problem *problem);
+bool api_document_parse(api_bytes text, const api_in_options *options, api_document *out,
+                        api_in *root, api_problem *problem);
 /* Parses a text that the scan (json_scan.h) has accepted already. */
-bool api_document_parse_scanned(const char *bytes, size_t length, api_document *out, api_in *root,
+bool api_document_parse_scanned(api_bytes text, api_document *out, api_in *root,
                                 api_problem *problem);
 void api_document_clear(api_document *document);
-/* Parses like api_document_parse, but leaves the array named `items->name` empty, so that the
- * caller reads its items one by one. `bytes` must outlive the items. A repeated member inside an
- * item is found when the item is read. */
-bool api_document_parse_but(const char *bytes, size_t length, const api_in_limits *limits,
-                            api_items *items, api_document *out, api_in *root,
-                            api_problem *problem);
 /* Reads one item. Items are read in order: for (size_t i = 0; i < items.count &&
  * api_item_read(...); i++). `list` is a cursor at their array.
  * Returns false with duplicate_member or no_memory. */

@@ -71,21 +71,21 @@ static bool opens_items(const he_lexer *x, const api_items *items)
            he_json_text_is(root->name, root->name_length, items->name);
 }
 
-bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits, api_items *items,
-                   api_problem *problem)
+bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *problem)
 {
+    api_items *items = options->items;
     he_lexer x;
     he_token token = HE_TOKEN_PART;
     size_t values = 0;
     bool inside = false; /* the array of the items is open */
     he_lexer_init(&x, NULL);
     x.depth_most = API_MAX_DEPTH;
-    he_lexer_feed(&x, bytes, length);
+    he_lexer_feed(&x, text.at, text.length);
     while (token != HE_TOKEN_END) {
         if (inside && x.depth == 2 && he_lexer_value_ahead(&x)) {
             items->count++;
         }
-        if (!api_json_next(&x, &values, limits->values, &token, problem)) {
+        if (!api_json_next(&x, &values, options->values, &token, problem)) {
             return false;
         }
         if (token == HE_TOKEN_ARRAY && items != NULL && opens_items(&x, items)) {

@@ -10,10 +10,9 @@
 #include "api/json/json_in.h"
 #include "format/text/json_lexer.h"
 
-/* Scans a whole text. `items` may be NULL; otherwise the scan looks for the array called
- * items->name in the root object. */
-bool api_json_scan(const char *bytes, size_t length, const api_in_limits *limits, api_items *items,
-                   api_problem *problem);
+/* Scans a whole text. If items are to be kept out of the document, the scan looks for their array
+ * in the root object. */
+bool api_json_scan(api_bytes text, const api_in_options *options, api_problem *problem);
 
 /* Reads the next token of a control document, and counts its values in `*values`. */
 bool api_json_next(he_lexer *x, size_t *values, size_t most, he_token *token, api_problem *problem);

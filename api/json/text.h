@@ -16,6 +16,18 @@ typedef struct api_text {
     bool failed;
 } api_text;
 
+/* Bytes that belong to another object; not terminated by NUL. */
+typedef struct api_bytes {
+    const char *at;
+    size_t length;
+} api_bytes;
+
+/* Borrows the bytes of a text until it changes. */
+static inline api_bytes api_text_bytes(const api_text *text)
+{
+    return (api_bytes){text->bytes, text->length};
+}
+
 void api_text_clear(api_text *text); /* frees the bytes; the text is {0} again */
 void api_text_empty(api_text *text); /* keeps memory and maximum, drops content and failure */
 

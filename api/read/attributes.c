@@ -244,7 +244,8 @@ static void answer_octets(api_exchange *x)
     }
     *r = (rows){.column = column};
     r->end = (uint64_t)he_mesh_issued(x->content, x->kind) * column->row_bytes;
-    api_answer_stream(x, 200, "application/octet-stream", (int64_t)r->end, read_rows, r, free_rows);
+    const api_stream stream = {(int64_t)r->end, read_rows, r, free_rows};
+    api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
 /* --- handlers --- */

@@ -184,6 +184,7 @@ void api_content_get(api_exchange *x)
         return;
     }
     name_file(x, format);
-    api_answer_stream(x, 200, format == NULL ? "application/json" : format->media_types[0], -1,
-                      read_content, c, free_content);
+    const api_stream stream = {-1, read_content, c, free_content};
+    api_answer_stream(x, 200, format == NULL ? "application/json" : format->media_types[0],
+                      &stream);
 }

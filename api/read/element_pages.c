@@ -145,7 +145,8 @@ static void answer_lines(api_exchange *x)
         return;
     }
     *l = (lines){.mesh = x->content, .kind = x->kind};
-    api_answer_stream(x, 200, "application/x-ndjson", -1, read_lines, l, free_lines);
+    const api_stream stream = {-1, read_lines, l, free_lines};
+    api_answer_stream(x, 200, "application/x-ndjson", &stream);
 }
 
 /* --- handlers --- */

@@ -35,6 +35,6 @@ void api_events_get(api_exchange *x)
         return;
     }
     x->has_info = true;
-    api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+    api_answer_live(x, 200, "text/event-stream", &source);
     api_answer_header(x, "X-Accel-Buffering", "no");
 }

@@ -201,8 +201,8 @@ static void answer_stream(api_exchange *x, geometry *g)
         api_fail_core(x, &err);
         return;
     }
-    api_answer_stream(x, 200, "application/octet-stream", api_rows_bytes(&g->rows), read_rows, g,
-                      free_geometry);
+    const api_stream stream = {api_rows_bytes(&g->rows), read_rows, g, free_geometry};
+    api_answer_stream(x, 200, "application/octet-stream", &stream);
 }
 
 /* Answers with the changed rows, which are drawn under the read lock if they are few. */

@@ -12,6 +12,11 @@ static void fail_absent(api_exchange *x)
     api_fail(x, API_NO_SUCH_JOB, "no job has the id \"%.60s\"", x->job_id);
 }
 
+static api_job_wanted wanted(const api_exchange *x)
+{
+    return (api_job_wanted){.viewer = x->token, .id = x->job_id};
+}
+
 static void show_whole(void *context, const api_job *job)
 {
     api_exchange *x = context;
@@ -21,7 +26,7 @@ static void show_whole(void *context, const api_job *job)
 void api_job_get(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
-    if (jobs == NULL || !api_job_find(jobs, x->token, x->job_id, show_whole, x)) {
+    if (jobs == NULL || !api_job_find(jobs, wanted(x), show_whole, x)) {
         fail_absent(x);
         return;
     }
@@ -61,7 +66,7 @@ void api_job_result(api_exchange *x)
     api_job_table *jobs = x->service->options.jobs;
     api_job job;
     char path[API_JOB_RESULT_PATH];
-    x->state = jobs == NULL ? NULL : api_job_lend(jobs, x->token, x->job_id, &job);
+    x->state = jobs == NULL ? NULL : api_job_lend(jobs, wanted(x), &job);
     if (x->state == NULL) {
         fail_absent(x);
         return;
@@ -93,8 +98,7 @@ void api_job_delete(api_exchange *x)
     api_job_table *jobs = x->service->options.jobs;
     bool forgotten = false;
     const st_status status =
-        jobs == NULL ? ST_ABSENT
-                     : api_job_remove(jobs, x->token, x->job_id, &forgotten, show_whole, x);
+        jobs == NULL ? ST_ABSENT : api_job_remove(jobs, wanted(x), &forgotten, show_whole, x);
     if (status == ST_ABSENT) {
         fail_absent(x);
     } else if (status != ST_OK) {
@@ -110,14 +114,13 @@ void api_job_events(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
     api_source source;
-    st_status status =
-        jobs == NULL ? ST_ABSENT : api_job_follow(jobs, x->token, x->job_id, &source);
+    st_status status = jobs == NULL ? ST_ABSENT : api_job_follow(jobs, wanted(x), &source);
     if (status == ST_ABSENT) {
         fail_absent(x);
     } else if (status != ST_OK) {
         api_fail_store(x, status);
     } else {
-        api_answer_live(x, 200, "text/event-stream", &source, API_EVENT_IDLE);
+        api_answer_live(x, 200, "text/event-stream", &source);
         api_answer_header(x, "X-Accel-Buffering", "no");
     }
 }
@@ -157,24 +160,24 @@ static bool read_cursor(api_exchange *x, uint64_t *after)
 void api_jobs_list(api_exchange *x)
 {
     api_job_table *jobs = x->service->options.jobs;
-    size_t limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS);
+    api_job_page asked = {.viewer = x->token,
+                          .limit = (size_t)api_param_u64(x, "limit", API_DEFAULT_JOBS)};
     page p = {.out = &x->out};
-    uint64_t after;
-    if (!read_cursor(x, &after)) {
+    if (!read_cursor(x, &asked.after)) {
         return;
     }
     api_out_object_begin(&x->out);
     api_out_key(&x->out, "items");
     api_out_array_begin(&x->out);
-    bool more = jobs != NULL && api_job_list(jobs, x->token, after, limit, show_brief, &p);
+    bool more = jobs != NULL && api_job_list(jobs, &asked, show_brief, &p);
     api_out_array_end(&x->out);
     api_out_key(&x->out, "next");
     if (more) {
         char cursor[32];
         snprintf(cursor, sizeof cursor, "j%llu", (unsigned long long)p.last);
         api_out_string(&x->out, cursor);
-        api_answer_header_format(x, "Link", "</v1/jobs?limit=%zu&cursor=%s>; rel=\"next\"", limit,
-                                 cursor);
+        api_answer_header_format(x, "Link", "</v1/jobs?limit=%zu&cursor=%s>; rel=\"next\"",
+                                 asked.limit, cursor);
     } else {
         api_out_null(&x->out);
     }

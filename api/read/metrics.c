@@ -68,15 +68,23 @@ static uint64_t total_of(const st_distribution *distribution)
     return total;
 }
 
-/* Writes the samples of a series of requests. A series appears with its first request, since most
- * possible series never get one. */
-static void put_series(sources *s, const char *route, int number, api_method method,
-                       const char *method_name, bool times)
+/* The requests of one route by one method: how the page labels them, and what they are counted
+ * under. */
+typedef struct series {
+    const char *route_label, *method_label;
+    int route; /* its index in the table of routes, or API_NO_ROUTE */
+    api_method method;
+} series;
+
+/* Writes the samples of a series. It appears with its first request, since most possible series
+ * never get one. */
+static void put_series(sources *s, const series *requests, bool times)
 {
     for (api_class of = 0; of < API_CLASSES; of++) {
-        const char *const labels[] = {method_name, route, api_class_name(of)};
+        const char *const labels[] = {requests->method_label, requests->route_label,
+                                      api_class_name(of)};
         st_distribution distribution;
-        api_requests_counted(s->metrics, number, method, of, &distribution);
+        api_requests_counted(s->metrics, requests->route, requests->method, of, &distribution);
         const uint64_t total = total_of(&distribution);
         if (total > 0 && times) {
             api_metric_put_histogram(&s->page, labels, &distribution, st_scale_micros, MICROS);
@@ -91,11 +99,14 @@ static void put_requests(sources *s, bool times)
     const api_route_table *table = &s->service->table;
     for (size_t i = 0; i < table->count; i++) {
         const api_route *row = &table->rows[i];
-        put_series(s, row->path, (int)i, API_METHOD_OTHER, row->method, times);
-        put_series(s, row->path, (int)i, API_METHOD_HEAD, api_method_name(API_METHOD_HEAD), times);
+        const series own = {row->path, row->method, (int)i, API_METHOD_OTHER};
+        const series head = {row->path, api_method_name(API_METHOD_HEAD), (int)i, API_METHOD_HEAD};
+        put_series(s, &own, times);
+        put_series(s, &head, times);
     }
     for (api_method method = 0; method < API_METHODS; method++) {
-        put_series(s, "other", API_NO_ROUTE, method, api_method_name(method), times);
+        const series other = {"other", api_method_name(method), API_NO_ROUTE, method};
+        put_series(s, &other, times);
     }
 }
 

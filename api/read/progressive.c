@@ -100,8 +100,8 @@ void api_progressive_get(api_exchange *x)
     if (p == NULL) {
         api_fail_memory(x);
     } else if (make(x, x->content, p)) {
-        api_answer_stream(x, 200, "application/octet-stream", api_progressive_bytes(p),
-                          read_progressive, p, free_progressive);
+        const api_stream stream = {api_progressive_bytes(p), read_progressive, p, free_progressive};
+        api_answer_stream(x, 200, "application/octet-stream", &stream);
     } else {
         free_progressive(p);
     }

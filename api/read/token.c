@@ -77,28 +77,26 @@ void api_tickets_post(api_exchange *x)
 {
     static const char *const members[] = {"path", NULL};
     const char *target;
-    char ticket[API_TOKEN_TEXT + 1];
-    double expires;
+    api_ticket ticket;
     api_in in;
     if (!api_in_only(&x->root, members) || !api_in_need(&x->root, "path", &in) ||
         !api_in_string(&in, API_MAX_URI, &target) || !check_target(x, &in, target)) {
         return;
     }
-    if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), ticket,
-                          &expires)) {
+    if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), &ticket)) {
         api_fail(x, API_TOO_MANY_TICKETS, "too many tickets are waiting to be used");
         return;
     }
-    char *whole = api_arena_array(&x->arena, strlen(target) + sizeof ticket + 10, 1);
+    char *whole = api_arena_array(&x->arena, strlen(target) + sizeof ticket.text + 10, 1);
     if (whole == NULL) {
         api_fail_memory(x);
         return;
     }
-    (void)snprintf(whole, strlen(target) + sizeof ticket + 10, "%s%c" API_TICKET "%s", target,
-                   strchr(target, '?') == NULL ? '?' : '&', ticket);
+    (void)snprintf(whole, strlen(target) + sizeof ticket.text + 10, "%s%c" API_TICKET "%s", target,
+                   strchr(target, '?') == NULL ? '?' : '&', ticket.text);
     api_out_object_begin(&x->out);
     api_out_key_string(&x->out, "path", whole);
-    api_out_key_time(&x->out, "expires", expires);
+    api_out_key_time(&x->out, "expires", ticket.expires);
     api_out_object_end(&x->out);
     api_answer_json(x, 200);
 }

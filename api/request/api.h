@@ -82,10 +82,8 @@ typedef struct api_answer {
     bool slow;      /* `read` computes for milliseconds: do not call it on a worker */
     int64_t (*read)(void *context, char *buffer, size_t size);
     void *context;
-    /* Instead of both, an answer without a known end, and what is sent now and then to keep an idle
-     * connection open. NULL if not used. */
+    /* Instead of both, an answer without a known end; NULL if not used. */
     const api_source *live;
-    const char *idle;
     bool close;        /* close the connection after this answer */
     st_shown shown;    /* hold the answer back until this is durable (durability_wait.h) */
     bool changed;      /* the request changed a mesh */

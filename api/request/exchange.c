@@ -448,16 +448,14 @@ bool api_answer_minimal(api_exchange *x)
     return x->prefer.minimal;
 }
 
-void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
-                       int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
-                       void (*free_stream)(void *stream))
+void api_answer_stream(api_exchange *x, int status, const char *type, const api_stream *stream)
 {
     api_answer_bytes(x, status, type, NULL, 0);
-    x->answer.length = length;
-    x->answer.read = read;
-    x->answer.context = stream;
-    x->stream = stream;
-    x->free_stream = free_stream;
+    x->answer.length = stream->length;
+    x->answer.read = stream->read;
+    x->answer.context = stream->self;
+    x->stream = stream->self;
+    x->free_stream = stream->free;
 }
 
 static int64_t read_blob(void *context, char *buffer, size_t size)
@@ -470,14 +468,14 @@ static int64_t read_blob(void *context, char *buffer, size_t size)
 
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob)
 {
+    const api_stream stream = {.length = (int64_t)blob->length, .read = read_blob, .self = x};
     x->blob = *blob;
     x->blob_at = 0;
-    api_answer_stream(x, status, type, (int64_t)blob->length, read_blob, x, NULL);
+    api_answer_stream(x, status, type, &stream);
     x->answer.slow = true;
 }
 
-void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
-                     const char *idle)
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source)
 {
     x->live = *source;
     if (x->token != NULL &&
@@ -489,7 +487,6 @@ void api_answer_live(api_exchange *x, int status, const char *type, const api_so
     api_answer_bytes(x, status, type, NULL, 0);
     x->answer.length = -1;
     x->answer.live = &x->live;
-    x->answer.idle = idle;
     x->stream = x->live.self;
     x->free_stream = x->live.free;
 }

@@ -223,18 +223,22 @@ void api_answer_kept(api_exchange *x, const char *type, api_kept *kept);
 void api_answer_empty(api_exchange *x, int status); /* without a body: 204 and others */
 /* If the client prefers return=minimal, answers 204 and returns true. */
 bool api_answer_minimal(api_exchange *x);
-/* Answers with a stream, which it takes and frees with the exchange. `length` is -1 if unknown. */
-void api_answer_stream(api_exchange *x, int status, const char *type, int64_t length,
-                       int64_t (*read)(void *stream, char *buffer, size_t size), void *stream,
-                       void (*free_stream)(void *stream));
+/* A body that is made while it is sent. */
+typedef struct api_stream {
+    int64_t length;                                         /* -1: unknown */
+    int64_t (*read)(void *self, char *buffer, size_t size); /* as in api_answer */
+    void *self;
+    void (*free)(void *self); /* NULL: the stream is borrowed */
+} api_stream;
+
+/* Answers with a stream, which it takes and frees with the exchange. */
+void api_answer_stream(api_exchange *x, int status, const char *type, const api_stream *stream);
 /* Answers with a blob, which it takes if the blob has a function `free`. A job keeps the blob
  * without copying it. */
 void api_answer_blob(api_exchange *x, int status, const char *type, const api_blob *blob);
 /* Answers with a stream without a known end, which is sent while the token is valid. Takes `source`
- * and frees it with the exchange. `idle`, which is sent to keep an idle connection open, must be a
- * literal. */
-void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source,
-                     const char *idle);
+ * and frees it with the exchange. */
+void api_answer_live(api_exchange *x, int status, const char *type, const api_source *source);
 /* Sets a header of the answer, replacing one with this name; `value` is copied. Call it before or
  * after the answer. */
 void api_answer_header(api_exchange *x, const char *name, const char *value);

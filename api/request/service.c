@@ -534,16 +534,13 @@ static bool parse_body(api_exchange *x)
     if (x->received == 0) {
         return kind == API_BODY_OPTION || api_refuse_empty(x);
     }
-    api_in_limits limits = {.values = kind == API_BODY_EDITS ? API_MAX_EDITS_VALUES
-                                                             : API_MAX_CONTROL_VALUES};
+    api_in_options options = {.values = API_MAX_CONTROL_VALUES};
     if (kind == API_BODY_EDITS) {
         x->ops.name = "ops";
-        x->has_root = api_document_parse_but(x->body.bytes, x->body.length, &limits, &x->ops,
-                                             &x->document, &x->root, &x->problem);
-    } else {
-        x->has_root = api_document_parse(x->body.bytes, x->body.length, &limits, &x->document,
-                                         &x->root, &x->problem);
+        options = (api_in_options){.values = API_MAX_EDITS_VALUES, .items = &x->ops};
     }
+    x->has_root =
+        api_document_parse(api_text_bytes(&x->body), &options, &x->document, &x->root, &x->problem);
     if (x->ops.at == NULL) {
         api_text_clear(&x->body);
     }

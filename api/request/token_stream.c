@@ -132,7 +132,11 @@ bool api_token_stream_new(api_tokens *tokens, api_token *token, const api_source
     s->inner = *source;
     s->watch = (api_token_watch){.token = token, .gone = lose_token};
     atomic_init(&s->started, false);
-    *out = (api_source){
-        .self = s, .start = start, .read = read_stream, .finish = finish, .free = free_stream};
+    *out = (api_source){.self = s,
+                        .start = start,
+                        .read = read_stream,
+                        .finish = finish,
+                        .free = free_stream,
+                        .idle = source->idle};
     return true;
 }

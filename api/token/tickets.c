@@ -70,12 +70,12 @@ static void hash_both(const char *text, const char *target, unsigned char out[2 
 }
 
 bool api_tickets_make(api_tickets *tickets, api_token *token, const char *target, double now,
-                      char out[API_TOKEN_TEXT + 1], double *expires)
+                      api_ticket *out)
 {
     ticket made = {.expires = now + API_TICKET_SECONDS, .token = token};
-    api_token_make(out);
-    hash_both(out, target, made.hashes);
-    *expires = made.expires;
+    api_token_make(out->text);
+    hash_both(out->text, target, made.hashes);
+    out->expires = made.expires;
     pthread_mutex_lock(&tickets->lock);
     forget_expired(tickets, now);
     bool fits = tickets->count < API_TICKETS &&

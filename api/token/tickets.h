@@ -20,11 +20,17 @@ typedef struct api_tickets api_tickets;
 api_tickets *api_tickets_new(void); /* NULL when memory is out */
 void api_tickets_free(api_tickets *tickets);
 
-/* Makes a ticket of this token for one target (a path with its query); it is valid while `now` is
- * less than *expires. `token` is NULL if the server requires no tokens.
+/* A ticket, for the client. */
+typedef struct api_ticket {
+    char text[API_TOKEN_TEXT + 1];
+    double expires; /* it is valid while `now` is less than this */
+} api_ticket;
+
+/* Makes a ticket of this token for one target (a path with its query). `token` is NULL if the
+ * server requires no tokens.
  * Returns false if the maximum number of tickets is valid already. */
 bool api_tickets_make(api_tickets *tickets, api_token *token, const char *target, double now,
-                      char out[API_TOKEN_TEXT + 1], double *expires);
+                      api_ticket *out);
 /* Returns the token of a ticket, with a reference held, if this text is a ticket that is valid for
  * the target; the ticket is then used up. A ticket that is presented for another target stays
  * valid. */

@@ -271,9 +271,9 @@ static bool decode_json(api_exchange *x, writing *w)
     static const char *const members[] = {
         "type",   "components", "rule",    "default",           "labels",
         "values", "value",      "dry_run", "expected_revision", NULL};
-    api_in_limits limits = {.values = API_MAX_EDITS_VALUES};
-    bool good = api_document_parse(w->body.bytes, w->body.length, &limits, &w->document, &w->root,
-                                   &x->problem);
+    const api_in_options options = {.values = API_MAX_EDITS_VALUES};
+    bool good =
+        api_document_parse(api_text_bytes(&w->body), &options, &w->document, &w->root, &x->problem);
     api_text_clear(&w->body);
     return good && api_in_only(&w->root, members) && read_common(w, &w->root) &&
            api_read_column(&w->root, x->kind, x->attribute, &w->column) &&
@@ -403,7 +403,6 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
                      size_t *count)
 {
     static const char *const all[] = {"all", NULL};
-    const char *name;
     int choice;
     if (api_in_is_string(in)) {
         *ids = NULL;
@@ -411,8 +410,7 @@ static bool read_ids(api_exchange *x, const api_in *in, const he_mesh *mesh, uin
         return api_in_choice(in, all, &choice);
     }
     if (api_in_is_object(in)) {
-        return api_in_set(in, &name) &&
-               api_find_set(in, name, mesh, x->kind, &x->arena, ids, count);
+        return api_find_set(in, mesh, x->kind, &x->arena, ids, count);
     }
     return api_in_ids(in, 1, &x->arena, ids, count);
 }

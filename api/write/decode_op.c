@@ -9,9 +9,7 @@
 /* The state of decoding one operation. */
 typedef struct decoder {
     const api_in *object;
-    const api_references *references;
-    const he_mesh *mesh; /* NULL: sets are not looked up */
-    const api_meshes *meshes;
+    const api_op_scope *scope;
     api_arena *arena;
     const he_op *op;
     api_call *call;
@@ -21,7 +19,8 @@ typedef struct decoder {
 static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_t *one,
                        api_found *found)
 {
-    if (!api_in_is_string(in) || d->references == NULL) {
+    const api_references *references = d->scope->references;
+    if (!api_in_is_string(in) || references == NULL) {
         *found = (api_found){.ids = one, .count = 1};
         return api_in_id(in, one);
     }
@@ -34,7 +33,7 @@ static bool decode_ids(const decoder *d, const api_in *in, he_kind kind, uint32_
             in, API_WRONG_TYPE,
             "a string in place of an id must be a reference such as \"$name.result\"");
     }
-    return d->references->find(d->references->context, in, text, kind, found);
+    return references->find(references->context, in, text, kind, found);
 }
 
 static bool decode_element(const decoder *d, const he_param *param, const api_in *in, uint32_t *id)
@@ -111,13 +110,10 @@ static bool decode_set(const decoder *d, he_kind kind, const api_in *in, he_arg 
     d->call->has_set = true;
     arg->list = true;
     arg->ids = none;
-    if (!api_in_set(in, &name)) {
-        return false;
+    if (d->scope->mesh == NULL) {
+        return api_in_set(in, &name);
     }
-    if (d->mesh == NULL) {
-        return true;
-    }
-    if (!api_find_set(in, name, d->mesh, kind, d->arena, &ids, &arg->count)) {
+    if (!api_find_set(in, d->scope->mesh, kind, d->arena, &ids, &arg->count)) {
         return false;
     }
     arg->ids = ids;
@@ -177,9 +173,10 @@ static bool decode_matrix(const api_in *in, he_arg *arg)
 
 static bool decode_mesh(const decoder *d, const api_in *in, he_arg *arg)
 {
+    const api_meshes *meshes = d->scope->meshes;
     const char *id;
     return api_in_string(in, ST_MESH_ID, &id) &&
-           (d->meshes == NULL || d->meshes->find(d->meshes->context, in, id, &arg->mesh));
+           (meshes == NULL || meshes->find(meshes->context, in, id, &arg->mesh));
 }
 
 static bool decode_number(const he_param *param, const api_in *in, he_arg *arg)
@@ -302,13 +299,13 @@ static bool refuse_parameter(const decoder *d, const api_in *in)
                        api_in_name(in), d->op->name, api_known_names_text(&known));
 }
 
-static bool decode_member(const decoder *d, const char *const *also, const api_in *in)
+static bool decode_member(const decoder *d, const api_in *in)
 {
     const char *name = api_in_name(in);
-    if (strcmp(name, "op") == 0 || is_listed(also, name)) {
+    if (strcmp(name, "op") == 0 || is_listed(d->scope->also, name)) {
         return true;
     }
-    if (d->references != NULL && strcmp(name, "as") == 0) {
+    if (d->scope->references != NULL && strcmp(name, "as") == 0) {
         return decode_as(d, in);
     }
     bool plural;
@@ -366,7 +363,7 @@ static bool check_points(const decoder *d)
 {
     size_t elements = 0;
     bool has_elements = false;
-    if (d->call->has_set && d->mesh == NULL) {
+    if (d->call->has_set && d->scope->mesh == NULL) {
         return true;
     }
     for (size_t i = 0; i < he_op_params(d->op); i++) {
@@ -398,8 +395,7 @@ static bool refuse_operation(const api_in *at, const char *name)
                                              : "; GET /v1/operations lists them");
 }
 
-bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out)
+bool api_decode_op(const api_in *object, const api_op_scope *scope, api_arena *arena, api_call *out)
 {
     api_in name, member;
     const char *text;
@@ -412,9 +408,9 @@ bool api_decode_op(const api_in *object, const char *const *also, const api_refe
         return refuse_operation(&name, text);
     }
     he_op_defaults(out->op, out->args);
-    decoder d = {object, references, mesh, meshes, arena, out->op, out};
+    decoder d = {object, scope, arena, out->op, out};
     for (bool more = api_in_first(object, &member); more; more = api_in_next(&member)) {
-        if (!decode_member(&d, also, &member)) {
+        if (!decode_member(&d, &member)) {
             return false;
         }
     }

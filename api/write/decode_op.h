@@ -42,6 +42,16 @@ typedef struct api_meshes {
     void *context;
 } api_meshes;
 
+/* What an operation may say beside its parameters and what it may refer to. {0} is nothing. */
+typedef struct api_op_scope {
+    /* Further members that the object may have, such as expected_revision beside a single
+     * operation; ends in NULL. NULL: none. */
+    const char *const *also;
+    const api_references *references; /* NULL: references and "as" are refused */
+    const he_mesh *mesh;              /* where sets are looked up; NULL: they are empty for now */
+    const api_meshes *meshes;         /* where other meshes are found; NULL: ids are ignored */
+} api_op_scope;
+
 /* One operation, ready for he_op_run. */
 typedef struct api_call {
     const he_op *op;
@@ -50,12 +60,8 @@ typedef struct api_call {
     bool has_set;   /* a list was given as a set */
 } api_call;
 
-/* Decodes one operation. If `references` is NULL, references and "as" are refused. `also` lists
- * members that the object may have besides (such as expected_revision beside a single operation),
- * or is NULL. Sets are looked up in `mesh`; if it is NULL they are empty for now. `meshes` finds
- * other meshes; if it is NULL their ids are ignored. Lists are in the arena, which must outlive the
- * call. */
-bool api_decode_op(const api_in *object, const char *const *also, const api_references *references,
-                   const he_mesh *mesh, const api_meshes *meshes, api_arena *arena, api_call *out);
+/* Decodes one operation. Lists are in the arena, which must outlive the call. */
+bool api_decode_op(const api_in *object, const api_op_scope *scope, api_arena *arena,
+                   api_call *out);
 
 #endif

@@ -92,10 +92,14 @@ static void note_name(edits *e, const char *name)
 
 static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *call)
 {
+    const api_op_scope scope = {
+        .also = e->is_list ? NULL : beside_op,
+        .references = e->is_list ? &e->names.references : NULL,
+        .mesh = mesh,
+        .meshes = &e->others.meshes,
+    };
     api_arena_empty(&e->scratch);
-    return api_decode_op(in, e->is_list ? NULL : beside_op,
-                         e->is_list ? &e->names.references : NULL, mesh, &e->others.meshes,
-                         &e->scratch, call);
+    return api_decode_op(in, &scope, &e->scratch, call);
 }
 
 static bool note(edits *e, const api_in *in, const api_call *call)

@@ -29,9 +29,13 @@ bool api_in_set(const api_in *in, const char **name)
     return true;
 }
 
-bool api_find_set(const api_in *in, const char *name, const he_mesh *mesh, he_kind kind,
-                  api_arena *arena, uint32_t **ids, size_t *count)
+bool api_find_set(const api_in *in, const he_mesh *mesh, he_kind kind, api_arena *arena,
+                  uint32_t **ids, size_t *count)
 {
+    const char *name;
+    if (!api_in_set(in, &name)) {
+        return false;
+    }
     const he_column *column = he_mesh_find_column(mesh, kind, name);
     if (column == NULL) {
         api_in_fail(in, API_NO_SUCH_ATTRIBUTE, "%s have no attribute \"%.80s\"",

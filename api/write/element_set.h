@@ -8,10 +8,10 @@
 /* Reads a set: one member, whose value is true; its name goes to *name. Returns false with
  * missing_member, unknown_member for a second member, wrong_type, or bad_value for false. */
 bool api_in_set(const api_in *in, const char **name);
-/* Finds the elements of a set, in the arena; `ids` is never NULL, and an empty set is allowed.
- * Returns false with no_such_attribute (status 422), wrong_type if the attribute is not a bool with
- * one component, or limit_exceeded. */
-bool api_find_set(const api_in *in, const char *name, const he_mesh *mesh, he_kind kind,
-                  api_arena *arena, uint32_t **ids, size_t *count);
+/* Reads a set and finds its elements, in the arena; `ids` is never NULL, and an empty set is
+ * allowed. Returns false as api_in_set does, or with no_such_attribute (status 422), wrong_type if
+ * the attribute is not a bool with one component, or limit_exceeded. */
+bool api_find_set(const api_in *in, const he_mesh *mesh, he_kind kind, api_arena *arena,
+                  uint32_t **ids, size_t *count);
 
 #endif

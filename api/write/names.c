@@ -47,9 +47,19 @@ static int64_t read_index(const char *text)
 
 static const uint32_t unbound = HE_NONE;
 
-static bool find_value(const api_in *at, const char *text, const api_name *name, size_t row,
-                       int64_t index, api_found *out)
+/* A result of an earlier operation, or an item of it. */
+typedef struct value {
+    const api_name *name;
+    size_t row;    /* of the results of the name's operation */
+    int64_t index; /* of an item; -1: the whole result */
+} value;
+
+/* Finds the ids of a value. `text` is the reference to it, for refusals. */
+static bool find_value(const api_in *at, const char *text, const value *wanted, api_found *out)
 {
+    const api_name *name = wanted->name;
+    const size_t row = wanted->row;
+    const int64_t index = wanted->index;
     bool list = name->op->results[row].type == HE_RESULT_ELEMENTS;
     *out = (api_found){.ids = &unbound, .count = 1, .list = list && index < 0};
     if (!name->bound) {
@@ -104,7 +114,7 @@ static bool find_reference(void *context, const api_in *at, const char *text, he
         if (second != NULL && (index < 0 || r->type != HE_RESULT_ELEMENTS)) {
             break;
         }
-        return find_value(at, text, name, row, index, out);
+        return find_value(at, text, &(value){name, row, index}, out);
     }
     return api_in_fail(at, API_BAD_REFERENCE, "%s has no result such as \"%.100s\" refers to",
                        name->op->name, text);

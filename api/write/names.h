@@ -2,7 +2,7 @@
  *
  *     api_names_init(&names, secret);
  *     for each operation:                          the check
- *         api_decode_op(op, NULL, &names.references, ...)
+ *         api_decode_op(op, ...)                     in a scope with names.references
  *         api_names_add(&names, at, &call)          400 repeated_name
  *     for each operation:                          the run
  *         api_decode_op(...);  he_op_run(..., &results);
@@ -33,7 +33,7 @@ typedef struct api_names {
     size_t table_size;  /* a power of two */
     uint64_t secret[2]; /* key of the hash */
     api_arena texts;
-    api_references references; /* pass this to api_decode_op */
+    api_references references; /* for the scope of api_decode_op */
 } api_names;
 
 /* Initializes `names`, which must not move afterwards: references.context points to it. */

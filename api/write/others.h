@@ -18,7 +18,7 @@ typedef struct api_other {
 } api_other;
 
 typedef struct api_others {
-    api_meshes meshes; /* pass this to api_decode_op */
+    api_meshes meshes; /* for the scope of api_decode_op */
     api_exchange *asker;
     api_other other[API_MAX_OTHERS];
     size_t count;

@@ -20,7 +20,8 @@ int main(int argc, char **argv, char **environment)
     char message[320], url[SRV_URL_TEXT];
     int status = 0;
     st_memory_install(0);
-    if (!srv_config_read(&config, argc - 1, argv + 1, getenv, message, sizeof message)) {
+    const srv_config_sources from = {argc - 1, argv + 1, getenv};
+    if (!srv_config_read(&config, &from, message, sizeof message)) {
         srv_line_write(STDERR_FILENO, srv_start_is_json(&config), SRV_LEVEL_ERROR, message);
         return MISUSE;
     }

@@ -62,7 +62,8 @@ static bool reload_settings(srv_parts *parts, char *message, size_t size)
     if (file[0] == '\0') {
         return true;
     }
-    if (!srv_config_read(&fresh, started->argc, started->argv, getenv, message, size)) {
+    const srv_config_sources from = {started->argc, started->argv, getenv};
+    if (!srv_config_read(&fresh, &from, message, size)) {
         return false;
     }
     for (size_t i = 0; i < srv_option_count; i++) {

@@ -66,7 +66,7 @@ bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_clien
 }
 
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
-               srv_client *client, const char **cors, api_problem *problem)
+               srv_client *client, api_problem *problem)
 {
     const char *host = framing->host;
     size_t length = host == NULL ? 0 : strlen(host);
@@ -81,7 +81,7 @@ bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing
         .fetch_site = field_value(head, "Sec-Fetch-Site"),
         .scheme = client->scheme,
     };
-    *cors = srv_policy_cors(policy, sender.origin);
+    client->cors = srv_policy_cors(policy, sender.origin);
     client->told_name = client->scheme == SRV_SCHEME_HTTPS && srv_policy_is_name(policy, host);
     return srv_policy_host(policy, host, length, problem) &&
            srv_policy_origin(policy, &sender, problem);

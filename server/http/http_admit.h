@@ -26,11 +26,12 @@ void srv_ids_init(srv_ids *ids);
  * letters, digits and . _ -, or makes a new one. */
 void srv_admit_name(const srv_head *head, srv_ids *ids, char out[SRV_REQUEST_ID + 1]);
 
-/* What is known about the client of a request. */
+/* What is known about the client of a request, and the headers for browsers that its answer has. */
 typedef struct srv_client {
     char address[SRV_ADDRESS_TEXT]; /* without a port; "unix:uid=1000" on a Unix socket */
     srv_scheme scheme;
-    bool told_name; /* whether the answer has the header of rule P6 (http_policy.h) */
+    bool told_name;   /* whether the answer has the header of rule P6 (http_policy.h) */
+    const char *cors; /* the origin that the answer names in CORS headers (P4), or NULL */
 } srv_client;
 
 /* Reads from the headers of a request what a trusted proxy, from which the connection comes, says
@@ -40,10 +41,10 @@ typedef struct srv_client {
 bool srv_admit_proxied(const srv_policy *policy, const srv_head *head, srv_client *client,
                        api_problem *problem);
 
-/* Applies rules P1 to P6 of http_policy.h to a request. Returns false with the problem filled if
- * the request is refused. Sets *cors to the origin that the answer must name in CORS headers, or to
- * NULL. */
+/* Applies rules P1 to P6 of http_policy.h to a request with valid framing. Returns false with the
+ * problem filled if the request is refused. Sets the members of `client` about the answer in both
+ * cases. */
 bool srv_admit(const srv_policy *policy, const srv_head *head, const srv_framing *framing,
-               srv_client *client, const char **cors, api_problem *problem);
+               srv_client *client, api_problem *problem);
 
 #endif

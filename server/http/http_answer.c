@@ -118,8 +118,7 @@ static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t 
     if (r->stream.live == NULL) {
         int socket =
             MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-        srv_live_begin(r->http->live, &r->stream, answer->live, answer->idle, socket,
-                       resume_stream);
+        srv_live_begin(r->http->live, &r->stream, answer->live, socket, resume_stream);
     }
     int64_t got = srv_live_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
@@ -170,8 +169,8 @@ static void describe(srv_request *r, srv_wire *wire)
     if (r->trace.answered[0] != '\0') {
         srv_wire_add(wire, "traceparent", r->trace.answered);
     }
-    if (r->cors != NULL) {
-        srv_wire_cors(wire, r->cors, r->preflight);
+    if (r->client.cors != NULL) {
+        srv_wire_cors(wire, r->client.cors, r->preflight);
     }
     wire->close = wire->close || atomic_load(&r->http->stopping) || srv_recv_has_ended(r->socket);
 }

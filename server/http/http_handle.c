@@ -217,7 +217,7 @@ static bool admit(srv_request *r, const srv_head *head, const srv_framing *frami
         return api_problem_set(&r->refusal, API_OVERLOADED,
                                "more than %" PRIu64 " connections are open", most);
     }
-    return srv_admit(http->options.policy, head, framing, &r->client, &r->cors, &r->refusal);
+    return srv_admit(http->options.policy, head, framing, &r->client, &r->refusal);
 }
 
 /* Begins the exchange of a request. The exchange borrows the values of headers from libmicrohttpd,
@@ -233,7 +233,7 @@ static void begin_exchange(srv_request *r, const srv_head *head, const srv_frami
         .has_length = framing->has_length,
         .length = framing->length,
         .has_body = framing->chunked || framing->length > 0,
-        .has_consent = r->cors != NULL,
+        .has_consent = r->client.cors != NULL,
     };
     if (r->socket != NULL) {
         asked.client =
@@ -312,7 +312,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
         *mark = '\0'; /* ends the path where the query begins */
     }
     bool ok = known && admit(r, &head, &framing);
-    if (ok && r->cors != NULL && strcmp(method, "OPTIONS") == 0 &&
+    if (ok && r->client.cors != NULL && strcmp(method, "OPTIONS") == 0 &&
         srv_head_find(&head, "Access-Control-Request-Method") != NULL) {
         r->preflight = true;
         ok = false;

@@ -204,11 +204,10 @@ static void wake(void *context)
     pthread_mutex_unlock(&live->lock);
 }
 
-void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
-                    int socket, void (*resume)(srv_stream *stream))
+void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, int socket,
+                    void (*resume)(srv_stream *stream))
 {
-    *stream = (srv_stream){
-        .live = live, .source = source, .idle = idle, .resume = resume, .socket = socket};
+    *stream = (srv_stream){.live = live, .source = source, .resume = resume, .socket = socket};
     /* The event that the client has closed its side is edge-triggered, so it is reported only once.
      * If the socket cannot be watched, that is noticed when the second heartbeat cannot be sent. */
     struct epoll_event closed = {.events = EPOLLRDHUP | EPOLLET, .data.ptr = stream};
@@ -242,9 +241,9 @@ int64_t srv_live_read(srv_stream *stream, char *buffer, size_t size)
         source->finish(source->self);
     }
     int64_t got = source->read(source->self, buffer, size);
-    size_t length = strlen(stream->idle);
+    size_t length = strlen(source->idle);
     if (got == API_READ_WAIT && stream->due && length <= size) {
-        memcpy(buffer, stream->idle, length);
+        memcpy(buffer, source->idle, length);
         got = (int64_t)length;
     }
     stream->due = stream->due && got == API_READ_WAIT;

@@ -27,7 +27,6 @@ typedef struct srv_live srv_live;
 typedef struct srv_stream {
     srv_live *live; /* NULL before srv_live_begin */
     const api_source *source;
-    const char *idle; /* bytes to send as a heartbeat */
     void (*resume)(struct srv_stream *stream);
     bool aside;
     bool woken;    /* the source has called wake while the worker owned the stream */
@@ -46,10 +45,10 @@ srv_live *srv_live_new(uint64_t heartbeat_micros);
 void srv_live_free(srv_live *live);
 
 /* Begins a stream that sends the events of `source`. The thread calls `resume` once after each call
- * of srv_live_aside. `idle` is the text of a heartbeat. `socket` is the socket of the connection,
- * on which the thread notices that the client closes its side, or -1. */
-void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, const char *idle,
-                    int socket, void (*resume)(srv_stream *stream));
+ * of srv_live_aside. `socket` is the socket of the connection, on which the thread notices that the
+ * client closes its side, or -1. */
+void srv_live_begin(srv_live *live, srv_stream *stream, const api_source *source, int socket,
+                    void (*resume)(srv_stream *stream));
 /* Ends a stream, before its storage and its socket are freed; it must not be aside. Does nothing if
  * the stream was not begun. */
 void srv_live_end(srv_stream *stream);

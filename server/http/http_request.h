@@ -80,8 +80,7 @@ typedef struct srv_request {
     char request_id[SRV_REQUEST_ID + 1];
     char *joined; /* values of headers with several lines (http_headers.h); NULL if none */
     srv_client client;
-    const char *cors; /* origin to name in CORS headers; NULL if there are none */
-    bool close;       /* whether the connection is to be closed after the answer */
+    bool close; /* whether the connection is to be closed after the answer */
 
     api_exchange *exchange; /* NULL if the answer is `refusal` */
     api_step step;

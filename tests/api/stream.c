@@ -40,7 +40,7 @@ listener *stream_try(api_bench *b, const char *path, const char *query, const ch
     l->exchange = x;
     l->source = api_answer_of(x)->live;
     assert_non_null(l->source);
-    assert_string_equal(api_answer_of(x)->idle, API_EVENT_IDLE);
+    assert_string_equal(l->source->idle, API_EVENT_IDLE);
     pthread_mutex_init(&l->lock, NULL);
     pthread_cond_init(&l->changed, NULL);
     l->source->start(l->source->self, wake, l);

@@ -95,8 +95,9 @@ typedef struct parsed {
 static void parse(parsed *p, const char *body)
 {
     *p = (parsed){0};
-    api_in_limits limits = {.values = 10000};
-    if (!api_document_parse(body, strlen(body), &limits, &p->document, &p->root, &p->problem)) {
+    const api_in_options options = {.values = 10000};
+    const api_bytes text = {body, strlen(body)};
+    if (!api_document_parse(text, &options, &p->document, &p->root, &p->problem)) {
         fail_msg("%s: %s", body, p->problem.detail);
     }
 }
@@ -114,7 +115,7 @@ static void bodies_are_refused_with_their_pointer(void **state)
         parsed p;
         api_call call;
         parse(&p, bodies[i].body);
-        bool good = api_decode_op(&p.root, NULL, NULL, NULL, NULL, &p.arena, &call);
+        bool good = api_decode_op(&p.root, &(api_op_scope){0}, &p.arena, &call);
         if (good != (bodies[i].code == HE_OK) || p.problem.code != bodies[i].code ||
             (strcmp(bodies[i].pointer, "-") != 0 &&
              strcmp(bodies[i].pointer, p.problem.pointer) != 0)) {
@@ -144,7 +145,7 @@ static void names_that_do_not_exist_are_answered_with_those_that_do(void **state
         parsed p;
         api_call call;
         parse(&p, cases[i].body);
-        assert_false(api_decode_op(&p.root, NULL, NULL, NULL, NULL, &p.arena, &call));
+        assert_false(api_decode_op(&p.root, &(api_op_scope){0}, &p.arena, &call));
         assert_string_equal(p.problem.detail, cases[i].detail);
         clear(&p);
     }
@@ -166,7 +167,7 @@ static void arguments_hold_what_was_given(void **state)
     parsed p;
     api_call call;
     parse(&p, "{\"op\":\"vertex_move\",\"vertices\":[7,3],\"to\":[[1,2,3],[4,5,6]]}");
-    assert_true(api_decode_op(&p.root, NULL, NULL, NULL, NULL, &p.arena, &call));
+    assert_true(api_decode_op(&p.root, &(api_op_scope){0}, &p.arena, &call));
     const he_arg *vertices = &call.args[param(call.op, "vertex")];
     const he_arg *to = &call.args[param(call.op, "to")];
     assert_true(vertices->given && vertices->list && vertices->count == 2);
@@ -179,7 +180,7 @@ static void arguments_hold_what_was_given(void **state)
 
     parse(&p, "{\"op\":\"edge_split\",\"edge\":5,\"expected_revision\":4}");
     static const char *const also[] = {"expected_revision", NULL};
-    assert_true(api_decode_op(&p.root, also, NULL, NULL, NULL, &p.arena, &call));
+    assert_true(api_decode_op(&p.root, &(api_op_scope){.also = also}, &p.arena, &call));
     assert_int_equal(call.args[param(call.op, "edge")].id, 5);
     const he_arg *t = &call.args[param(call.op, "t")];
     assert_false(t->given);
@@ -187,7 +188,7 @@ static void arguments_hold_what_was_given(void **state)
     clear(&p);
 
     parse(&p, "{\"op\":\"vertex_split\",\"vertex\":0,\"left\":null,\"right\":2,\"to\":[0,0,0]}");
-    assert_true(api_decode_op(&p.root, NULL, NULL, NULL, NULL, &p.arena, &call));
+    assert_true(api_decode_op(&p.root, &(api_op_scope){0}, &p.arena, &call));
     assert_int_equal(call.args[param(call.op, "left")].id, HE_NONE);
     assert_true(call.args[param(call.op, "left")].given);
     clear(&p);
@@ -200,7 +201,7 @@ static bool check_list(const api_in *list, api_names *names, api_arena *arena)
     api_in op;
     for (bool more = api_in_first(list, &op); more; more = api_in_next(&op)) {
         api_call call;
-        if (!api_decode_op(&op, NULL, &names->references, NULL, NULL, arena, &call) ||
+        if (!api_decode_op(&op, &(api_op_scope){.references = &names->references}, arena, &call) ||
             !api_names_add(names, &op, &call)) {
             return false;
         }
@@ -315,7 +316,8 @@ static void references_take_the_values_of_results(void **state)
         parse(&p, body);
         assert_true(check_list(&p.root, &names, &p.arena));
         assert_true(api_in_first(&p.root, &op));
-        assert_true(api_decode_op(&op, NULL, &names.references, NULL, NULL, &p.arena, &call));
+        assert_true(
+            api_decode_op(&op, &(api_op_scope){.references = &names.references}, &p.arena, &call));
         he_results results = {0};
         size_t vertex = result(call.op, "vertex");
         results.present[vertex] = true;
@@ -325,8 +327,9 @@ static void references_take_the_values_of_results(void **state)
         api_names_bind(&names, &call, &results);
         he_results_clear(&results);
         assert_true(api_in_next(&op));
-        assert_int_equal(api_decode_op(&op, NULL, &names.references, NULL, NULL, &p.arena, &call),
-                         uses[i].code == HE_OK);
+        assert_int_equal(
+            api_decode_op(&op, &(api_op_scope){.references = &names.references}, &p.arena, &call),
+            uses[i].code == HE_OK);
         assert_int_equal(p.problem.code, uses[i].code);
         if (uses[i].code == HE_OK) {
             const he_arg *arg = &call.args[param(call.op, uses[i].name)];
@@ -375,11 +378,11 @@ static void every_failed_allocation_is_a_problem(void **state)
     while (failing_next(&f)) {
         parsed p = {0};
         api_names names;
-        api_in_limits limits = {.values = 1000};
+        const api_in_options options = {.values = 1000};
+        const api_bytes text = {body, strlen(body)};
         api_names_init(&names, (const uint64_t[2]){1, 2});
-        bool good =
-            api_document_parse(body, strlen(body), &limits, &p.document, &p.root, &p.problem) &&
-            check_list(&p.root, &names, &p.arena);
+        bool good = api_document_parse(text, &options, &p.document, &p.root, &p.problem) &&
+                    check_list(&p.root, &names, &p.arena);
         failing_end(&f, good);
         assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
         api_names_clear(&names);

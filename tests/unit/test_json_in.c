@@ -141,8 +141,8 @@ static const body_case cases[] = {
 static bool parse(const char *body, size_t length, size_t values, api_document *document,
                   api_in *root, api_problem *problem)
 {
-    api_in_limits limits = {.values = values};
-    return api_document_parse(body, length, &limits, document, root, problem);
+    const api_in_options options = {.values = values};
+    return api_document_parse((api_bytes){body, length}, &options, document, root, problem);
 }
 
 static void hostile_bodies_are_refused_exactly(void **state)

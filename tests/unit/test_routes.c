@@ -573,8 +573,9 @@ static void documents_of_the_tables_are_json(void **state)
         api_exchange *x = send_line(&r, &headers);
         const api_answer *answer = api_answer_of(x);
         api_problem problem = {0};
-        api_in_limits limits = {.values = 1000000};
-        if (!api_json_scan(answer->bytes, (size_t)answer->length, &limits, NULL, &problem)) {
+        const api_in_options options = {.values = 1000000};
+        const api_bytes text = {answer->bytes, (size_t)answer->length};
+        if (!api_json_scan(text, &options, &problem)) {
             fail_msg("%s: %s at %s", lines[i], problem.detail, problem.pointer);
         }
         cJSON *document = cJSON_ParseWithLength(answer->bytes, (size_t)answer->length);

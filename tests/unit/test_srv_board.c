@@ -111,10 +111,16 @@ static void take_facts(void *context, const api_job *job)
     *(api_job *)context = *job;
 }
 
+/* Asks for a job without a token. */
+static api_job_wanted wanted(const char *id)
+{
+    return (api_job_wanted){.viewer = NULL, .id = id};
+}
+
 static api_job look(const char *id)
 {
     api_job job = {.number = 0};
-    assert_true(api_job_find(jobs, NULL, id, take_facts, &job));
+    assert_true(api_job_find(jobs, wanted(id), take_facts, &job));
     return job;
 }
 
@@ -167,19 +173,19 @@ static bool cancel_at(int percent)
         job = look(id);
     }
     uint64_t asked = st_clock_micros();
-    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
+    assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_OK);
     if (forgotten || wait_for(id, API_JOB_DONE).state == API_JOB_DONE) {
         return false;
     }
     print_message("note: cancelled at %d %%, ended in %.1f ms\n", percent,
                   (double)(st_clock_micros() - asked) / 1000);
     assert_int_equal(look(id).state, API_JOB_CANCELLED);
-    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
+    assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
     /* The thread that ran the job releases its reference last, so the memory is free a little
      * later. */
     while (st_memory_used() != before) {
-        assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
+        assert_false(api_job_find(jobs, wanted(id), take_facts, &job));
     }
     return true;
 }
@@ -267,7 +273,7 @@ static void a_job_whose_record_is_lost_has_failed_for_that_reason(void **state)
     assert_int_equal(job.state, API_JOB_FAILED);
     assert_int_equal(job.status, 507);
     assert_string_equal(job.location, "");
-    assert_true(api_job_find(jobs, NULL, id, copy_body, body));
+    assert_true(api_job_find(jobs, wanted(id), copy_body, body));
     assert_non_null(strstr(body, "\"code\":\"store_full\""));
     assert_non_null(strstr(body, loss.reason));
 }
@@ -344,7 +350,7 @@ static void what_ended_is_forgotten_in_time(void **state)
     start_keeping(0);
     slow_journal_advance(&slow, UINT64_MAX);
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
-    while (api_job_find(jobs, NULL, id, take_facts, &job)) {
+    while (api_job_find(jobs, wanted(id), take_facts, &job)) {
         assert_true(job.state <= API_JOB_RUNNING);
     }
     stop(NULL);
@@ -361,8 +367,8 @@ static void only_so_many_are_kept(void **state)
         wait_for(id, API_JOB_DONE);
     }
     api_job job;
-    assert_false(api_job_find(jobs, NULL, first, take_facts, &job));
-    assert_true(api_job_find(jobs, NULL, id, take_facts, &job));
+    assert_false(api_job_find(jobs, wanted(first), take_facts, &job));
+    assert_true(api_job_find(jobs, wanted(id), take_facts, &job));
 }
 
 static void a_stop_ends_what_waits_and_what_runs(void **state)
@@ -433,12 +439,12 @@ static void a_job_that_cannot_be_noted(void **state)
     assert_int_equal(post("/v1/meshes", CUBE, id), 202);
     (void)wait_for(id, API_JOB_DONE);
     refuses = ST_BEHIND;
-    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_BEHIND);
+    assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_BEHIND);
     (void)look(id);
     refuses = ST_OK;
-    assert_int_equal(api_job_remove(jobs, NULL, id, &forgotten, take_facts, &job), ST_OK);
+    assert_int_equal(api_job_remove(jobs, wanted(id), &forgotten, take_facts, &job), ST_OK);
     assert_true(forgotten);
-    assert_false(api_job_find(jobs, NULL, id, take_facts, &job));
+    assert_false(api_job_find(jobs, wanted(id), take_facts, &job));
 }
 
 int main(void)

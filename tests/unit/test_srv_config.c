@@ -29,7 +29,8 @@ static bool read_words(srv_config *config, const char *const *words)
         argv[argc] = (char *)(uintptr_t)words[argc];
     }
     message[0] = '\0';
-    return srv_config_read(config, argc, argv, environment, message, sizeof message);
+    const srv_config_sources from = {argc, argv, environment};
+    return srv_config_read(config, &from, message, sizeof message);
 }
 
 #define READ(config, ...) read_words(config, (const char *const[]){__VA_ARGS__, NULL})
@@ -229,7 +230,8 @@ static void printed_settings_read_back_the_same_and_help_names_them_all(void **s
         argc++;
         line = end + 1;
     }
-    assert_true(srv_config_read(&again, argc, argv, environment, message, sizeof message));
+    const srv_config_sources from = {argc, argv, environment};
+    assert_true(srv_config_read(&again, &from, message, sizeof message));
     out = fmemopen(twice, sizeof twice, "w");
     srv_config_print(&again, out);
     fclose(out);

@@ -101,7 +101,7 @@ static void pull(talk *t)
     int64_t got;
     if (!t->begun) {
         t->begun = true;
-        srv_live_begin(live, &t->stream, &sources[t - talks], "idle", -1, resume);
+        srv_live_begin(live, &t->stream, &sources[t - talks], -1, resume);
     }
     while ((got = srv_live_read(&t->stream, buffer, sizeof buffer)) > 0) {
         pthread_mutex_lock(&pool.lock);
@@ -159,8 +159,8 @@ static void open_pool(uint64_t heartbeat)
     for (size_t i = 0; i < STREAMS; i++) {
         talks[i] = (talk){.next = pool.ready};
         pthread_mutex_init(&talks[i].lock, NULL);
-        sources[i] =
-            (api_source){.self = &talks[i], .start = start, .read = read_talk, .finish = finish};
+        sources[i] = (api_source){
+            .self = &talks[i], .start = start, .read = read_talk, .finish = finish, .idle = "idle"};
         pool.ready = &talks[i];
     }
     for (size_t i = 0; i < WORKERS; i++) {

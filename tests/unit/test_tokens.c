@@ -329,36 +329,37 @@ static void a_ticket_is_good_once_for_its_path_and_a_minute(void **state)
 {
     (void)state;
     api_token_list list;
-    char ticket[API_TOKEN_TEXT + 1], another[API_TOKEN_TEXT + 1];
-    double expires;
+    api_ticket ticket, another;
     assert_true(read_text("a read " HASH " expires=1970-01-02\nb read " OTHER, &list));
     api_tickets *tickets = api_tickets_new();
     assert_non_null(tickets);
     api_token *a = list.items[0], *b = list.items[1], *got = NULL;
-    assert_true(api_tickets_make(tickets, a, "/x", 100, ticket, &expires));
-    assert_true(expires == 160);
-    assert_false(api_tickets_take(tickets, ticket, "/y", 100, &got));
+    assert_true(api_tickets_make(tickets, a, "/x", 100, &ticket));
+    assert_true(ticket.expires == 160);
+    assert_false(api_tickets_take(tickets, ticket.text, "/y", 100, &got));
     assert_false(api_tickets_take(tickets, "ticket", "/x", 100, &got));
-    assert_true(api_tickets_take(tickets, ticket, "/x", 159, &got));
+    assert_true(api_tickets_take(tickets, ticket.text, "/x", 159, &got));
     assert_ptr_equal(got, a);
     api_token_release(got);
-    assert_false(api_tickets_take(tickets, ticket, "/x", 159, &got));
-    assert_true(api_tickets_make(tickets, a, "/x", 100, ticket, &expires));
-    assert_false(api_tickets_take(tickets, ticket, "/x", 160, &got)); /* the ticket has expired */
-    assert_true(api_tickets_make(tickets, a, "/x", 86390, ticket, &expires));
-    assert_false(api_tickets_take(tickets, ticket, "/x", 86400, &got)); /* its token has expired */
+    assert_false(api_tickets_take(tickets, ticket.text, "/x", 159, &got));
+    assert_true(api_tickets_make(tickets, a, "/x", 100, &ticket));
+    assert_false(
+        api_tickets_take(tickets, ticket.text, "/x", 160, &got)); /* the ticket has expired */
+    assert_true(api_tickets_make(tickets, a, "/x", 86390, &ticket));
+    assert_false(
+        api_tickets_take(tickets, ticket.text, "/x", 86400, &got)); /* its token has expired */
     for (int i = 0; i < API_TICKETS_OF_A_TOKEN; i++) {
-        assert_true(api_tickets_make(tickets, b, "/x", 0, ticket, &expires));
+        assert_true(api_tickets_make(tickets, b, "/x", 0, &ticket));
     }
-    assert_false(api_tickets_make(tickets, b, "/x", 0, another, &expires));
+    assert_false(api_tickets_make(tickets, b, "/x", 0, &another));
     for (int i = API_TICKETS_OF_A_TOKEN; i < API_TICKETS; i++) {
-        assert_true(api_tickets_make(tickets, NULL, "/x", 0, another, &expires));
+        assert_true(api_tickets_make(tickets, NULL, "/x", 0, &another));
     }
-    assert_false(api_tickets_make(tickets, NULL, "/x", 0, another, &expires));
-    assert_true(api_tickets_make(tickets, NULL, "/x", 60, another, &expires));
-    assert_true(api_tickets_take(tickets, another, "/x", 60, &got));
+    assert_false(api_tickets_make(tickets, NULL, "/x", 0, &another));
+    assert_true(api_tickets_make(tickets, NULL, "/x", 60, &another));
+    assert_true(api_tickets_take(tickets, another.text, "/x", 60, &got));
     assert_null(got);
-    assert_true(api_tickets_make(tickets, b, "/x", 60, another, &expires)); /* freed at the end */
+    assert_true(api_tickets_make(tickets, b, "/x", 60, &another)); /* freed at the end */
     api_tickets_free(tickets);
     assert_int_equal(b->uses, 1);
     api_token_list_clear(&list);
