@@ -155,23 +155,23 @@ he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err)
     return HE_OK;
 }
 
-he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
-                         uint32_t components, he_rule rule, he_column **out, he_error *err)
+he_status he_soup_column(he_soup *soup, const he_column_schema *schema, he_column **out,
+                         he_error *err)
 {
     for (size_t i = 0; i < soup->column_count; i++) {
         he_column *column = soup->columns[i];
-        if (column->domain == domain && strcmp(column->name, name) == 0) {
-            if (column->type != type || column->components != components) {
-                return he_fail_plain(err, HE_BAD_VALUE,
-                                     "attribute %s is given with two types: %s and %s", name,
-                                     he_type_name(column->type), he_type_name(type));
+        if (column->domain == schema->domain && strcmp(column->name, schema->name) == 0) {
+            if (column->type != schema->type || column->components != schema->components) {
+                return he_fail_plain(
+                    err, HE_BAD_VALUE, "attribute %s is given with two types: %s and %s",
+                    schema->name, he_type_name(column->type), he_type_name(schema->type));
             }
             *out = column;
             return HE_OK;
         }
     }
     he_column *column;
-    he_status status = he_column_new(name, domain, type, components, rule, &column, err);
+    he_status status = he_column_new(schema, &column, err);
     if (status == HE_OK) {
         status = he_soup_take_column(soup, column, err);
         if (status != HE_OK) {

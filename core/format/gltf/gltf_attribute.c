@@ -247,7 +247,8 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
                             "the mesh would have more than %d attributes", (int)HE_GLTF_ATTRIBUTES);
     }
     he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
-    return he_soup_column(soup, name, HE_VERTEX, type, a->components, rule, out, err);
+    return he_soup_column(soup, &(he_column_schema){name, HE_VERTEX, type, a->components, rule},
+                          out, err);
 }
 
 static size_t number_of(const he_soup *soup, const he_column *column)

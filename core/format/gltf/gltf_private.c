@@ -373,8 +373,9 @@ static he_status take_column(he_gltf_surface *s, uint32_t object, const descript
     he_soup *soup = &s->asset->into->soup;
     he_column *column = he_gltf_find_column(soup, d->domain, d->name);
     bool fresh = column == NULL;
-    he_status status = he_soup_column(soup, d->name, d->domain, d->type, (uint32_t)d->components,
-                                      d->rule, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){d->name, d->domain, d->type, (uint32_t)d->components, d->rule},
+        &column, err);
     if (status == HE_OK) {
         status = he_gltf_extend(s, object, column, d->first + (size_t)d->rows, err);
     }

@@ -169,7 +169,8 @@ he_status he_spans_finish(he_spans *spans, he_soup *soup, const char *name, he_e
         return HE_OK;
     }
     he_column *column;
-    he_status status = he_soup_column(soup, name, HE_FACE, HE_UINT32, 1, HE_COPY, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){name, HE_FACE, HE_UINT32, 1, HE_COPY}, &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, faces, err);
     }

@@ -517,8 +517,10 @@ static he_status keep_libraries(obj *o, he_error *err)
     if (count == 0) {
         return HE_OK;
     }
-    he_status status = he_soup_column(&o->into->soup, HE_OBJ_LIBRARY, HE_MESH_KIND, HE_UINT32,
-                                      (uint32_t)count, HE_COPY, &column, err);
+    he_status status = he_soup_column(
+        &o->into->soup,
+        &(he_column_schema){HE_OBJ_LIBRARY, HE_MESH_KIND, HE_UINT32, (uint32_t)count, HE_COPY},
+        &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, 1, err);
     }

@@ -68,8 +68,10 @@ static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind d
     }
     he_column *column;
     he_type type = type_of_group(properties, found, count, group->color);
-    he_status status = he_soup_column(&rows->into->soup, group->attribute, domain, type,
-                                      (uint32_t)count, HE_INTERPOLATE, &column, err);
+    he_status status = he_soup_column(
+        &rows->into->soup,
+        &(he_column_schema){group->attribute, domain, type, (uint32_t)count, HE_INTERPOLATE},
+        &column, err);
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         double full = group->color ? he_ply_full_color(properties[found[i]].type) : 1;
         rows->targets[e->first + found[i]] =
@@ -94,8 +96,8 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
         }
         he_type type = he_ply_type_column(property->type);
         he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
-        he_status status =
-            he_soup_column(soup, property->name, domain, type, 1, rule, &target->column, err);
+        he_status status = he_soup_column(
+            soup, &(he_column_schema){property->name, domain, type, 1, rule}, &target->column, err);
         if (status != HE_OK) {
             return status;
         }
@@ -166,8 +168,11 @@ static he_status map_uvs(he_ply_rows *rows, const he_ply_element *e, he_error *e
     rows->targets[e->first + k].role = HE_PLY_UVS;
     return he_ply_is_of_corners(rows->header, "uv") && has_column(soup, HE_VERTEX, "uv")
                ? HE_OK
-               : he_soup_column(soup, "uv", HE_HALFEDGE, he_ply_type_column(property->type), 2,
-                                HE_INTERPOLATE, &rows->uv, err);
+               : he_soup_column(soup,
+                                &(he_column_schema){"uv", HE_HALFEDGE,
+                                                    he_ply_type_column(property->type), 2,
+                                                    HE_INTERPOLATE},
+                                &rows->uv, err);
 }
 
 static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_error *err)
