@@ -16,9 +16,13 @@ bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive)
 
 static void note_stale(he_gltf_surface *s, uint32_t value)
 {
-    he_notes_add(&s->asset->into->notes, "stale_extras",
-                 "ignored, because they do not fit the geometry: hedge's own data in extras", NULL,
-                 0, HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
+    he_notes_add(
+        &s->asset->into->notes,
+        &(he_warning){
+            .code = "stale_extras",
+            .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
+            .place = HE_PLACE_BYTE,
+            .at = he_json_place(&s->asset->json, value)});
 }
 
 /* Returns true if a failure is about memory, limits or cancellation and must be reported. Any other
@@ -197,8 +201,8 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
         d->rule++;
     }
     if (d->type == HE_TYPE_COUNT || d->rule == HE_RULE_COUNT ||
-        he_gltf_need(s->asset, object, "components", 1, HE_COLUMN_COMPONENTS, &d->components,
-                     NULL) != HE_OK ||
+        he_gltf_need(s->asset, object, "components", (he_gltf_range){1, HE_COLUMN_COMPONENTS},
+                     &d->components, NULL) != HE_OK ||
         he_json_string(json, he_json_find(json, object, "name"), d->name, sizeof d->name) == 0) {
         return HE_OK;
     }
