@@ -302,7 +302,11 @@ static bool find_dense(api_asker *a, const api_in *question, const asked *q, he_
     if (count >= api_asker_left(a)) {
         return api_asker_exceed(a, question);
     }
-    if (he_relation_dense(a->mesh, q->relation, q->target.of, q->target.count, q->flags,
+    if (he_relation_dense(a->mesh,
+                          &(he_neighbours){.relation = q->relation,
+                                           .of = q->target.of,
+                                           .count = q->target.count,
+                                           .flags = q->flags},
                           api_asker_left(a), out, &err) != HE_OK) {
         return api_asker_refuse(a, question, &err);
     }

@@ -491,9 +491,11 @@ static void note_edges(upload *u, const he_mesh *mesh)
     const he_import *import = &u->import;
     if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
-        he_notes_add(&u->import.notes, "edge_count",
-                     "ignored, because it is wrong: the number of edges", NULL, 0, HE_PLACE_LINE,
-                     import->edges_line);
+        he_notes_add(&u->import.notes,
+                     &(he_warning){.code = "edge_count",
+                                   .text = "ignored, because it is wrong: the number of edges",
+                                   .place = HE_PLACE_LINE,
+                                   .at = import->edges_line});
     }
 }
 

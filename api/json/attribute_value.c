@@ -285,8 +285,9 @@ bool api_read_column(const api_in *object, he_kind domain, const char *name, he_
     }
     he_column *column = NULL;
     he_error err = {0};
-    if (he_column_new(name, domain, (he_type)type, (uint32_t)count, (he_rule)rule, &column, &err) !=
-        HE_OK) {
+    if (he_column_new(
+            &(he_column_schema){name, domain, (he_type)type, (uint32_t)count, (he_rule)rule},
+            &column, &err) != HE_OK) {
         return api_in_fail(object, (int)err.status, "%s", err.text);
     }
     bool good = !api_in_find(object, "labels", &member) || read_labels(&member, column);

@@ -12,16 +12,18 @@ st_status api_mesh_new(api_exchange *x, const char *id, const char *name, he_mes
     const st_cause cause = api_cause(x);
     const char *prefix =
         x->token == NULL || x->token->prefix_count == 0 ? "" : x->token->prefixes[0];
+    st_new_mesh made = {.id = id, .name = name, .cause = &cause, .from = from};
     if (id != NULL || prefix[0] == '\0') {
-        return st_create_from(x->store, id, name, content, &cause, from, out);
+        return st_create_from(x->store, &made, content, out);
     }
-    char made[API_TOKEN_PREFIX + RANDOM + 1];
+    char chosen[API_TOKEN_PREFIX + RANDOM + 1];
     size_t length = strlen(prefix);
     st_status status;
-    memcpy(made, prefix, length);
+    memcpy(chosen, prefix, length);
+    made.id = chosen;
     do {
-        st_random_id(made + length, RANDOM);
-        status = st_create_from(x->store, made, name, content, &cause, from, out);
+        st_random_id(chosen + length, RANDOM);
+        status = st_create_from(x->store, &made, content, out);
     } while (status == ST_TAKEN);
     return status;
 }

@@ -207,9 +207,10 @@ static bool describe_by_query(api_exchange *x, writing *w)
                         "application/octet-stream needs the parameter \"type\"");
     }
     rule = rule < 0 ? (int)api_default_rule((he_type)type) : rule;
-    return he_column_new(x->attribute, x->kind, (he_type)type,
-                         (uint32_t)api_param_u64(x, "components", 1), (he_rule)rule, &w->column,
-                         &err) == HE_OK ||
+    return he_column_new(&(he_column_schema){x->attribute, x->kind, (he_type)type,
+                                             (uint32_t)api_param_u64(x, "components", 1),
+                                             (he_rule)rule},
+                         &w->column, &err) == HE_OK ||
            api_fail_core(x, &err);
 }
 

@@ -336,14 +336,21 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
     return HE_OK;
 }
 
-/* Runs one step of a subdivision, whose progress goes from `done` to `to` of the whole. */
-static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *sizes, double done,
-                          double to, he_error *err)
+/* What one step of a subdivision does. */
+typedef struct refinement {
+    he_scheme scheme;
+    bool thirds;           /* sqrt3: it cuts sharp edges in three */
+    const he_sizes *sizes; /* of the finer mesh */
+    double done, to;       /* its part of the whole progress */
+} refinement;
+
+static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement *r, he_error *err)
 {
+    const double done = r->done, to = r->to;
     double share = s->from->column_count > 0 ? 0.3 : 0.6;
     he_status status = he_watch_phase(s->watch, "refining", done + share * (to - done), err);
     if (status == HE_OK) {
-        status = make_room(fresh, sizes, err);
+        status = make_room(fresh, r->sizes, err);
     }
     if (status == HE_OK) {
         status = prepare(s, err);
@@ -368,26 +375,25 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const he_sizes *
 }
 
 /* Makes the finer mesh of content `c`, and finds which of its edges are features. */
-static he_status step(const he_mesh *m, const he_content *c, he_scheme scheme, bool thirds,
-                      start *at, const he_sizes *sizes, const double share[2], he_mesh **out,
-                      he_error *err)
+static he_status step(const he_mesh *m, const he_content *c, const refinement *r, start *at,
+                      he_mesh **out, he_error *err)
 {
     he_mesh *fresh = he_mesh_new();
     he_subdivide_step s = {.from = c,
                            .to = fresh == NULL ? NULL : &fresh->c,
                            .watch = m->watch,
-                           .scheme = scheme,
-                           .thirds = thirds,
+                           .scheme = r->scheme,
+                           .thirds = r->thirds,
                            .polygonal = at->sizes.polygons > 0,
                            .feature = at->feature,
                            .fixed = at->fixed,
                            .fixed_count = m->c.vertices.issued};
     if (at->feature != NULL) {
-        s.feature_next = he_bits_new(sizes->edges);
+        s.feature_next = he_bits_new(r->sizes->edges);
     }
     he_status status = fresh == NULL || (at->feature != NULL && s.feature_next == NULL)
                            ? no_memory(m, err)
-                           : run_step(&s, fresh, sizes, share[0], share[1], err);
+                           : run_step(&s, fresh, r, err);
     clear_step(&s);
     if (status != HE_OK) {
         he_mem_free(s.feature_next);
@@ -405,16 +411,18 @@ static he_status run(he_mesh *m, he_scheme scheme, unsigned steps, start *at, co
 {
     he_mesh *now = NULL;
     he_status status = HE_OK;
-    double total = 0, share[2] = {0, 0};
+    double total = 0;
+    refinement r = {.scheme = scheme};
     for (unsigned i = 0; i < steps; i++) {
         total += (double)rows_of(&sizes[i]);
     }
     for (unsigned i = 0; i < steps && status == HE_OK; i++) {
         he_mesh *finer = NULL;
-        share[0] = share[1];
-        share[1] += (double)rows_of(&sizes[i]) / total;
-        status = step(m, now == NULL ? &m->c : &now->c, scheme, cuts_in_three(scheme, i), at,
-                      &sizes[i], share, &finer, err);
+        r.thirds = cuts_in_three(scheme, i);
+        r.sizes = &sizes[i];
+        r.done = r.to;
+        r.to += (double)rows_of(&sizes[i]) / total;
+        status = step(m, now == NULL ? &m->c : &now->c, &r, at, &finer, err);
         if (status == HE_OK) {
             he_mesh_free(now);
             now = finer;

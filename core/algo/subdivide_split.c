@@ -57,10 +57,11 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
     }
     for (unsigned i = 0; i < 3; i++) {
         unsigned p = i == 0 ? 2 : i - 1, n = i == 2 ? 0 : i + 1;
-        he_subdivide_set(to, lo[i], in[i], hi[p], from->origin[h[i]], part[i]);
-        he_subdivide_set(to, in[i], hi[p], lo[i], m[i], part[i]);
-        he_subdivide_set(to, hi[p], lo[i], in[i], m[p], part[i]);
-        he_subdivide_set(to, in[i] + 1, in[n] + 1, in[p] + 1, m[p], centre);
+        he_subdivide_set(to, lo[i],
+                         (he_subdivide_links){in[i], hi[p], from->origin[h[i]], part[i]});
+        he_subdivide_set(to, in[i], (he_subdivide_links){hi[p], lo[i], m[i], part[i]});
+        he_subdivide_set(to, hi[p], (he_subdivide_links){lo[i], in[i], m[p], part[i]});
+        he_subdivide_set(to, in[i] + 1, (he_subdivide_links){in[n] + 1, in[p] + 1, m[p], centre});
         to->face_halfedge[part[i]] = lo[i];
         if (s->corner_from != NULL) {
             note_corner(s, h[i], h[n]);
@@ -90,10 +91,10 @@ static void cut_polygon(const he_subdivide_step *s, uint32_t f, uint32_t first_h
     for (uint32_t i = 0; i < count; i++) {
         uint32_t part = i == 0 ? f : at->face + i - 1, in = 2 * (at->edge + i);
         uint32_t lo = first(s, h), next_m = middle(s, h), next = from->next[h];
-        he_subdivide_set(to, lo, in, hi, from->origin[h], part);
-        he_subdivide_set(to, in, before + 1, lo, next_m, part);
-        he_subdivide_set(to, before + 1, hi, in, at->vertex, part);
-        he_subdivide_set(to, hi, lo, before + 1, m, part);
+        he_subdivide_set(to, lo, (he_subdivide_links){in, hi, from->origin[h], part});
+        he_subdivide_set(to, in, (he_subdivide_links){before + 1, lo, next_m, part});
+        he_subdivide_set(to, before + 1, (he_subdivide_links){hi, in, at->vertex, part});
+        he_subdivide_set(to, hi, (he_subdivide_links){lo, before + 1, m, part});
         to->face_halfedge[part] = lo;
         if (s->corner_from != NULL) {
             note_corner(s, h, next);
@@ -230,8 +231,10 @@ static void cut_boundary(const he_subdivide_step *s, uint32_t h)
 {
     const he_content *from = s->from;
     uint32_t lo = first(s, h), hi = second(s, h);
-    he_subdivide_set(s->to, lo, hi, second(s, from->prev[h]), from->origin[h], HE_NONE);
-    he_subdivide_set(s->to, hi, first(s, from->next[h]), lo, middle(s, h), HE_NONE);
+    he_subdivide_set(s->to, lo,
+                     (he_subdivide_links){hi, second(s, from->prev[h]), from->origin[h], HE_NONE});
+    he_subdivide_set(s->to, hi,
+                     (he_subdivide_links){first(s, from->next[h]), lo, middle(s, h), HE_NONE});
     if (s->corner_from != NULL) {
         s->corner_from[lo] = (he_corner_source){h, HE_NONE, HE_FROM_ROW};
     }
@@ -268,8 +271,10 @@ static he_status cut_edges(void *context, uint32_t part, size_t from, size_t to,
     (void)err;
     for (size_t e = from; e < to; e++) {
         if (s->from->next[2 * e] == HE_DEAD) {
-            he_subdivide_set(s->to, (uint32_t)(2 * e), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
-            he_subdivide_set(s->to, (uint32_t)(2 * e + 1), HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+            he_subdivide_set(s->to, (uint32_t)(2 * e),
+                             (he_subdivide_links){HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD});
+            he_subdivide_set(s->to, (uint32_t)(2 * e + 1),
+                             (he_subdivide_links){HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD});
         } else {
             cut_edge(s, (uint32_t)e);
         }

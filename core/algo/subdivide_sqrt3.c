@@ -117,7 +117,9 @@ typedef struct corner {
 static void put(const he_subdivide_step *s, uint32_t face, const corner c[3])
 {
     for (unsigned i = 0; i < 3; i++) {
-        he_subdivide_set(s->to, c[i].h, c[(i + 1) % 3].h, c[(i + 2) % 3].h, c[i].origin, face);
+        he_subdivide_set(
+            s->to, c[i].h,
+            (he_subdivide_links){c[(i + 1) % 3].h, c[(i + 2) % 3].h, c[i].origin, face});
         if (s->corner_from != NULL) {
             s->corner_from[c[i].h] = c[i].source;
         }
@@ -183,8 +185,10 @@ static void put_boundary(const he_subdivide_step *s, uint32_t h)
         uint32_t at = cut ? segment(s, h, j) : h;
         uint32_t after = !cut ? next : j < 2 ? segment(s, h, j + 1) : segment(s, next, 0);
         uint32_t before = !cut ? prev : j > 0 ? segment(s, h, j - 1) : segment(s, prev, 2);
-        he_subdivide_set(s->to, at, after, before, j == 0 ? from->origin[h] : point(s, h, j - 1),
-                         HE_NONE);
+        he_subdivide_set(s->to, at,
+                         (he_subdivide_links){after, before,
+                                              j == 0 ? from->origin[h] : point(s, h, j - 1),
+                                              HE_NONE});
         if (s->corner_from != NULL && j == 0) {
             s->corner_from[at] = at_row(h);
         }
@@ -295,7 +299,8 @@ he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err)
         status = he_watch_at(s->watch, e, from->edges.issued, err);
         if (from->next[2 * e] == HE_DEAD) {
             for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
-                he_subdivide_set(s->to, h, HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD);
+                he_subdivide_set(s->to, h,
+                                 (he_subdivide_links){HE_DEAD, HE_DEAD, HE_DEAD, HE_DEAD});
             }
         } else {
             put_edge(s, e);

@@ -90,13 +90,18 @@ static inline bool he_subdivide_is_doubled(const he_content *from, uint32_t h, u
     uint32_t f = from->face[h];
     return f != HE_NONE && f == from->face[after ^ 1] && from->next[from->next[from->next[h]]] == h;
 }
-static inline void he_subdivide_set(he_content *to, uint32_t h, uint32_t next, uint32_t prev,
-                                    uint32_t origin, uint32_t face)
+
+/* All links of a half-edge. */
+typedef struct he_subdivide_links {
+    uint32_t next, prev, origin, face;
+} he_subdivide_links;
+
+static inline void he_subdivide_set(he_content *to, uint32_t h, he_subdivide_links links)
 {
-    to->next[h] = next;
-    to->prev[h] = prev;
-    to->origin[h] = origin;
-    to->face[h] = face;
+    to->next[h] = links.next;
+    to->prev[h] = links.prev;
+    to->origin[h] = links.origin;
+    to->face[h] = links.face;
 }
 
 /* Writes the links of the finer content `to`, with the vertices' stored half-edges, the features

@@ -52,9 +52,8 @@ HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices,
 uint32_t he_soup_face_of(const he_soup *soup, size_t corner);
 /* Finds the column of this domain and name, or makes it.
  * Returns HE_BAD_VALUE if a column of another type exists. */
-HE_NODISCARD he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
-                                      uint32_t components, he_rule rule, he_column **out,
-                                      he_error *err);
+HE_NODISCARD he_status he_soup_column(he_soup *soup, const he_column_schema *schema,
+                                      he_column **out, he_error *err);
 /* Adds a column; the soup must have none of its domain and name. On success the soup owns it. */
 HE_NODISCARD he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err);
 

@@ -32,33 +32,85 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* Makes room for one more row of an array; `most` is what the limits allow. */
-static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity, size_t count,
-                      uint64_t limit, uint64_t most, const char *what, he_error *err)
+/* The rows of one kind, in an array that grows. */
+typedef struct rows {
+    void *array;
+    size_t size; /* bytes of a row */
+    size_t count, capacity;
+    uint64_t limit;   /* how many the soup may have; 0: as many as the structure */
+    uint64_t most;    /* how many the structure can have */
+    const char *name; /* for messages */
+} rows;
+
+/* Makes room for one more row. */
+static he_status grow(const he_soup *soup, rows *r, he_error *err)
 {
-    uint64_t allowed = limit != 0 && limit < most ? limit : most;
-    if (count >= allowed) {
+    uint64_t allowed = r->limit != 0 && r->limit < r->most ? r->limit : r->most;
+    if (r->count >= allowed) {
         return he_fail_plain(err, HE_LIMIT, "there are more than %llu %s",
-                             (unsigned long long)allowed, what);
+                             (unsigned long long)allowed, r->name);
     }
-    if (count < *capacity) {
+    if (r->count < r->capacity) {
         return HE_OK;
     }
-    size_t wanted = he_mem_grown(*capacity, count + 1);
+    size_t wanted = he_mem_grown(r->capacity, r->count + 1);
     if (soup->limits.bytes != 0 &&
-        bytes_of(soup) + (wanted - *capacity) * size > soup->limits.bytes) {
+        bytes_of(soup) + (wanted - r->capacity) * r->size > soup->limits.bytes) {
         return he_fail_plain(err, HE_LIMIT, "the mesh needs more than %llu bytes of memory",
                              (unsigned long long)soup->limits.bytes);
     }
-    void *block;
-    memcpy(&block, array, sizeof block);
-    block = he_mem_array(block, wanted, size);
-    if (block == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", wanted, what);
+    void *array = he_mem_array(r->array, wanted, r->size);
+    if (array == NULL) {
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu %s", wanted, r->name);
     }
-    memcpy(array, &block, sizeof block);
-    *capacity = wanted;
+    r->array = array;
+    r->capacity = wanted;
     return HE_OK;
+}
+
+static he_status grow_vertices(he_soup *soup, he_error *err)
+{
+    rows r = {.array = soup->positions,
+              .size = sizeof *soup->positions,
+              .count = soup->vertex_count,
+              .capacity = soup->vertex_capacity,
+              .limit = soup->limits.vertices,
+              .most = HE_MAX_ROWS,
+              .name = "vertices"};
+    he_status status = grow(soup, &r, err);
+    soup->positions = r.array;
+    soup->vertex_capacity = r.capacity;
+    return status;
+}
+
+static he_status grow_faces(he_soup *soup, he_error *err)
+{
+    rows r = {.array = soup->starts,
+              .size = sizeof *soup->starts,
+              .count = soup->face_count,
+              .capacity = soup->face_capacity,
+              .limit = soup->limits.faces,
+              .most = HE_MAX_ROWS,
+              .name = "faces"};
+    he_status status = grow(soup, &r, err);
+    soup->starts = r.array;
+    soup->face_capacity = r.capacity;
+    return status;
+}
+
+static he_status grow_corners(he_soup *soup, he_error *err)
+{
+    rows r = {.array = soup->corners,
+              .size = sizeof *soup->corners,
+              .count = soup->corner_count,
+              .capacity = soup->corner_capacity,
+              .limit = soup->limits.corners,
+              .most = UINT32_MAX - 1,
+              .name = "corners"};
+    he_status status = grow(soup, &r, err);
+    soup->corners = r.array;
+    soup->corner_capacity = r.capacity;
+    return status;
 }
 
 he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err)
@@ -69,9 +121,7 @@ he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err)
     }
     if (soup->vertex_count == soup->vertex_capacity ||
         (soup->limits.vertices != 0 && soup->vertex_count >= soup->limits.vertices)) {
-        he_status status =
-            grow(soup, &soup->positions, sizeof *soup->positions, &soup->vertex_capacity,
-                 soup->vertex_count, soup->limits.vertices, HE_MAX_ROWS, "vertices", err);
+        he_status status = grow_vertices(soup, err);
         if (status != HE_OK) {
             return status;
         }
@@ -84,8 +134,7 @@ he_status he_soup_begin_face(he_soup *soup, he_error *err)
 {
     if (soup->face_count == soup->face_capacity ||
         (soup->limits.faces != 0 && soup->face_count >= soup->limits.faces)) {
-        he_status status = grow(soup, &soup->starts, sizeof *soup->starts, &soup->face_capacity,
-                                soup->face_count, soup->limits.faces, HE_MAX_ROWS, "faces", err);
+        he_status status = grow_faces(soup, err);
         if (status != HE_OK) {
             return status;
         }
@@ -98,9 +147,7 @@ he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err)
 {
     if (soup->corner_count == soup->corner_capacity ||
         (soup->limits.corners != 0 && soup->corner_count >= soup->limits.corners)) {
-        he_status status =
-            grow(soup, &soup->corners, sizeof *soup->corners, &soup->corner_capacity,
-                 soup->corner_count, soup->limits.corners, UINT32_MAX - 1, "corners", err);
+        he_status status = grow_corners(soup, err);
         if (status != HE_OK) {
             return status;
         }
@@ -155,23 +202,23 @@ he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err)
     return HE_OK;
 }
 
-he_status he_soup_column(he_soup *soup, const char *name, he_kind domain, he_type type,
-                         uint32_t components, he_rule rule, he_column **out, he_error *err)
+he_status he_soup_column(he_soup *soup, const he_column_schema *schema, he_column **out,
+                         he_error *err)
 {
     for (size_t i = 0; i < soup->column_count; i++) {
         he_column *column = soup->columns[i];
-        if (column->domain == domain && strcmp(column->name, name) == 0) {
-            if (column->type != type || column->components != components) {
-                return he_fail_plain(err, HE_BAD_VALUE,
-                                     "attribute %s is given with two types: %s and %s", name,
-                                     he_type_name(column->type), he_type_name(type));
+        if (column->domain == schema->domain && strcmp(column->name, schema->name) == 0) {
+            if (column->type != schema->type || column->components != schema->components) {
+                return he_fail_plain(
+                    err, HE_BAD_VALUE, "attribute %s is given with two types: %s and %s",
+                    schema->name, he_type_name(column->type), he_type_name(schema->type));
             }
             *out = column;
             return HE_OK;
         }
     }
     he_column *column;
-    he_status status = he_column_new(name, domain, type, components, rule, &column, err);
+    he_status status = he_column_new(schema, &column, err);
     if (status == HE_OK) {
         status = he_soup_take_column(soup, column, err);
         if (status != HE_OK) {

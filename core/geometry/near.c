@@ -20,14 +20,14 @@
  * memory is slow. */
 enum { STRETCH = 16 * HE_WATCH_STRIDE };
 
-he_status he_near_make(he_near *out, const he_vec3 *points, size_t most, double tolerance,
-                       uint64_t seed, he_watch *watch, he_error *err)
+he_status he_near_make(he_near *out, const he_near_points *points, size_t most, he_watch *watch,
+                       he_error *err)
 {
     size_t slots = 16;
     while (slots < 2 * most) {
         slots *= 2;
     }
-    he_near near = {.mask = slots - 1, .tolerance = tolerance, .points = points};
+    he_near near = {.mask = slots - 1, .tolerance = points->tolerance, .points = points->at};
     near.slots = he_mem_array(NULL, slots, sizeof *near.slots);
     if (near.slots == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to compare %zu positions", most);
@@ -41,7 +41,7 @@ he_status he_near_make(he_near *out, const he_vec3 *points, size_t most, double 
         size_t rest = slots - i < STRETCH ? slots - i : STRETCH;
         memset(near.slots + i, 0, rest * sizeof *near.slots);
     }
-    near.seed = seed ^ (uint64_t)(uintptr_t)near.slots * 0x94D049BB133111EB;
+    near.seed = points->seed ^ (uint64_t)(uintptr_t)near.slots * 0x94D049BB133111EB;
     *out = near;
     return HE_OK;
 }

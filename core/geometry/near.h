@@ -28,13 +28,20 @@ typedef struct he_near {
     const he_vec3 *points; /* borrowed; the kept ones are found here by their numbers */
 } he_near;
 
-/* Makes room for `most` kept points. `seed` and the address of the table keep a file from choosing
- * points that all fall into one slot. `watch` may be NULL.
+/* The points that are compared, and how near to each other two of them must be. */
+typedef struct he_near_points {
+    const he_vec3 *at; /* borrowed while the table is used */
+    double tolerance;
+    /* A random number. It and the address of the table keep a file from choosing points that all
+     * fall into one slot. */
+    uint64_t seed;
+} he_near_points;
+
+/* Makes room for `most` kept points. `watch` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_near_make(he_near *out, const he_vec3 *points, size_t most,
-                                    double tolerance, uint64_t seed, he_watch *watch,
-                                    he_error *err);
+HE_NODISCARD he_status he_near_make(he_near *out, const he_near_points *points, size_t most,
+                                    he_watch *watch, he_error *err);
 void he_near_clear(he_near *near);
 /* Finds the kept point of lowest number within the tolerance of p; HE_NONE if there is none. *home
  * must then be passed on to he_near_keep. */

@@ -101,10 +101,9 @@ void st_unpacker_free(st_unpacker *unpacker)
 
 /* The frame is decompressed directly into the room of a part, so neither its window nor its claimed
  * size makes zstd allocate; a frame longer than it claims, or than a part, is refused. */
-st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,
-                         const unsigned char **out, size_t *out_size, const char **why)
+st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why)
 {
-    const unsigned long long said = ZSTD_getFrameContentSize(part, size);
+    const unsigned long long said = ZSTD_getFrameContentSize(packed.bytes, packed.size);
     *why = "it is no zstd frame that says how long it is";
     if (said == ZSTD_CONTENTSIZE_UNKNOWN || said == ZSTD_CONTENTSIZE_ERROR) {
         return ST_DAMAGED;
@@ -113,8 +112,8 @@ st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_
     if (said > sizeof unpacker->part) {
         return ST_DAMAGED;
     }
-    const size_t got =
-        ZSTD_decompressDCtx(unpacker->zstd, unpacker->part, (size_t)said, part, size);
+    const size_t got = ZSTD_decompressDCtx(unpacker->zstd, unpacker->part, (size_t)said,
+                                           packed.bytes, packed.size);
     if (ZSTD_isError(got)) {
         *why = ZSTD_getErrorName(got);
         return ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation ? ST_NO_MEMORY : ST_DAMAGED;
@@ -123,7 +122,6 @@ st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_
     if (got != said) {
         return ST_DAMAGED;
     }
-    *out = unpacker->part;
-    *out_size = got;
+    *out = (st_part){unpacker->part, got};
     return ST_OK;
 }

@@ -19,14 +19,19 @@ void st_packer_free(st_packer *packer); /* takes NULL */
  * every part if `packer` is NULL or memory is out. */
 size_t st_part_pack(st_packer *packer, unsigned char *part, size_t size, unsigned *coding);
 
+/* The bytes of a part, which are borrowed. */
+typedef struct st_part {
+    const unsigned char *bytes;
+    size_t size;
+} st_part;
+
 /* Makes a decompressor. Returns NULL if memory is out. */
 st_unpacker *st_unpacker_new(void);
 void st_unpacker_free(st_unpacker *unpacker); /* takes NULL */
-/* Decompresses a part. *out is valid until the next part is decompressed; *out_size is at most
+/* Decompresses a part. *out is valid until the next part is decompressed; its size is at most
  * HE_STORED_PART_ROOM.
  * Returns ST_NO_MEMORY if memory is out.
  * Returns ST_DAMAGED if the part is not valid; *why, a literal, says what is wrong. */
-st_status st_part_unpack(st_unpacker *unpacker, const unsigned char *part, size_t size,
-                         const unsigned char **out, size_t *out_size, const char **why);
+st_status st_part_unpack(st_unpacker *unpacker, st_part packed, st_part *out, const char **why);
 
 #endif

@@ -28,10 +28,17 @@ const char *he_rule_name(he_rule rule)
     return rules[rule];
 }
 
-he_status he_column_new(const char *name, he_kind domain, he_type type, uint32_t components,
-                        he_rule rule, he_column **out, he_error *err)
+/* Returns the schema of a column; the name is borrowed from it. */
+static he_column_schema schema_of(const he_column *column)
 {
-    size_t length = strlen(name);
+    return (he_column_schema){column->name, column->domain, column->type, column->components,
+                              column->rule};
+}
+
+he_status he_column_new(const he_column_schema *schema, he_column **out, he_error *err)
+{
+    size_t length = strlen(schema->name);
+    uint32_t components = schema->components;
     if (length == 0 || length >= HE_COLUMN_NAME) {
         return he_fail_plain(err, HE_BAD_VALUE,
                              "an attribute's name must have 1 to %d bytes, and this one has %zu",
@@ -43,14 +50,14 @@ he_status he_column_new(const char *name, he_kind domain, he_type type, uint32_t
     }
     he_column *column = he_mem_zero(1, sizeof *column);
     if (column == NULL) {
-        return he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", name);
+        return he_fail_plain(err, HE_NO_MEMORY, "no memory for attribute %s", schema->name);
     }
-    memcpy(column->name, name, length + 1);
-    column->domain = domain;
-    column->type = type;
-    column->rule = rule;
+    memcpy(column->name, schema->name, length + 1);
+    column->domain = schema->domain;
+    column->type = schema->type;
+    column->rule = schema->rule;
     column->components = components;
-    column->row_bytes = components * (uint32_t)types[type].bytes;
+    column->row_bytes = components * (uint32_t)types[schema->type].bytes;
     *out = column;
     return HE_OK;
 }
@@ -67,8 +74,8 @@ void he_column_free(he_column *column)
 he_status he_column_like(const he_column *column, size_t rows, he_column **out, he_error *err)
 {
     he_column *like;
-    he_status status = he_column_new(column->name, column->domain, column->type, column->components,
-                                     column->rule, &like, err);
+    const he_column_schema schema = schema_of(column);
+    he_status status = he_column_new(&schema, &like, err);
     if (status != HE_OK) {
         return status;
     }
@@ -191,8 +198,10 @@ he_status he_column_for_corners(const he_column *column, const char *name, size_
                                 he_column **out, he_error *err)
 {
     he_column *made;
-    he_status status = he_column_new(name, HE_HALFEDGE, column->type, column->components,
-                                     column->rule, &made, err);
+    he_column_schema schema = schema_of(column);
+    schema.name = name;
+    schema.domain = HE_HALFEDGE;
+    he_status status = he_column_new(&schema, &made, err);
     if (status != HE_OK) {
         return status;
     }

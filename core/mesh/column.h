@@ -27,6 +27,15 @@ enum { HE_COLUMN_NAME = 64, HE_COLUMN_COMPONENTS = 16, HE_COLUMN_ROW_BYTES = 128
 /* The strings of a categorical column, shared by reference count between copies of a mesh. */
 typedef struct he_labels he_labels;
 
+/* The schema of an attribute: what its values mean, without the values. */
+typedef struct he_column_schema {
+    const char *name; /* UTF-8, ends in NUL, of 1 to HE_COLUMN_NAME - 1 bytes */
+    he_kind domain;
+    he_type type;
+    uint32_t components; /* 1 to HE_COLUMN_COMPONENTS */
+    he_rule rule;
+} he_column_schema;
+
 struct he_column {
     char name[HE_COLUMN_NAME]; /* UTF-8, ends in NUL */
     he_kind domain;
@@ -47,8 +56,7 @@ const char *he_rule_name(he_rule rule); /* "copy", "interpolate", "default" */
 
 /* Makes a column without rows; its default is zero.
  * Returns HE_BAD_VALUE if the name is empty or too long, or `components` is outside 1..16. */
-HE_NODISCARD he_status he_column_new(const char *name, he_kind domain, he_type type,
-                                     uint32_t components, he_rule rule, he_column **out,
+HE_NODISCARD he_status he_column_new(const he_column_schema *schema, he_column **out,
                                      he_error *err);
 void he_column_free(he_column *column);
 /* Makes a column of `rows` default rows with the name, domain, type, rule and labels of

@@ -95,16 +95,29 @@ static bool walk_on(walk *w)
     return true;
 }
 
-static void move_vertices(const he_content *from, const ranks *r, size_t at, he_content *to)
+/* The content whose live rows are moved, the one into which, and their new ids. */
+typedef struct moving {
+    const he_content *from;
+    he_content *to;
+    const ranks *ranks;
+} moving;
+
+static void move_vertices(const moving *m, size_t at)
 {
+    const he_content *from = m->from;
+    const ranks *r = m->ranks;
+    he_content *to = m->to;
     for (walk w = walk_block(r->vertices, at); walk_on(&w);) {
         to->position[w.fresh] = from->position[w.row];
         to->vertex_halfedge[w.fresh] = rank_halfedge(r->edges, from->vertex_halfedge[w.row]);
     }
 }
 
-static void move_edges(const he_content *from, const ranks *r, size_t at, he_content *to)
+static void move_edges(const moving *m, size_t at)
 {
+    const he_content *from = m->from;
+    const ranks *r = m->ranks;
+    he_content *to = m->to;
     for (walk w = walk_block(r->edges, at); walk_on(&w);) {
         for (uint32_t side = 0; side < 2; side++) {
             uint32_t h = 2 * w.row + side, fresh = 2 * w.fresh + side, face = from->face[h];
@@ -116,22 +129,25 @@ static void move_edges(const he_content *from, const ranks *r, size_t at, he_con
     }
 }
 
-static void move_faces(const he_content *from, const ranks *r, size_t at, he_content *to)
+static void move_faces(const moving *m, size_t at)
 {
+    const he_content *from = m->from;
+    const ranks *r = m->ranks;
+    he_content *to = m->to;
     for (walk w = walk_block(r->faces, at); walk_on(&w);) {
         to->face_halfedge[w.fresh] = rank_halfedge(r->edges, from->face_halfedge[w.row]);
     }
 }
 
-static he_status move_table(const he_content *from, const ranks *r, uint32_t issued, he_content *to,
-                            void (*move)(const he_content *from, const ranks *r, size_t at,
-                                         he_content *to),
-                            he_watch *watch, he_error *err)
+/* Moves a table of `issued` rows, block by block. */
+static he_status move_table(const moving *m, uint32_t issued,
+                            void (*move)(const moving *m, size_t at), he_watch *watch,
+                            he_error *err)
 {
     he_status status = HE_OK;
     for (size_t at = 0; at < block_count(issued) && status == HE_OK; at++) {
         status = he_watch_at(watch, at * BLOCK_ROWS, issued, err);
-        move(from, r, at, to);
+        move(m, at);
     }
     return status;
 }
@@ -139,18 +155,18 @@ static he_status move_table(const he_content *from, const ranks *r, uint32_t iss
 static he_status move_links(const he_content *from, const ranks *r, he_content *to, he_watch *watch,
                             he_error *err)
 {
+    const moving m = {from, to, r};
     he_status status = he_watch_phase(watch, "moving vertices", 0.2, err);
     if (status == HE_OK) {
-        status = move_table(from, r, from->vertices.issued, to, move_vertices, watch, err);
+        status = move_table(&m, from->vertices.issued, move_vertices, watch, err);
     }
     if (status == HE_OK) {
         status = he_watch_phase(watch, "moving edges", 0.8, err);
     }
     if (status == HE_OK) {
-        status = move_table(from, r, from->edges.issued, to, move_edges, watch, err);
+        status = move_table(&m, from->edges.issued, move_edges, watch, err);
     }
-    return status != HE_OK ? status
-                           : move_table(from, r, from->faces.issued, to, move_faces, NULL, err);
+    return status != HE_OK ? status : move_table(&m, from->faces.issued, move_faces, NULL, err);
 }
 
 static void move_row(const he_column *from, size_t row, he_column *to, size_t fresh)

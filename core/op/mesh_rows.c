@@ -28,12 +28,11 @@ enum {
 static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_plane_parts parts;
-    const double *tolerance =
-        args[PLANE_SPLIT_TOLERANCE].given ? &args[PLANE_SPLIT_TOLERANCE].number : NULL;
+    const he_plane plane = {args[PLANE_SPLIT_POINT].points[0], args[PLANE_SPLIT_NORMAL].points[0],
+                            args[PLANE_SPLIT_TOLERANCE].given ? &args[PLANE_SPLIT_TOLERANCE].number
+                                                              : NULL};
     const uint32_t *faces = args[PLANE_SPLIT_FACES].given ? args[PLANE_SPLIT_FACES].ids : NULL;
-    he_status status =
-        he_plane_split(m, args[PLANE_SPLIT_POINT].points[0], args[PLANE_SPLIT_NORMAL].points[0],
-                       tolerance, faces, args[PLANE_SPLIT_FACES].count, &parts, err);
+    he_status status = he_plane_split(m, &plane, faces, args[PLANE_SPLIT_FACES].count, &parts, err);
     if (status == HE_OK) {
         he_give_number(out, PLANE_SPLIT_OUT_EDGES_SPLIT, (double)parts.vertices.count);
         he_give_number(out, PLANE_SPLIT_OUT_FACES_SPLIT, parts.faces_split);
@@ -56,11 +55,11 @@ enum {
 static he_status run_plane_cut(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_cut_parts parts;
-    const double *tolerance =
-        args[PLANE_CUT_TOLERANCE].given ? &args[PLANE_CUT_TOLERANCE].number : NULL;
-    he_status status = he_plane_cut(
-        m, args[PLANE_CUT_POINT].points[0], args[PLANE_CUT_NORMAL].points[0], tolerance,
-        (he_cut_side)args[PLANE_CUT_KEEP].choice, args[PLANE_CUT_CAP].flag, &parts, err);
+    const he_plane plane = {args[PLANE_CUT_POINT].points[0], args[PLANE_CUT_NORMAL].points[0],
+                            args[PLANE_CUT_TOLERANCE].given ? &args[PLANE_CUT_TOLERANCE].number
+                                                            : NULL};
+    he_status status = he_plane_cut(m, &plane, (he_cut_side)args[PLANE_CUT_KEEP].choice,
+                                    args[PLANE_CUT_CAP].flag, &parts, err);
     if (status == HE_OK) {
         he_give_number(out, PLANE_CUT_OUT_EDGES_SPLIT, parts.edges_split);
         he_give_number(out, PLANE_CUT_OUT_FACES_SPLIT, parts.faces_split);

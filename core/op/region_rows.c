@@ -11,9 +11,10 @@ static he_status run_face_extrude(he_mesh *m, const he_arg *args, he_results *ou
 {
     he_region_parts parts;
     const he_vec3 *by = args[FACE_EXTRUDE_BY].given ? args[FACE_EXTRUDE_BY].points : NULL;
-    he_status status = he_face_extrude(
-        m, args[FACE_EXTRUDE_FACES].ids, args[FACE_EXTRUDE_FACES].count,
-        args[FACE_EXTRUDE_REGION].flag, by, args[FACE_EXTRUDE_DISTANCE].number, &parts, err);
+    he_status status =
+        he_face_extrude(m, args[FACE_EXTRUDE_FACES].ids, args[FACE_EXTRUDE_FACES].count,
+                        args[FACE_EXTRUDE_REGION].flag,
+                        (he_extrude_motion){by, args[FACE_EXTRUDE_DISTANCE].number}, &parts, err);
     if (status == HE_OK) {
         he_give_list(out, FACE_EXTRUDE_OUT_VERTICES, &parts.vertices);
         he_give_list(out, FACE_EXTRUDE_OUT_EDGES, &parts.edges);
@@ -30,9 +31,9 @@ static he_status run_face_inset(he_mesh *m, const he_arg *args, he_results *out,
 {
     he_region_parts parts;
     double factor = args[FACE_INSET_FACTOR].given ? args[FACE_INSET_FACTOR].number : 0;
-    he_status status = he_face_inset(m, args[FACE_INSET_FACES].ids, args[FACE_INSET_FACES].count,
-                                     args[FACE_INSET_REGION].flag, factor,
-                                     args[FACE_INSET_DISTANCE].number, &parts, err);
+    he_status status = he_face_inset(
+        m, args[FACE_INSET_FACES].ids, args[FACE_INSET_FACES].count, args[FACE_INSET_REGION].flag,
+        (he_inset_width){factor, args[FACE_INSET_DISTANCE].number}, &parts, err);
     if (status == HE_OK) {
         he_give_list(out, FACE_INSET_OUT_VERTICES, &parts.vertices);
         he_give_list(out, FACE_INSET_OUT_EDGES, &parts.edges);

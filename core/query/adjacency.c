@@ -372,14 +372,15 @@ static uint64_t bound(const he_mesh *m, const he_relation *relation)
     return relation->of == HE_HALFEDGE ? 0 : 2u * (uint64_t)m->c.edges.live;
 }
 
-he_status he_relation_dense(const he_mesh *m, const he_relation *relation, const uint32_t *of,
-                            size_t count, unsigned flags, uint64_t limit, he_dense *out,
-                            he_error *err)
+he_status he_relation_dense(const he_mesh *m, const he_neighbours *asked, uint64_t limit,
+                            he_dense *out, he_error *err)
 {
+    const he_relation *relation = asked->relation;
+    const uint32_t *of = asked->of;
     if (limit == 0 || limit > UINT32_MAX) {
         limit = UINT32_MAX;
     }
-    he_gather g = {.of = of, .count = count, .budget = limit, .flags = flags};
+    he_gather g = {.of = of, .count = asked->count, .budget = limit, .flags = asked->flags};
     he_dense dense = {0};
     g.ids = &dense.ids;
     he_status status = HE_OK;
@@ -392,7 +393,7 @@ he_status he_relation_dense(const he_mesh *m, const he_relation *relation, const
             status = he_ids_reserve(&dense.ids, most, err);
         }
     }
-    for (size_t i = 0; of != NULL && i < count && status == HE_OK; i++) {
+    for (size_t i = 0; of != NULL && i < asked->count && status == HE_OK; i++) {
         status = he_mesh_require(m, relation->of, of[i], err);
     }
     if (status == HE_OK) {

@@ -60,13 +60,19 @@ typedef struct he_dense {
     he_ids offsets, ids;
 } he_dense;
 
-/* Finds the neighbours of many elements. `of` lists `count` elements, which may repeat; NULL means
- * all live elements by rising id. `limit` is the most half-edges to visit, since a list may name
- * one vertex of a thousand neighbours a thousand times; with 0 only the size of 32-bit offsets is a
- * limit. The caller clears `out`. Returns the errors of he_relation_append, too.
- * Returns HE_LIMIT if more half-edges would be visited. */
-HE_NODISCARD he_status he_relation_dense(const he_mesh *m, const he_relation *relation,
-                                         const uint32_t *of, size_t count, unsigned flags,
+/* The question which neighbours many elements have. */
+typedef struct he_neighbours {
+    const he_relation *relation;
+    const uint32_t *of; /* the elements, which may repeat; NULL: all live ones by rising id */
+    size_t count;
+    unsigned flags;
+} he_neighbours;
+
+/* Finds the neighbours of many elements. `limit` is the most half-edges to visit, since a list may
+ * name one vertex of a thousand neighbours a thousand times; with 0 only the size of 32-bit offsets
+ * is a limit. The caller clears `out`. Returns the errors of he_relation_append, too. Returns
+ * HE_LIMIT if more half-edges would be visited. */
+HE_NODISCARD he_status he_relation_dense(const he_mesh *m, const he_neighbours *asked,
                                          uint64_t limit, he_dense *out, he_error *err);
 void he_dense_clear(he_dense *dense);
 

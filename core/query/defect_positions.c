@@ -19,7 +19,8 @@ he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed,
     const he_vec3 *at = m->c.position;
     he_status status = he_watch_phase(watch, "comparing positions", 0.5, err);
     if (status == HE_OK) {
-        status = he_near_make(&near, at, m->c.vertices.live, merge, seed, watch, err);
+        status = he_near_make(&near, &(he_near_points){.at = at, .tolerance = merge, .seed = seed},
+                              m->c.vertices.live, watch, err);
     }
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
         status = he_watch_at(watch, v, m->c.vertices.issued, err);

@@ -42,8 +42,8 @@ he_status he_mend_weld(he_mend *m, double tolerance, he_error *err)
             he_fail_plain(err, HE_NO_MEMORY, "no memory to weld %zu vertices", soup->vertex_count);
         goto out;
     }
-    status = he_near_make(&near, soup->positions, soup->vertex_count, tolerance, 0,
-                          soup->limits.watch, err);
+    status = he_near_make(&near, &(he_near_points){.at = soup->positions, .tolerance = tolerance},
+                          soup->vertex_count, soup->limits.watch, err);
     if (status == HE_OK) {
         status = find_kept(m, &near, into, from, &kept, err);
     }

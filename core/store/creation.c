@@ -69,15 +69,15 @@ static st_status publish(st_store *store, st_mesh *mesh, const st_cause *cause, 
 }
 
 /* Makes a mesh of the content, which no other thread knows yet, and room for its records. */
-static st_status prepare(st_store *store, const char *id, const char *name, const st_cause *cause,
-                         he_mesh *content, size_t records, st_booking *booking, st_mesh **out)
+static st_status prepare(st_store *store, const st_new_mesh *made, he_mesh *content, size_t records,
+                         st_booking *booking, st_mesh **out)
 {
     const st_mesh_options options = st_store_mesh_options(store);
     st_status status = book(store, content, records, booking);
     if (status != ST_OK) {
         return status;
     }
-    *out = st_mesh_new(&options, id, name, cause, content);
+    *out = st_mesh_new(&options, made->id, made->name, made->cause, content);
     if (*out == NULL) {
         st_booking_leave(&store->journal, booking);
         return ST_NO_MEMORY;
@@ -93,20 +93,20 @@ static void discard(st_store *store, st_mesh *mesh, st_booking *booking)
     st_booking_leave(&store->journal, booking);
 }
 
-static st_status make(st_store *store, const char *id, const char *name, he_mesh *content,
-                      const st_cause *cause, const st_shown *from, st_mesh **out)
+static st_status make(st_store *store, const st_new_mesh *made, he_mesh *content, st_mesh **out)
 {
     st_booking booking = {NULL};
     st_mesh *mesh;
-    st_status status = prepare(store, id, name, cause, content, 1, &booking, &mesh);
+    st_status status = prepare(store, made, content, 1, &booking, &mesh);
     if (status == ST_OK) {
         /* The use is recorded before the mesh is in the table, because a mesh that was never used
          * would be evicted first. */
         st_mesh_use(mesh);
-        /* Room in the journal is already reserved, so if a later loss takes `from`, this record is
-         * lost with it. */
-        const bool lost = from != NULL && st_waits_is_lost(store->followers.waits, from);
-        status = lost ? ST_LOST : publish(store, mesh, cause, &booking);
+        /* Room in the journal is already reserved, so if a later loss takes `made->from`, this
+         * record is lost with it. */
+        const bool lost =
+            made->from != NULL && st_waits_is_lost(store->followers.waits, made->from);
+        status = lost ? ST_LOST : publish(store, mesh, made->cause, &booking);
         if (status == ST_OK) {
             *out = mesh;
         } else {
@@ -116,13 +116,13 @@ static st_status make(st_store *store, const char *id, const char *name, he_mesh
     return status;
 }
 
-static st_status create_as(st_store *store, const char *id, const char *name, he_mesh *content,
-                           const st_cause *cause, const st_shown *from, st_mesh **out)
+static st_status create_as(st_store *store, const st_new_mesh *made, he_mesh *content,
+                           st_mesh **out)
 {
     st_lookup *lookup;
-    st_status status = st_lookup_free_id(store, id, &lookup);
+    st_status status = st_lookup_free_id(store, made->id, &lookup);
     if (status == ST_OK) {
-        status = make(store, id, name, content, cause, from, out);
+        status = make(store, made, content, out);
         st_lookup_end(store, lookup);
     }
     return status;
@@ -137,20 +137,21 @@ static bool has_room(st_store *store)
     return !st_memory_is_full();
 }
 
-st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                         const st_cause *cause, const st_shown *from, st_mesh **out)
+st_status st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content, st_mesh **out)
 {
     if (!has_room(store)) {
         return ST_BUDGET;
     }
-    if (id != NULL) {
-        return create_as(store, id, name, content, cause, from, out);
+    if (made->id != NULL) {
+        return create_as(store, made, content, out);
     }
+    char id[ID_LENGTH + 1];
+    st_new_mesh named = *made;
+    named.id = id;
     st_status status;
     do {
-        char made[ID_LENGTH + 1];
-        st_random_id(made, ID_LENGTH);
-        status = create_as(store, made, name, content, cause, from, out);
+        st_random_id(id, ID_LENGTH);
+        status = create_as(store, &named, content, out);
     } while (status == ST_TAKEN);
     return status;
 }
@@ -158,7 +159,8 @@ st_status st_create_from(st_store *store, const char *id, const char *name, he_m
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_cause *cause, st_mesh **out)
 {
-    return st_create_from(store, id, name, content, cause, NULL, out);
+    const st_new_mesh made = {.id = id, .name = name, .cause = cause};
+    return st_create_from(store, &made, content, out);
 }
 
 /* --- replacing a damaged mesh --- */
@@ -204,7 +206,8 @@ st_status st_create_over(st_store *store, st_mesh *damaged, const char *name, he
 {
     st_booking booking = {NULL};
     st_mesh *fresh;
-    st_status status = prepare(store, damaged->info.id, name, cause, content, 2, &booking, &fresh);
+    const st_new_mesh made = {.id = damaged->info.id, .name = name, .cause = cause};
+    st_status status = prepare(store, &made, content, 2, &booking, &fresh);
     if (status != ST_OK) {
         return status;
     }

@@ -99,14 +99,14 @@ static void forget_old(st_keys *keys, double now)
     }
 }
 
-static st_keyed_status add(st_keys *keys, const st_key *key, const char *whose, uint64_t hash,
-                           double now, st_keyed **out)
+/* Adds a key whose request begins now. Returns NULL if memory is out. */
+static st_keyed *add(st_keys *keys, const st_key *key, const char *whose, uint64_t hash, double now)
 {
     size_t length = strlen(key->text), holder = strlen(whose);
     st_keyed *keyed =
         reserve_bucket(keys) ? he_mem_zero(1, sizeof *keyed + length + holder + 2) : NULL;
     if (keyed == NULL) {
-        return ST_KEYED_NO_MEMORY;
+        return NULL;
     }
     keyed->keys = keys;
     keyed->uses = 2;
@@ -122,8 +122,7 @@ static st_keyed_status add(st_keys *keys, const st_key *key, const char *whose, 
     keyed->next = *at;
     *at = keyed;
     keys->count++;
-    *out = keyed;
-    return ST_KEYED_NEW;
+    return keyed;
 }
 
 st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_keyed **out)
@@ -136,7 +135,12 @@ st_keyed_status st_keys_begin(st_keys *keys, const st_key *key, double now, st_k
     st_keyed *keyed = keys->bucket_count == 0 ? NULL : *find(keys, key->text, holder, hash);
     st_keyed_status status;
     if (keyed == NULL) {
-        status = add(keys, key, holder, hash, now, out);
+        keyed = add(keys, key, holder, hash, now);
+        status = ST_KEYED_NO_MEMORY;
+        if (keyed != NULL) {
+            *out = keyed;
+            status = ST_KEYED_NEW;
+        }
     } else if (keyed->is_damaged) {
         status = ST_KEYED_DAMAGED;
     } else if (keyed->key.digest[0] != key->digest[0] || keyed->key.digest[1] != key->digest[1]) {

@@ -188,7 +188,7 @@ static st_status load_mesh(st_store *store, const char *id, st_mesh **out)
     st_card card;
     st_status status = journal->open(journal->self, id, &card, &reader);
     if (status == ST_OK) {
-        status = st_mesh_load(&options, &card, reader, 0, out, card.damage);
+        status = st_mesh_load(&options, &card, reader, 0, out);
         journal->shut(reader);
         if (status == ST_OK) {
             status = journal->keys(journal->self, id, st_keys_restore, &(*out)->keys);

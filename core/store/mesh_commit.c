@@ -44,10 +44,15 @@ static void commit_edit(st_write *w, const char *ops)
     const bool barrier = w->changes.renumbered;
     st_step *step = barrier ? NULL : st_log_hold_reserved(&mesh->log);
     double now = revise(mesh);
+    const st_logged logged = {.revision = mesh->info.revision,
+                              .action = ST_EDIT,
+                              .ops = ops,
+                              .time = now,
+                              .tally = barrier ? NULL : &tally};
     if (barrier) {
-        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_EDIT, ops, now, mesh->content, NULL);
+        st_log_add_barrier(&mesh->log, &logged, mesh->content);
     } else {
-        st_log_add_edit(&mesh->log, mesh->info.revision, ops, now, mesh->content, &tally);
+        st_log_add_edit(&mesh->log, &logged, mesh->content);
     }
     st_record record = st_mesh_record(mesh, ST_RECORD_EDIT, &w->cause);
     st_change change = {.action = ST_REPLACE, .content = mesh->content};
@@ -99,8 +104,12 @@ static void commit_facts(st_write *w)
     size_t count = 0;
     if (w->kind == ST_WRITE_REPLACE) {
         double now = revise(mesh);
-        st_log_add_barrier(&mesh->log, mesh->info.revision, ST_REPLACE, "replace", now,
-                           mesh->content, NULL);
+        st_log_add_barrier(&mesh->log,
+                           &(st_logged){.revision = mesh->info.revision,
+                                        .action = ST_REPLACE,
+                                        .ops = "replace",
+                                        .time = now},
+                           mesh->content);
         changes[count] = (st_change){.action = ST_REPLACE, .content = mesh->content};
         records[count++] = st_mesh_record(mesh, ST_RECORD_CONTENT, &w->cause);
     }

@@ -97,8 +97,12 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
     }
     he_mesh_free(mesh->content);
     mesh->content = takes;
-    st_log_add_barrier(&mesh->log, record->revision, ST_REPLACE, "replace", record->time, takes,
-                       NULL);
+    st_log_add_barrier(&mesh->log,
+                       &(st_logged){.revision = record->revision,
+                                    .action = ST_REPLACE,
+                                    .ops = "replace",
+                                    .time = record->time},
+                       takes);
     return ST_OK;
 }
 
@@ -106,12 +110,15 @@ static st_status replace(load *l, const st_record *record, he_mesh *takes)
 static st_status add_edit(load *l, const st_record *record)
 {
     st_mesh *mesh = l->mesh;
+    const st_logged logged = {.revision = record->revision,
+                              .action = ST_EDIT,
+                              .ops = record->ops,
+                              .time = record->time,
+                              .tally = &record->tally};
     if (record->barrier) {
-        st_log_add_barrier(&mesh->log, record->revision, ST_EDIT, record->ops, record->time,
-                           mesh->content, &record->tally);
+        st_log_add_barrier(&mesh->log, &logged, mesh->content);
     } else {
-        st_log_add_edit(&mesh->log, record->revision, record->ops, record->time, mesh->content,
-                        &record->tally);
+        st_log_add_edit(&mesh->log, &logged, mesh->content);
     }
     return ST_OK;
 }
@@ -488,10 +495,10 @@ st_status st_mesh_salvage(const st_mesh_options *options, const st_card *card, s
     return ST_OK;
 }
 
-st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
-                       uint64_t until, st_mesh **out, char damage[ST_DAMAGE])
+st_status st_mesh_load(const st_mesh_options *options, st_card *card, st_reader *reader,
+                       uint64_t until, st_mesh **out)
 {
-    load l = begin_load(options, card, until, damage);
+    load l = begin_load(options, card, until, card->damage);
     if (l.mesh == NULL) {
         return no_memory();
     }
@@ -507,7 +514,7 @@ st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_r
     free_parts(&l);
     if (status != ST_OK) {
         if (status == ST_DAMAGED) {
-            options->journal->condemn(reader, damage);
+            options->journal->condemn(reader, card->damage);
         }
         st_release(l.mesh);
         return status;
@@ -525,14 +532,13 @@ st_status st_mesh_load_apart(st_mesh *mesh, uint64_t until, st_mesh **out)
     const st_mesh_options options = st_store_mesh_options(mesh->store);
     st_reader *reader = NULL;
     st_card card;
-    char damage[ST_DAMAGE];
     *out = NULL;
     st_status status =
         journal->keeps ? journal->open(journal->self, mesh->info.id, &card, &reader) : ST_GONE;
     if (status == ST_OK) {
         until = until == 0 ? card.revision : until;
         status = card.incarnation == mesh->info.incarnation
-                     ? st_mesh_load(&options, &card, reader, until, out, damage)
+                     ? st_mesh_load(&options, &card, reader, until, out)
                      : ST_GONE;
         journal->shut(reader);
     }

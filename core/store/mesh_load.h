@@ -13,15 +13,15 @@
 
 /* Makes room in memory and loads a mesh from the pieces of `reader`. `until` is a revision at which
  * the load stops, with the history of that time; 0 loads everything. With ST_DAMAGED and ST_NEWER,
- * `damage` says what is wrong.
+ * the damage of `card` says what is wrong.
  * Returns ST_GONE if the base is of a later revision, which is found at once, or if no record leads
  * to exactly that revision, which is found at the end.
  * Returns ST_DAMAGED if the pieces make no mesh, or not the one of the card; the card is then
  * marked.
  * Returns ST_NEWER if a newer release wrote a piece.
  * Returns ST_FAILED, ST_NO_MEMORY or ST_BUDGET if it cannot be loaded. */
-st_status st_mesh_load(const st_mesh_options *options, const st_card *card, st_reader *reader,
-                       uint64_t until, st_mesh **out, char damage[ST_DAMAGE]);
+st_status st_mesh_load(const st_mesh_options *options, st_card *card, st_reader *reader,
+                       uint64_t until, st_mesh **out);
 /* Loads as much of a mesh as is intact: up to the last revision that can be read. `damage` says
  * what is wrong after that, "" if nothing is.
  * Returns ST_DAMAGED with `damage` if no revision can be read.

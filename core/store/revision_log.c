@@ -365,16 +365,16 @@ static void add_entry(st_revision_log *log, st_revision *entry)
 }
 
 /* Adds the reserved entry, for a content that differs from all contents before. */
-static st_revision *add_spare(st_revision_log *log, uint64_t revision, st_action action,
-                              const char *ops, double time, const he_mesh *content)
+static st_revision *add_spare(st_revision_log *log, const st_logged *change, const he_mesh *content)
 {
     st_revision *entry = log->spare;
     assert(entry != NULL);
     log->spare = NULL;
-    *entry = (st_revision){.action = action, .forward = true};
-    entry->point = (st_point){.revision = revision, .state = revision, .time = time};
+    *entry = (st_revision){.action = change->action, .forward = true};
+    entry->point =
+        (st_point){.revision = change->revision, .state = change->revision, .time = change->time};
     note_marks(&entry->point, content);
-    copy_ops(entry->ops, ops);
+    copy_ops(entry->ops, change->ops);
     entry->size = entry_size(strlen(entry->ops));
     st_revision *shrunk = he_mem_resize(entry, sizeof *entry + strlen(entry->ops) + 1);
     if (shrunk != NULL) {
@@ -390,19 +390,18 @@ st_step *st_log_hold_reserved(const st_revision_log *log)
     return log->spare_step;
 }
 
-void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, double time,
-                     const he_mesh *content, const st_tally *tally)
+void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh *content)
 {
     bool fits = st_log_fits(log);
-    st_revision *entry = add_spare(log, revision, ST_EDIT, ops, time, content);
-    entry->tally = *tally;
+    st_revision *entry = add_spare(log, edit, content);
+    entry->tally = *edit->tally;
     st_step *step = log->spare_step;
     log->spare_step = NULL;
     he_delta_trim(step->delta);
     step->bytes = sizeof *step + he_delta_bytes(step->delta);
     step->charged = step->bytes;
-    step->revision = revision;
-    step->applied = revision;
+    step->revision = edit->revision;
+    step->applied = edit->revision;
     entry->delta_bytes = step->bytes;
     clear_redo(log);
     if (!fits) {
@@ -421,15 +420,14 @@ void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, d
     }
 }
 
-void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
-                        double time, const he_mesh *content, const st_tally *tally)
+void st_log_add_barrier(st_revision_log *log, const st_logged *change, const he_mesh *content)
 {
     size_t bytes = spare_bytes(log);
-    st_revision *entry = add_spare(log, revision, action, ops, time, content);
+    st_revision *entry = add_spare(log, change, content);
     entry->delta_bytes = bytes;
     drop_spare_step(log);
-    if (tally != NULL) {
-        entry->tally = *tally;
+    if (change->tally != NULL) {
+        entry->tally = *change->tally;
     }
     forget_deltas(log);
     st_log_settle(log);

@@ -79,17 +79,24 @@ void st_log_unreserve(st_revision_log *log);
 /* Returns true if the reserved delta fits into the budget, so that its edit can be undone. */
 bool st_log_fits(const st_revision_log *log);
 
+/* A change as it is put into the log. */
+typedef struct st_logged {
+    uint64_t revision; /* the one that the change led to */
+    st_action action;  /* ST_EDIT or ST_REPLACE */
+    const char *ops;   /* names joined by ',' */
+    double time;
+    const st_tally *tally; /* NULL if it is not known, which only a barrier allows */
+} st_logged;
+
 /* Adds the reserved delta as an edit, with one step on the undo stack. `content` is the mesh after
  * it. */
-void st_log_add_edit(st_revision_log *log, uint64_t revision, const char *ops, double time,
-                     const he_mesh *content, const st_tally *tally);
+void st_log_add_edit(st_revision_log *log, const st_logged *edit, const he_mesh *content);
 /* Returns the step that the reserved delta will become, with a reference: it may outlive the log
  * until it is released. */
 st_step *st_log_hold_reserved(const st_revision_log *log);
 /* Adds an edit that cannot be undone (a barrier) or a replace: no delta is kept before or with it,
- * and both stacks are cleared. `tally` is NULL if it is not known. */
-void st_log_add_barrier(st_revision_log *log, uint64_t revision, st_action action, const char *ops,
-                        double time, const he_mesh *content, const st_tally *tally);
+ * and both stacks are cleared. */
+void st_log_add_barrier(st_revision_log *log, const st_logged *change, const he_mesh *content);
 
 /* Finds how many steps undo (redo) takes to the content of `revision`; 0 if the mesh has it now.
  * Returns ST_AHEAD if there is no such revision yet.

@@ -207,11 +207,18 @@ void st_release(st_mesh *mesh);  /* takes NULL */
  * Returns ST_BUDGET, ST_NO_MEMORY, ST_BEHIND, ST_FULL or ST_FAILED if the mesh cannot be stored. */
 st_status st_create(st_store *store, const char *id, const char *name, he_mesh *content,
                     const st_cause *cause, st_mesh **out);
-/* Creates a mesh like st_create, from a content that was made from the records that `from` (which
- * may be NULL) shows; if those records are lost, so is the new mesh.
+/* A mesh that is created, without its content. */
+typedef struct st_new_mesh {
+    const char *id; /* NULL: the store chooses one */
+    const char *name;
+    const st_cause *cause; /* stored in the first record; may be NULL */
+    const st_shown *from;  /* the records that the content was made from; NULL: none */
+} st_new_mesh;
+
+/* Creates a mesh like st_create, from a content that may have been made from the records of other
+ * meshes; if those records are lost, so is the new mesh.
  * Returns ST_LOST if they are lost already. */
-st_status st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                         const st_cause *cause, const st_shown *from, st_mesh **out);
+st_status st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content, st_mesh **out);
 /* Creates a mesh in place of a damaged one of that id, which is removed; either both happen or
  * neither.
  * Returns ST_ABSENT if the damaged mesh was removed before. */

@@ -127,8 +127,9 @@ he_status he_head_take(he_cursor *c, he_column **out, he_error *err)
     }
     (void)he_take_bytes(c, length, name);
     name[length] = '\0';
-    he_status status = he_column_new(name, domains[fixed[0]], types[fixed[1]], fixed[3],
-                                     rules[fixed[2]], &column, err);
+    he_status status = he_column_new(
+        &(he_column_schema){name, domains[fixed[0]], types[fixed[1]], fixed[3], rules[fixed[2]]},
+        &column, err);
     if (status != HE_OK) {
         return status;
     }

@@ -29,15 +29,15 @@ static int vertices_of(const bench_reply *summary)
 static bool meddling;
 static uint32_t victim; /* a vertex that the other request deletes */
 
-st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out);
-st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out);
+st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out);
+st_status __wrap_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out);
 
-st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out)
+st_status __wrap_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out)
 {
-    st_status status = __real_st_create_from(store, id, name, content, cause, from, out);
+    st_status status = __real_st_create_from(store, made, content, out);
     if (status == ST_OK && meddling) {
         st_write w;
         assert_non_null(writing_begin(*out, &w));

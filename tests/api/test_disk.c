@@ -95,10 +95,10 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
 
 static st_status loss_between; /* result between the read and the commit */
 
-st_status __real_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out);
-st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out);
+st_status __real_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out);
+st_status __wrap_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out);
 st_status __real_st_write_commit(st_write *w, const char *ops);
 st_status __wrap_st_write_commit(st_write *w, const char *ops);
 
@@ -110,11 +110,11 @@ static void lose_between(void)
     }
 }
 
-st_status __wrap_st_create_from(st_store *store, const char *id, const char *name, he_mesh *content,
-                                const st_cause *cause, const st_shown *from, st_mesh **out)
+st_status __wrap_st_create_from(st_store *store, const st_new_mesh *made, he_mesh *content,
+                                st_mesh **out)
 {
     lose_between();
-    return __real_st_create_from(store, id, name, content, cause, from, out);
+    return __real_st_create_from(store, made, content, out);
 }
 
 st_status __wrap_st_write_commit(st_write *w, const char *ops)

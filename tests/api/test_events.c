@@ -188,8 +188,10 @@ static void columns_that_come_and_go_are_told(void **state)
     st_write w;
     he_mesh *mesh = writing_begin(stored, &w);
     he_column *weight = NULL;
-    assert_int_equal(he_column_new("weight", HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &weight, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"weight", HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE},
+                      &weight, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(weight, he_mesh_issued(mesh, HE_VERTEX), NULL), HE_OK);
     const float value[] = {0.1F, -2.5F};
     memcpy(he_column_row(weight, 3), value, sizeof value);

@@ -22,12 +22,11 @@ static void pack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
     if (coding == HE_CODING_PLAIN) {
         FUZZ_REQUIRE(packed == size && memcmp(part, bytes, size) == 0, "a plain part has changed");
     } else {
-        const unsigned char *out;
-        size_t out_size;
+        st_part out = {0};
         const char *why;
         FUZZ_REQUIRE(packed < size, "%zu bytes are packed into %zu", size, packed);
-        FUZZ_REQUIRE(st_part_unpack(unpacker, part, packed, &out, &out_size, &why) == ST_OK &&
-                         out_size == size && memcmp(out, bytes, size) == 0,
+        FUZZ_REQUIRE(st_part_unpack(unpacker, (st_part){part, packed}, &out, &why) == ST_OK &&
+                         out.size == size && memcmp(out.bytes, bytes, size) == 0,
                      "a part comes back as another");
     }
     st_packer_free(packer);
@@ -36,18 +35,17 @@ static void pack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
 
 static void unpack(st_unpacker *unpacker, const uint8_t *bytes, size_t size)
 {
-    const unsigned char *out = NULL;
-    size_t out_size = 0;
+    st_part out = {0};
     const char *why = NULL;
-    const st_status status = st_part_unpack(unpacker, bytes, size, &out, &out_size, &why);
+    const st_status status = st_part_unpack(unpacker, (st_part){bytes, size}, &out, &why);
     FUZZ_REQUIRE(status == ST_OK || (status == ST_DAMAGED && why[0] != '\0'), "refused with %d",
                  (int)status);
     if (status == ST_OK) {
-        FUZZ_REQUIRE(out_size <= HE_STORED_PART_ROOM, "a part of %zu bytes", out_size);
-        unsigned char *copy = malloc(out_size + 1); /* the next call overwrites the output */
+        FUZZ_REQUIRE(out.size <= HE_STORED_PART_ROOM, "a part of %zu bytes", out.size);
+        unsigned char *copy = malloc(out.size + 1); /* the next call overwrites the output */
         FUZZ_REQUIRE(copy != NULL, "no memory");
-        memcpy(copy, out, out_size);
-        pack(unpacker, copy, out_size);
+        memcpy(copy, out.bytes, out.size);
+        pack(unpacker, copy, out.size);
         free(copy);
     }
 }

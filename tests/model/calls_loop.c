@@ -299,8 +299,8 @@ static uint64_t cut_faces(cutting *c)
     if (refused != 0) {
         return refused;
     }
-    he_status status =
-        he_plane_split(c->copy, c->point, c->normal, c->tolerance, NULL, 0, NULL, NULL);
+    he_status status = he_plane_split(c->copy, &(he_plane){c->point, c->normal, c->tolerance}, NULL,
+                                      0, NULL, NULL);
     if (status == HE_DOUBLED_EDGE && (c->o->may & OR_BIT(HE_DOUBLED_EDGE)) != 0) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }

@@ -260,7 +260,8 @@ static he_mesh *other;
 static bool add_numbers(he_mesh *m)
 {
     he_column *column = NULL;
-    if (he_column_new("locked", HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL) != HE_OK) {
+    if (he_column_new(&(he_column_schema){"locked", HE_FACE, HE_INT32, 1, HE_COPY}, &column,
+                      NULL) != HE_OK) {
         return false;
     }
     if (he_mesh_add_column(m, column, NULL) == HE_OK) {

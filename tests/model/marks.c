@@ -8,8 +8,9 @@
 static bool add(he_mesh *m, md_random *r, he_kind kind, const char *name)
 {
     he_column *column = NULL;
-    if (he_column_new(name, kind, HE_BOOL, 1, md_chance(r, 80) ? HE_COPY : HE_DEFAULT, &column,
-                      NULL) != HE_OK) {
+    if (he_column_new(
+            &(he_column_schema){name, kind, HE_BOOL, 1, md_chance(r, 80) ? HE_COPY : HE_DEFAULT},
+            &column, NULL) != HE_OK) {
         return false;
     }
     uint32_t rows = he_mesh_issued(m, kind);
@@ -34,7 +35,8 @@ static bool add_numbers(he_mesh *m, md_random *r, he_kind kind)
                                                  [HE_FACE] = HE_INT32};
     he_column *column = NULL;
     he_rule rule = (he_rule)md_below(r, HE_RULE_COUNT);
-    if (he_column_new("number", kind, types[kind], 2, rule, &column, NULL) != HE_OK) {
+    if (he_column_new(&(he_column_schema){"number", kind, types[kind], 2, rule}, &column, NULL) !=
+        HE_OK) {
         return false;
     }
     uint32_t rows = md_chance(r, 50) ? he_mesh_issued(m, kind) : 0;
@@ -65,8 +67,8 @@ static bool add_clash(he_mesh *m)
         return true;
     }
     he_column *column = NULL;
-    if (he_column_new(HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL) !=
-        HE_OK) {
+    if (he_column_new(&(he_column_schema){HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_INT32, 1, HE_COPY},
+                      &column, NULL) != HE_OK) {
         return false;
     }
     if (he_column_extend(column, he_mesh_issued(m, HE_FACE), NULL) != HE_OK ||

@@ -48,7 +48,8 @@ void edit_log_add_column(he_mesh *m, md_random *random, unsigned serial)
     he_column *column;
     snprintf(name, sizeof name, "late%u", serial);
     assert_int_equal(
-        he_column_new(name, domain, HE_FLOAT, 3, (he_rule)md_below(random, 3), &column, NULL),
+        he_column_new(&(he_column_schema){name, domain, HE_FLOAT, 3, (he_rule)md_below(random, 3)},
+                      &column, NULL),
         HE_OK);
     column->fallback[2] = (unsigned char)md_below(random, 256);
     size_t rows = domain == HE_MESH_KIND ? 1 : he_mesh_issued(m, domain);

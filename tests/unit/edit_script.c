@@ -87,9 +87,11 @@ void script_add_columns(he_mesh *m)
             snprintf(name, sizeof name, "normal");
         }
         he_column *column = NULL;
-        assert_int_equal(he_column_new(name, domains[i % 4], i % 2 ? HE_DOUBLE : HE_UINT32,
-                                       1 + i % 3, (he_rule)(i / 4), &column, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){name, domains[i % 4], i % 2 ? HE_DOUBLE : HE_UINT32,
+                                              1 + i % 3, (he_rule)(i / 4)},
+                          &column, NULL),
+            HE_OK);
         size_t rows = he_mesh_issued(m, domains[i % 4]);
         assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
         for (size_t row = 0; row < rows; row++) {
@@ -162,7 +164,8 @@ static he_mesh *other_mesh(const char *text)
     if (text[length] == '*') {
         he_column *column = NULL;
         script_add_columns(other);
-        assert_int_equal(he_column_new("locked", HE_FACE, HE_INT32, 1, HE_COPY, &column, NULL),
+        assert_int_equal(he_column_new(&(he_column_schema){"locked", HE_FACE, HE_INT32, 1, HE_COPY},
+                                       &column, NULL),
                          HE_OK);
         assert_int_equal(he_mesh_add_column(other, column, NULL), HE_OK);
     } else if (text[length] == '!') {
@@ -284,8 +287,10 @@ static void mark(he_mesh *m, const char *text)
     }
     he_column *column = NULL;
     if (he_mesh_find_column(m, (he_kind)kind, name) == NULL) {
-        assert_int_equal(he_column_new(name, (he_kind)kind, HE_BOOL, 1, HE_COPY, &column, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){name, (he_kind)kind, HE_BOOL, 1, HE_COPY}, &column,
+                          NULL),
+            HE_OK);
         assert_int_equal(he_column_extend(column, he_mesh_issued(m, (he_kind)kind), NULL), HE_OK);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }

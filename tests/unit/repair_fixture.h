@@ -41,7 +41,9 @@ static inline void copy_soup(const he_soup *from, he_soup *to)
     for (size_t i = 0; i < 3; i++) {
         he_column *column;
         assert_int_equal(
-            he_soup_column(to, names[i], domains[i], HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+            he_soup_column(to, &(he_column_schema){names[i], domains[i], HE_UINT32, 1, HE_COPY},
+                           &column, NULL),
+            HE_OK);
         assert_int_equal(he_column_extend(column, rows[i], NULL), HE_OK);
         for (uint32_t row = 0; row < rows[i]; row++) {
             memcpy(he_column_row(column, row), &row, sizeof row);

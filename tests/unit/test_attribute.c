@@ -10,7 +10,9 @@
 static he_column *column_of(const char *name, he_kind domain, uint32_t value)
 {
     he_column *column = NULL;
-    assert_int_equal(he_column_new(name, domain, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, HE_UINT32, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     memcpy(column->fallback, &value, sizeof value);
     return column;
 }

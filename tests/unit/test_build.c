@@ -362,11 +362,16 @@ static void values_of_a_soup_reach_their_corners_and_faces(void **state)
     he_column *corner, *face;
     fixture_soup(&soup, "012,023");
     assert_int_equal(
-        he_soup_column(&soup, "uv", HE_HALFEDGE, HE_FLOAT, 1, HE_INTERPOLATE, &corner, NULL),
+        he_soup_column(&soup, &(he_column_schema){"uv", HE_HALFEDGE, HE_FLOAT, 1, HE_INTERPOLATE},
+                       &corner, NULL),
         HE_OK);
-    assert_int_equal(he_soup_column(&soup, "part", HE_FACE, HE_UINT32, 1, HE_COPY, &face, NULL),
+    assert_int_equal(he_soup_column(&soup,
+                                    &(he_column_schema){"part", HE_FACE, HE_UINT32, 1, HE_COPY},
+                                    &face, NULL),
                      HE_OK);
-    assert_int_equal(he_soup_column(&soup, "part", HE_FACE, HE_FLOAT, 1, HE_COPY, &face, NULL),
+    assert_int_equal(he_soup_column(&soup,
+                                    &(he_column_schema){"part", HE_FACE, HE_FLOAT, 1, HE_COPY},
+                                    &face, NULL),
                      HE_BAD_VALUE);
     assert_int_equal(he_column_extend(corner, 6, NULL), HE_OK);
     assert_int_equal(he_column_extend(face, 1, NULL), HE_OK);
@@ -406,7 +411,9 @@ static void a_build_without_memory_is_refused_and_keeps_the_soup(void **state)
         fixture_soup(&soup, "012,034,056");
         he_column *column;
         assert_int_equal(
-            he_soup_column(&soup, "uv", HE_HALFEDGE, HE_FLOAT, 2, HE_COPY, &column, NULL), HE_OK);
+            he_soup_column(&soup, &(he_column_schema){"uv", HE_HALFEDGE, HE_FLOAT, 2, HE_COPY},
+                           &column, NULL),
+            HE_OK);
         failing_resume();
         he_status status = he_build(&soup, f.n % 2 ? HE_BUILD_TAKE : 0, &m, NULL, &err);
         if (failing_status(&f, status)) {

@@ -89,8 +89,10 @@ static void add_columns(he_mesh *m, unsigned count)
         char name[16];
         he_column *column = NULL;
         snprintf(name, sizeof name, "value%u", i);
-        assert_int_equal(he_column_new(name, HE_VERTEX, HE_FLOAT, 1, HE_INTERPOLATE, &column, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){name, HE_VERTEX, HE_FLOAT, 1, HE_INTERPOLATE},
+                          &column, NULL),
+            HE_OK);
         assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
         size_t slot = he_mesh_column_slot(m, he_mesh_find_column(m, HE_VERTEX, name));

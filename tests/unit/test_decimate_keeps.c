@@ -77,7 +77,9 @@ static void mark(he_mesh *m, he_kind kind, const char *name, uint32_t id)
 {
     if (he_mark_find(m, kind, name) == NULL) {
         he_column *column = NULL;
-        assert_int_equal(he_column_new(name, kind, HE_BOOL, 1, HE_COPY, &column, NULL), HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){name, kind, HE_BOOL, 1, HE_COPY}, &column, NULL),
+            HE_OK);
         assert_int_equal(he_column_extend(column, he_mesh_issued(m, kind), NULL), HE_OK);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }
@@ -119,8 +121,10 @@ static void add_numbers(he_mesh *m, he_kind kind)
 {
     he_column *column = NULL;
     uint32_t rows = he_mesh_issued(m, kind);
-    assert_int_equal(he_column_new("number", kind, HE_DOUBLE, 1, HE_INTERPOLATE, &column, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"number", kind, HE_DOUBLE, 1, HE_INTERPOLATE}, &column,
+                      NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     for (uint32_t i = 0; i < rows; i++) {
         double value = i;
@@ -189,7 +193,9 @@ static void attributes_follow_the_place(void **state)
     he_mesh *m = dense_grid(SIDE, NULL, 1);
     he_column *column = NULL;
     assert_int_equal(
-        he_column_new("height", HE_VERTEX, HE_DOUBLE, 1, HE_INTERPOLATE, &column, NULL), HE_OK);
+        he_column_new(&(he_column_schema){"height", HE_VERTEX, HE_DOUBLE, 1, HE_INTERPOLATE},
+                      &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     size_t slot = he_mesh_column_slot(m, column);

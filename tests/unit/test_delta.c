@@ -67,12 +67,18 @@ static he_mesh *mesh_with_columns(void)
 {
     he_mesh *m = fixture_mesh("012,023");
     he_column *column;
-    assert_int_equal(he_column_new("tag", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"tag", HE_FACE, HE_UINT32, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
-    assert_int_equal(he_column_new("flag", HE_VERTEX, HE_BOOL, 3, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"flag", HE_VERTEX, HE_BOOL, 3, HE_COPY}, &column, NULL),
+        HE_OK);
     column->fallback[1] = 1;
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
-    assert_int_equal(he_column_new("flag", HE_VERTEX, HE_BOOL, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"flag", HE_VERTEX, HE_BOOL, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_BAD_VALUE);
     he_column_free(column);
     return m;
@@ -118,7 +124,9 @@ static void a_rollback_takes_issued_ids_back(void **state)
     assert_int_equal(he_edit_begin(m, &bracket, NULL), HE_OK);
     assert_int_equal(add_triangle(m, NULL), HE_OK);
     he_column *column;
-    assert_int_equal(he_column_new("late", HE_EDGE, HE_DOUBLE, 2, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"late", HE_EDGE, HE_DOUBLE, 2, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_int_equal(he_mesh_drop_column(m, 0, NULL), HE_OK);
     assert_int_equal(he_compact(m, NULL, NULL), HE_OK);
@@ -214,7 +222,8 @@ static void undo_and_redo_restore_added_and_dropped_columns(void **state)
     he_delta *d = he_delta_new();
     he_mesh_record(m, d);
     he_column *column;
-    assert_int_equal(he_column_new("weight", HE_VERTEX, HE_DOUBLE, 1, HE_COPY, &column, NULL),
+    assert_int_equal(he_column_new(&(he_column_schema){"weight", HE_VERTEX, HE_DOUBLE, 1, HE_COPY},
+                                   &column, NULL),
                      HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_int_equal(he_mesh_drop_column(m, 1, NULL), HE_OK);
@@ -250,8 +259,10 @@ static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
         he_column *column;
         he_changes changes;
         he_mesh_record(m, d);
-        assert_int_equal(he_column_new("mark", domains[i], HE_UINT32, 1, HE_COPY, &column, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){"mark", domains[i], HE_UINT32, 1, HE_COPY}, &column,
+                          NULL),
+            HE_OK);
         size_t rows = i == 0 ? 1 : he_mesh_issued(m, HE_HALFEDGE);
         assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
@@ -276,7 +287,9 @@ static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
 static void put_column(he_mesh *m, const char *name, he_kind domain)
 {
     he_column *column;
-    assert_int_equal(he_column_new(name, domain, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, HE_UINT32, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, domain), NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }
@@ -334,8 +347,9 @@ static void a_reservation_has_room_for_the_widest_value(void **state)
         for (size_t i = 0; i < HE_COLUMN_COMPONENTS; i++) {
             value[i] = -1.0 / (double)(3 + i);
         }
-        assert_int_equal(he_column_new("wide", (he_kind)kind, HE_DOUBLE, HE_COLUMN_COMPONENTS,
-                                       HE_COPY, &column, NULL),
+        assert_int_equal(he_column_new(&(he_column_schema){"wide", (he_kind)kind, HE_DOUBLE,
+                                                           HE_COLUMN_COMPONENTS, HE_COPY},
+                                       &column, NULL),
                          HE_OK);
         assert_int_equal(he_column_extend(column, he_mesh_issued(m, (he_kind)kind), NULL), HE_OK);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
@@ -438,8 +452,9 @@ static void carried_values_follow_the_rule_of_their_column(void **state)
     } rows[] = {{HE_COPY, 10}, {HE_INTERPOLATE, 12.5}, {HE_DEFAULT, 3}};
     for (size_t i = 0; i < 3; i++) {
         he_column *column;
-        assert_int_equal(he_column_new(he_rule_name(rows[i].rule), HE_VERTEX, HE_DOUBLE, 1,
-                                       rows[i].rule, &column, NULL),
+        assert_int_equal(he_column_new(&(he_column_schema){he_rule_name(rows[i].rule), HE_VERTEX,
+                                                           HE_DOUBLE, 1, rows[i].rule},
+                                       &column, NULL),
                          HE_OK);
         memcpy(column->fallback, &(double){3}, 8);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);

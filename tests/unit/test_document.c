@@ -466,7 +466,9 @@ static void every_failed_allocation_of_the_writer_gives_null(void **state)
     he_column *column;
     he_mesh *mesh = NULL;
     fixture_soup(&soup, "012,021");
-    assert_int_equal(he_soup_column(&soup, "a", HE_HALFEDGE, HE_FLOAT, 1, HE_COPY, &column, NULL),
+    assert_int_equal(he_soup_column(&soup,
+                                    &(he_column_schema){"a", HE_HALFEDGE, HE_FLOAT, 1, HE_COPY},
+                                    &column, NULL),
                      HE_OK);
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_soup_clear(&soup);

@@ -23,7 +23,8 @@ static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
     double fallback = -1;
-    assert_int_equal(he_column_new("a", domain, HE_DOUBLE, 1, rule, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"a", domain, HE_DOUBLE, 1, rule}, &column, NULL), HE_OK);
     memcpy(column->fallback, &fallback, sizeof fallback);
     size_t rows = he_mesh_issued(m, domain);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
@@ -233,7 +234,9 @@ static void corner_values_follow_the_rule_of_their_column(void **state)
 static void add_normals(he_mesh *m, he_kind domain, he_type type)
 {
     he_column *column = NULL;
-    assert_int_equal(he_column_new("normal", domain, type, 3, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"normal", domain, type, 3, HE_COPY}, &column, NULL),
+        HE_OK);
     size_t rows = he_mesh_issued(m, domain);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     const double number[3] = {0, 3, 4};
@@ -375,7 +378,9 @@ static void a_lock_does_not_spread_to_a_vertex_between(void **state)
             he_mesh *m = script_mesh("012,103", NULL);
             he_column *column = NULL;
             assert_int_equal(
-                he_column_new("locked", HE_VERTEX, HE_BOOL, 1, rules[k % 3], &column, NULL), HE_OK);
+                he_column_new(&(he_column_schema){"locked", HE_VERTEX, HE_BOOL, 1, rules[k % 3]},
+                              &column, NULL),
+                HE_OK);
             assert_int_equal(he_column_extend(column, 4, NULL), HE_OK);
             for (uint32_t v = 0; v < 3; v++) {
                 *he_column_row(column, v) = (unsigned char)((k / 3 + 1) >> v & 1);
@@ -413,7 +418,8 @@ static void both_parts_of_a_divided_element_have_its_mark(void **state)
     he_mesh_free(m);
     m = script_mesh("012,023", NULL);
     he_column *column = NULL;
-    assert_int_equal(he_column_new("feature", HE_EDGE, HE_UINT32, 1, HE_COPY, &column, NULL),
+    assert_int_equal(he_column_new(&(he_column_schema){"feature", HE_EDGE, HE_UINT32, 1, HE_COPY},
+                                   &column, NULL),
                      HE_OK);
     assert_int_equal(he_column_extend(column, 5, NULL), HE_OK);
     memset(column->data, 1, 20);

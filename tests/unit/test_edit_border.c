@@ -290,8 +290,10 @@ static void both_bevels_cut_an_edge_without_length_halfway(void **state)
     for (size_t i = 0; i < sizeof bevels / sizeof *bevels; i++) {
         he_mesh *m = script_mesh(QCUBE, cube);
         he_column *column = NULL;
-        assert_int_equal(he_column_new("a", HE_VERTEX, HE_DOUBLE, 1, HE_INTERPOLATE, &column, NULL),
-                         HE_OK);
+        assert_int_equal(
+            he_column_new(&(he_column_schema){"a", HE_VERTEX, HE_DOUBLE, 1, HE_INTERPOLATE},
+                          &column, NULL),
+            HE_OK);
         assert_int_equal(he_column_extend(column, 8, NULL), HE_OK);
         double value = 8;
         memcpy(he_column_row(column, 3), &value, sizeof value);
@@ -363,7 +365,9 @@ enum { FIRST_VALUE = 10 };
 static void add_column(he_mesh *m, he_kind domain, he_rule rule)
 {
     he_column *column = NULL;
-    assert_int_equal(he_column_new("value", domain, HE_DOUBLE, 1, rule, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"value", domain, HE_DOUBLE, 1, rule}, &column, NULL),
+        HE_OK);
     size_t rows = he_mesh_issued(m, domain);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     for (size_t row = 0; row < rows; row++) {

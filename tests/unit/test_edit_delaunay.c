@@ -152,7 +152,9 @@ static void an_edge_is_kept_where_a_flip_is_impossible(void **state)
 static void mark_features(he_mesh *m, he_type type, const unsigned char *marks)
 {
     he_column *column = NULL;
-    assert_int_equal(he_column_new("feature", HE_EDGE, type, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"feature", HE_EDGE, type, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     size_t rows = he_mesh_issued(m, HE_EDGE);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     for (size_t i = 0; i < rows; i++) {

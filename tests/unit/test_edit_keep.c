@@ -25,7 +25,9 @@ static he_column *add_column(he_mesh *m, he_kind domain, const char *name, he_ty
 {
     he_column *column = NULL;
     uint32_t components = type == HE_BOOL ? 1 : 2;
-    assert_int_equal(he_column_new(name, domain, type, components, rule, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, type, components, rule}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, domain), NULL), HE_OK);
     for (size_t row = 0; row < column->rows; row++) {
         double numbers[2] = {10.0 * (double)row + 1, 7};

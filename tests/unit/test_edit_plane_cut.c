@@ -73,7 +73,7 @@ static he_mesh *part_of(const he_mesh *m, he_vec3 at, he_vec3 normal, he_cut_sid
 {
     he_mesh *part = copy_of(m);
     he_error err = {.status = HE_OK};
-    if (he_plane_cut(part, at, normal, NULL, keep, cap, out, &err) != HE_OK) {
+    if (he_plane_cut(part, &(he_plane){at, normal, NULL}, keep, cap, out, &err) != HE_OK) {
         fail_msg("%s: %s", he_status_slug(err.status), err.text);
     }
     assert_valid(part);
@@ -204,8 +204,9 @@ static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **sta
     he_vec3 across = he_vec3_cross(hole, UP), at = he_vec3_scale(hole, 1.0 / 3);
     he_error err = {.status = HE_OK};
     part = copy_of(m);
-    assert_int_equal(he_plane_cut(part, at, across, NULL, HE_CUT_ABOVE, true, NULL, &err),
-                     HE_OPEN_LOOP);
+    assert_int_equal(
+        he_plane_cut(part, &(he_plane){at, across, NULL}, HE_CUT_ABOVE, true, NULL, &err),
+        HE_OPEN_LOOP);
     assert_int_equal(err.kind, HE_VERTEX);
     assert_equal(part, m);
     he_mesh_free(part);
@@ -219,14 +220,15 @@ static void a_plane_without_normal_or_finite_numbers_is_refused(void **state)
 {
     (void)state;
     he_mesh *m = shape("cube"), *before = copy_of(m);
-    assert_int_equal(he_plane_cut(m, ORIGIN, ORIGIN, NULL, HE_CUT_ABOVE, true, NULL, NULL),
-                     HE_BAD_VALUE);
     assert_int_equal(
-        he_plane_cut(m, (he_vec3){NAN, 0, 0}, UP, NULL, HE_CUT_ABOVE, true, NULL, NULL),
-        HE_NOT_FINITE);
-    assert_int_equal(
-        he_plane_cut(m, ORIGIN, (he_vec3){0, INFINITY, 0}, NULL, HE_CUT_BELOW, false, NULL, NULL),
-        HE_NOT_FINITE);
+        he_plane_cut(m, &(he_plane){ORIGIN, ORIGIN, NULL}, HE_CUT_ABOVE, true, NULL, NULL),
+        HE_BAD_VALUE);
+    assert_int_equal(he_plane_cut(m, &(he_plane){(he_vec3){NAN, 0, 0}, UP, NULL}, HE_CUT_ABOVE,
+                                  true, NULL, NULL),
+                     HE_NOT_FINITE);
+    assert_int_equal(he_plane_cut(m, &(he_plane){ORIGIN, (he_vec3){0, INFINITY, 0}, NULL},
+                                  HE_CUT_BELOW, false, NULL, NULL),
+                     HE_NOT_FINITE);
     assert_equal(m, before);
     he_mesh_free(before);
     he_mesh_free(m);
@@ -240,16 +242,20 @@ static void corners_within_the_tolerance_lie_in_the_plane(void **state)
     he_cut_parts parts;
     he_mesh *m = script_mesh(STAIRS, STAIRS_LIE), *before = copy_of(m);
     /* The bottom of the stair lies in the plane and faces down, so the part above keeps it. */
-    assert_int_equal(he_plane_cut(m, at, UP, &near, HE_CUT_ABOVE, true, &parts, NULL), HE_OK);
+    assert_int_equal(he_plane_cut(m, &(he_plane){at, UP, &near}, HE_CUT_ABOVE, true, &parts, NULL),
+                     HE_OK);
     assert_int_equal(parts.edges_split, 0);
     assert_int_equal(parts.faces_deleted, 0);
     he_cut_parts_clear(&parts);
     assert_equal(m, before);
-    assert_int_equal(he_plane_cut(m, at, UP, &less, HE_CUT_ABOVE, true, NULL, NULL), HE_BAD_VALUE);
-    assert_int_equal(he_plane_cut(m, at, UP, &no_number, HE_CUT_ABOVE, true, NULL, NULL),
-                     HE_NOT_FINITE);
+    assert_int_equal(he_plane_cut(m, &(he_plane){at, UP, &less}, HE_CUT_ABOVE, true, NULL, NULL),
+                     HE_BAD_VALUE);
+    assert_int_equal(
+        he_plane_cut(m, &(he_plane){at, UP, &no_number}, HE_CUT_ABOVE, true, NULL, NULL),
+        HE_NOT_FINITE);
     assert_equal(m, before);
-    assert_int_equal(he_plane_cut(m, at, UP, &none, HE_CUT_ABOVE, true, &parts, NULL), HE_OK);
+    assert_int_equal(he_plane_cut(m, &(he_plane){at, UP, &none}, HE_CUT_ABOVE, true, &parts, NULL),
+                     HE_OK);
     assert_int_equal(parts.edges_split, 4);
     assert_int_equal(parts.caps.count, 1);
     he_cut_parts_clear(&parts);

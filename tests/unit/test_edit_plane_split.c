@@ -146,7 +146,7 @@ static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool conv
     he_plane_parts parts = {.faces_split = 0};
     assert_non_null(delta);
     he_mesh_record(m, delta);
-    he_status status = he_plane_split(m, point, normal, NULL, NULL, 0, &parts, NULL);
+    he_status status = he_plane_split(m, &(he_plane){point, normal, NULL}, NULL, 0, &parts, NULL);
     assert_valid(m);
     if (status != HE_OK) {
         assert_int_equal(status, HE_DOUBLED_EDGE);
@@ -165,7 +165,8 @@ static bool split_and_check(he_mesh *m, he_vec3 point, he_vec3 normal, bool conv
         }
         he_mesh *after = copy_of(m);
         size_t records = delta->count;
-        assert_int_equal(he_plane_split(m, point, normal, NULL, NULL, 0, NULL, NULL), HE_OK);
+        assert_int_equal(he_plane_split(m, &(he_plane){point, normal, NULL}, NULL, 0, NULL, NULL),
+                         HE_OK);
         assert_int_equal(delta->count, records);
         he_mesh_record(m, NULL);
         he_delta_undo(delta, m);
@@ -232,9 +233,9 @@ static void the_part_of_the_first_side_keeps_the_id_of_the_face(void **state)
     he_changes changes = {.replaced = false};
     assert_non_null(delta);
     he_mesh_record(m, delta);
-    assert_int_equal(
-        he_plane_split(m, (he_vec3){0.25, 0, 0}, (he_vec3){1, 0, 0}, NULL, NULL, 0, &parts, NULL),
-        HE_OK);
+    assert_int_equal(he_plane_split(m, &(he_plane){(he_vec3){0.25, 0, 0}, (he_vec3){1, 0, 0}, NULL},
+                                    NULL, 0, &parts, NULL),
+                     HE_OK);
     he_mesh_record(m, NULL);
     assert_face(m, 0, "0453");
     assert_face(m, 1, "4125");
@@ -282,8 +283,9 @@ static void values_are_copied_to_parts_and_interpolated_at_the_cut(void **state)
     he_mesh *m = script_mesh("0123", SQUARE);
     for (unsigned k = 0; k < 4; k++) {
         he_column *column = NULL;
-        assert_int_equal(he_column_new("a", domains[k], HE_DOUBLE, 1,
-                                       k < 2 ? HE_INTERPOLATE : HE_COPY, &column, NULL),
+        assert_int_equal(he_column_new(&(he_column_schema){"a", domains[k], HE_DOUBLE, 1,
+                                                           k < 2 ? HE_INTERPOLATE : HE_COPY},
+                                       &column, NULL),
                          HE_OK);
         size_t rows = he_mesh_issued(m, domains[k]);
         assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
@@ -341,9 +343,10 @@ static void what_cannot_be_cut_is_refused_and_changes_nothing(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         he_error err = {.status = HE_OK};
         he_plane_parts parts = {.faces_split = 77};
-        assert_int_equal(he_plane_split(m, cases[i].point, cases[i].normal, cases[i].tolerance,
-                                        cases[i].faces, cases[i].count, &parts, &err),
-                         cases[i].expected);
+        assert_int_equal(
+            he_plane_split(m, &(he_plane){cases[i].point, cases[i].normal, cases[i].tolerance},
+                           cases[i].faces, cases[i].count, &parts, &err),
+            cases[i].expected);
         assert_int_equal(err.status, cases[i].expected);
         assert_int_equal(parts.faces_split, 77);
         assert_equal(m, before);
@@ -406,9 +409,9 @@ static void check_cut(const point *points, uint32_t n, double height, uint32_t p
     /* The normal of the cutting plane lies within the polygon's plane, so that y is the distance
      * along it. */
     he_vec3 normal = {-0.48, 0.8, 0.36};
-    assert_int_equal(
-        he_plane_split(m, lay((point){5, height}, scale), normal, NULL, NULL, 0, NULL, NULL),
-        HE_OK);
+    assert_int_equal(he_plane_split(m, &(he_plane){lay((point){5, height}, scale), normal, NULL},
+                                    NULL, 0, NULL, NULL),
+                     HE_OK);
     assert_valid(m);
     assert_int_equal(he_mesh_faces(m), parts);
     uint32_t vertices = he_mesh_vertices(m);
@@ -641,8 +644,8 @@ static void a_plane_split_without_memory_leaves_the_mesh_unchanged(void **state)
             he_mesh_record(m, delta);
             he_plane_parts parts = {.faces_split = 77};
             failing_resume();
-            he_status status =
-                he_plane_split(m, ORIGIN, (he_vec3){1, 2, 3}, NULL, NULL, 0, &parts, NULL);
+            he_status status = he_plane_split(m, &(he_plane){ORIGIN, (he_vec3){1, 2, 3}, NULL},
+                                              NULL, 0, &parts, NULL);
             bool failed = !failing_status(&f, status);
             he_mesh_record(m, NULL);
             if (failed) {

@@ -153,7 +153,8 @@ static void sides_descend_from_their_faces(void **state)
 static he_column *add_column(he_mesh *m, const char *name, he_kind domain, he_type type)
 {
     he_column *column = NULL;
-    assert_int_equal(he_column_new(name, domain, type, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, type, 1, HE_COPY}, &column, NULL), HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, domain), NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     return column;
@@ -351,11 +352,14 @@ static void a_factor_out_of_range_is_refused(void **state)
     const uint32_t face = 0;
     he_mesh *m = script_mesh("0123", flat), *before = copy_of(m);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        assert_int_equal(he_face_inset(m, &face, 1, false, bad[i], 0, NULL, NULL), HE_BAD_VALUE);
+        assert_int_equal(he_face_inset(m, &face, 1, false, (he_inset_width){bad[i], 0}, NULL, NULL),
+                         HE_BAD_VALUE);
         assert_equal(m, before);
     }
-    assert_int_equal(he_face_inset(m, &face, 1, false, 0, NAN, NULL, NULL), HE_BAD_VALUE);
-    assert_int_equal(he_face_inset(m, &face, 1, false, 0, INFINITY, NULL, NULL), HE_OK);
+    assert_int_equal(he_face_inset(m, &face, 1, false, (he_inset_width){0, NAN}, NULL, NULL),
+                     HE_BAD_VALUE);
+    assert_int_equal(he_face_inset(m, &face, 1, false, (he_inset_width){0, INFINITY}, NULL, NULL),
+                     HE_OK);
     assert_valid(m);
     he_mesh_free(before);
     he_mesh_free(m);
@@ -404,7 +408,9 @@ static void a_reversed_face_keeps_its_corners_and_their_values(void **state)
     he_mesh *m = script_mesh("0123,214", flat);
     he_column *u = add_column(m, "u", HE_HALFEDGE, HE_DOUBLE);
     he_column *normal = NULL;
-    assert_int_equal(he_column_new("normal", HE_FACE, HE_FLOAT, 3, HE_COPY, &normal, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"normal", HE_FACE, HE_FLOAT, 3, HE_COPY}, &normal, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(normal, 2, NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, normal, NULL), HE_OK);
     const float up[3] = {0, 0, 1};
@@ -611,8 +617,10 @@ static void attributes_only_one_has_are_at_their_default_elsewhere(void **state)
     }
     memcpy(theirs->fallback, &seven, sizeof seven);
     he_column *title = NULL;
-    assert_int_equal(he_column_new("title", HE_MESH_KIND, HE_DOUBLE, 1, HE_COPY, &title, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"title", HE_MESH_KIND, HE_DOUBLE, 1, HE_COPY}, &title,
+                      NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(title, 1, NULL), HE_OK);
     memcpy(he_column_row(title, 0), &one, sizeof one);
     assert_int_equal(he_mesh_add_column(other, title, NULL), HE_OK);

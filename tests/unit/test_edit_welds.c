@@ -393,7 +393,8 @@ static he_mesh *after(const char *mesh, he_kind domain, he_rule rule, const char
     he_mesh *m = script_mesh(mesh, NULL);
     he_column *column = NULL;
     double fallback = -1;
-    assert_int_equal(he_column_new("a", domain, HE_DOUBLE, 1, rule, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"a", domain, HE_DOUBLE, 1, rule}, &column, NULL), HE_OK);
     memcpy(column->fallback, &fallback, sizeof fallback);
     size_t rows = he_mesh_issued(m, domain);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);

@@ -68,7 +68,9 @@ static void add_attribute(he_mesh *m, md_random *random, const attribute *a)
 {
     he_column *column;
     assert_int_equal(
-        he_column_new(a->name, a->domain, a->type, a->components, HE_COPY, &column, NULL), HE_OK);
+        he_column_new(&(he_column_schema){a->name, a->domain, a->type, a->components, HE_COPY},
+                      &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, a->domain), NULL), HE_OK);
     for (uint32_t row = 0; row < column->rows; row++) {
         for (uint32_t i = 0; i < a->components && he_mesh_is_live(m, a->domain, row); i++) {

@@ -210,7 +210,9 @@ static void corners_come_before_vertices(void **state)
     (void)state;
     he_mesh *mesh = mesh_of_text("obj", seam);
     he_column *column;
-    assert_int_equal(he_column_new("uv", HE_VERTEX, HE_DOUBLE, 2, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"uv", HE_VERTEX, HE_DOUBLE, 2, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, 6, NULL), HE_OK);
     memcpy(he_column_row(column, 3), (double[]){7, 8}, 16);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);

@@ -151,9 +151,13 @@ static void what_is_not_carried_is_said(void **state)
     he_mesh *mesh = mesh_of_text("obj", "v 0.1 0 0\nv 1 0 0\nv 1 1 0\nv 0 3e38 0\nvt 0 0\nvt 1 0\n"
                                         "vt 1 1\nusemtl steel \"1\"\nf 1/1 2/2 3/3 4/1\n");
     he_column *column;
-    assert_int_equal(he_column_new("crease", HE_EDGE, HE_BOOL, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"crease", HE_EDGE, HE_BOOL, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
-    assert_int_equal(he_column_new("mark", HE_FACE, HE_BOOL, 2, HE_DEFAULT, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"mark", HE_FACE, HE_BOOL, 2, HE_DEFAULT}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, 1, NULL), HE_OK);
     memcpy(he_column_row(column, 0), (unsigned char[]){0, 1}, 2);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
@@ -213,9 +217,10 @@ static void numbered_attributes_have_no_gaps(void **state)
         for (size_t k = 0; k < 3 && rows[i].columns[k].name != NULL; k++) {
             he_column *column;
             he_rule rule = rows[i].columns[k].type == HE_FLOAT ? HE_INTERPOLATE : HE_COPY;
-            assert_int_equal(he_column_new(rows[i].columns[k].name, HE_VERTEX,
-                                           rows[i].columns[k].type, rows[i].columns[k].components,
-                                           rule, &column, NULL),
+            assert_int_equal(he_column_new(&(he_column_schema){rows[i].columns[k].name, HE_VERTEX,
+                                                               rows[i].columns[k].type,
+                                                               rows[i].columns[k].components, rule},
+                                           &column, NULL),
                              HE_OK);
             assert_int_equal(he_column_extend(column, 4, NULL), HE_OK);
             assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);

@@ -88,7 +88,9 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     float given[COUNT];
     he_soup_init(&soup, NULL);
     assert_int_equal(
-        he_soup_column(&soup, "uv", HE_VERTEX, HE_DOUBLE, 2, HE_INTERPOLATE, &column, NULL), HE_OK);
+        he_soup_column(&soup, &(he_column_schema){"uv", HE_VERTEX, HE_DOUBLE, 2, HE_INTERPOLATE},
+                       &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, COUNT, NULL), HE_OK);
     for (uint32_t i = 0; i < COUNT; i++) {
         assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){i, 0, 0}, NULL), HE_OK);

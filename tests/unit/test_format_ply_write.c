@@ -128,7 +128,9 @@ static void add_column(he_soup *soup, const char *name, he_kind domain, he_type 
                        uint32_t components, size_t rows)
 {
     he_column *column;
-    assert_int_equal(he_soup_column(soup, name, domain, type, components, HE_COPY, &column, NULL),
+    assert_int_equal(he_soup_column(soup,
+                                    &(he_column_schema){name, domain, type, components, HE_COPY},
+                                    &column, NULL),
                      HE_OK);
     assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
     memset(column->data, 1, rows * column->row_bytes);

@@ -57,13 +57,15 @@ static void rows_that_are_not_stored_are_the_default(void **state)
     }
     assert_int_equal(he_soup_add_face(&soup, corners, 3, NULL), HE_OK);
     assert_int_equal(
-        he_soup_column(&soup, "color", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE, &color, NULL),
+        he_soup_column(&soup, &(he_column_schema){"color", HE_VERTEX, HE_DOUBLE, 3, HE_INTERPOLATE},
+                       &color, NULL),
         HE_OK);
     memcpy(color->fallback, white, sizeof white);
     assert_int_equal(he_column_extend(color, 1, NULL), HE_OK);
     memcpy(he_column_row(color, 0), red, sizeof red);
     assert_int_equal(
-        he_soup_column(&soup, "smoothing", HE_FACE, HE_UINT32, 1, HE_COPY, &smoothing, NULL),
+        he_soup_column(&soup, &(he_column_schema){"smoothing", HE_FACE, HE_UINT32, 1, HE_COPY},
+                       &smoothing, NULL),
         HE_OK);
     memcpy(smoothing->fallback, &seven, sizeof seven);
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
@@ -188,7 +190,9 @@ static void add_column(he_mesh *mesh, const char *name, he_kind domain, he_type 
                        uint32_t components, const void *row, const char *const *labels)
 {
     he_column *column;
-    assert_int_equal(he_column_new(name, domain, type, components, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, type, components, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(mesh, domain), NULL), HE_OK);
     memcpy(he_column_row(column, 0), row, column->row_bytes);
     if (labels != NULL) {

@@ -110,7 +110,9 @@ static void a_default_material_is_deleted_like_any(void **state)
     assert_int_equal(he_labels_add(labels, "oak", 3, &index, NULL), HE_OK);
     assert_int_equal(he_labels_add(labels, "elm", 3, &index, NULL), HE_OK);
     assert_int_equal(
-        he_column_new(HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+        he_column_new(&(he_column_schema){HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_UINT32, 1, HE_COPY},
+                      &column, NULL),
+        HE_OK);
     memcpy(column->fallback, &index, sizeof index);
     column->labels = labels;
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_FACE), NULL), HE_OK);

@@ -37,7 +37,10 @@ static void compare(double origin, double tolerance)
         }
         points[i] = (he_vec3){at[0], at[1], at[2]};
     }
-    assert_int_equal(he_near_make(&near, points, POINTS, tolerance, 1, NULL, NULL), HE_OK);
+    assert_int_equal(
+        he_near_make(&near, &(he_near_points){.at = points, .tolerance = tolerance, .seed = 1},
+                     POINTS, NULL, NULL),
+        HE_OK);
     for (uint32_t i = 0; i < POINTS; i++) {
         uint32_t home, wanted = HE_NONE;
         bool sure = true; /* no distance is exactly at the limit */
@@ -78,7 +81,8 @@ static void without_a_tolerance_only_equal_points_are_near(void **state)
     const he_vec3 points[] = {{0, 1e300, -0.0}, {5e-324, 1e300, 0}, {-0.0, 1e300, 0}};
     he_near near;
     uint32_t home;
-    assert_int_equal(he_near_make(&near, points, 3, 0, 0, NULL, NULL), HE_OK);
+    assert_int_equal(
+        he_near_make(&near, &(he_near_points){.at = points, .tolerance = 0}, 3, NULL, NULL), HE_OK);
     assert_int_equal(he_near_find(&near, points[0], &home), HE_NONE);
     he_near_keep(&near, home, 0);
     assert_int_equal(he_near_find(&near, points[1], &home), HE_NONE);
@@ -86,7 +90,9 @@ static void without_a_tolerance_only_equal_points_are_near(void **state)
     assert_int_equal(he_near_find(&near, points[2], &home), 0);
     he_near_clear(&near);
     failing_at(1);
-    assert_int_equal(he_near_make(&near, points, 3, 0, 0, NULL, NULL), HE_NO_MEMORY);
+    assert_int_equal(
+        he_near_make(&near, &(he_near_points){.at = points, .tolerance = 0}, 3, NULL, NULL),
+        HE_NO_MEMORY);
     failing_off();
 }
 
@@ -105,7 +111,9 @@ static void a_table_can_be_given_up(void **state)
     he_near near = {0};
     he_watch watch;
     he_watch_init(&watch, give_up, NULL);
-    assert_int_equal(he_near_make(&near, points, 3, 0, 0, &watch, NULL), HE_CANCELLED);
+    assert_int_equal(
+        he_near_make(&near, &(he_near_points){.at = points, .tolerance = 0}, 3, &watch, NULL),
+        HE_CANCELLED);
     assert_null(near.slots);
 }
 

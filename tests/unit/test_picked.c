@@ -88,7 +88,8 @@ static double number_corners(const void *context, size_t count)
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
-    assert_int_equal(he_column_new("value", HE_HALFEDGE, HE_DOUBLE, 1, HE_COPY, &column, NULL),
+    assert_int_equal(he_column_new(&(he_column_schema){"value", HE_HALFEDGE, HE_DOUBLE, 1, HE_COPY},
+                                   &column, NULL),
                      HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(mesh, HE_HALFEDGE), NULL), HE_OK);
     for (uint32_t h = 0; h < he_mesh_issued(mesh, HE_HALFEDGE); h++) {

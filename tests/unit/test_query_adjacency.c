@@ -167,7 +167,9 @@ static void try_dense(const he_mesh *m)
         const he_relation *r = he_relation_at(i);
         for (unsigned flags = 0; flags < 2; flags++) {
             he_dense all = {0};
-            assert_int_equal(he_relation_dense(m, r, NULL, 0, flags, 0, &all, NULL), HE_OK);
+            assert_int_equal(he_relation_dense(m, &(he_neighbours){.relation = r, .flags = flags},
+                                               0, &all, NULL),
+                             HE_OK);
             uint32_t row = 0;
             for (uint32_t id = 0; id < he_mesh_issued(m, r->of); id++) {
                 if (!he_mesh_is_live(m, r->of, id)) {
@@ -182,7 +184,11 @@ static void try_dense(const he_mesh *m)
                 /* A list of elements may have an element twice. */
                 uint32_t twice[] = {id, id};
                 he_dense two = {0};
-                assert_int_equal(he_relation_dense(m, r, twice, 2, flags, 0, &two, NULL), HE_OK);
+                assert_int_equal(
+                    he_relation_dense(
+                        m, &(he_neighbours){.relation = r, .of = twice, .count = 2, .flags = flags},
+                        0, &two, NULL),
+                    HE_OK);
                 assert_int_equal(two.offsets.count, 3);
                 assert_int_equal(two.offsets.ids[0], 0);
                 assert_int_equal(two.offsets.ids[1], one.count);
@@ -330,12 +336,21 @@ static void relations_refuse_elements_that_do_not_exist(void **state)
         he_ids_clear(&ids);
         he_dense dense = {0};
         uint32_t list[] = {0, dead};
-        assert_int_equal(he_relation_dense(m, r, list, 2, 0, 0, &dense, &err), HE_DELETED_ELEMENT);
-        assert_int_equal(he_relation_dense(m, r, list, 1, 0, 1, &dense, &err), HE_LIMIT);
+        assert_int_equal(he_relation_dense(m,
+                                           &(he_neighbours){.relation = r, .of = list, .count = 2},
+                                           0, &dense, &err),
+                         HE_DELETED_ELEMENT);
+        assert_int_equal(he_relation_dense(m,
+                                           &(he_neighbours){.relation = r, .of = list, .count = 1},
+                                           1, &dense, &err),
+                         HE_LIMIT);
         assert_null(dense.ids.ids);
         assert_null(dense.offsets.ids);
         /* An empty list of elements must give an empty answer. */
-        assert_int_equal(he_relation_dense(m, r, list, 0, 0, 0, &dense, &err), HE_OK);
+        assert_int_equal(he_relation_dense(m,
+                                           &(he_neighbours){.relation = r, .of = list, .count = 0},
+                                           0, &dense, &err),
+                         HE_OK);
         assert_int_equal(dense.offsets.count, 1);
         assert_int_equal(dense.ids.count, 0);
         he_dense_clear(&dense);
@@ -377,7 +392,8 @@ static void relations_end_on_broken_links(void **state)
         for (size_t i = 0; i < he_relation_count(); i++) {
             const he_relation *r = he_relation_at(i);
             he_dense dense = {0};
-            he_status status = he_relation_dense(m, r, NULL, 0, 0, 0, &dense, NULL);
+            he_status status =
+                he_relation_dense(m, &(he_neighbours){.relation = r}, 0, &dense, NULL);
             assert_true(status == HE_OK || status == HE_CORRUPT);
             he_dense_clear(&dense);
             for (uint32_t id = 0; id < he_mesh_issued(m, r->of); id++) {
@@ -399,7 +415,8 @@ static void relations_without_memory_are_refused_and_give_no_ids(void **state)
         failing f = {0};
         while (failing_next(&f)) {
             he_dense dense = {0};
-            he_status status = he_relation_dense(m, he_relation_at(i), NULL, 0, 0, 0, &dense, NULL);
+            he_status status = he_relation_dense(m, &(he_neighbours){.relation = he_relation_at(i)},
+                                                 0, &dense, NULL);
             assert_true(failing_status(&f, status) || dense.ids.ids == NULL);
             he_dense_clear(&dense);
         }

@@ -63,8 +63,10 @@ static void normals_turn_with_their_face(void **state)
                                         "f 1/1/1 2/2/1 3/3/1\nf 2/1/2 3/2/1 4/3/2\n"
                                         "f 1/1/1 3/1/1 5/1/1\nf 2/1/1 1/1/1 6/1/1\n");
     he_column *face;
-    assert_int_equal(
-        he_soup_column(&import.soup, "normal", HE_FACE, HE_FLOAT, 3, HE_COPY, &face, NULL), HE_OK);
+    assert_int_equal(he_soup_column(&import.soup,
+                                    &(he_column_schema){"normal", HE_FACE, HE_FLOAT, 3, HE_COPY},
+                                    &face, NULL),
+                     HE_OK);
     assert_int_equal(he_column_extend(face, 4, NULL), HE_OK);
     memcpy(he_column_row(face, 1), (float[]){0, 0.5f, -1}, 3 * sizeof(float));
     assert_int_equal(he_repair_soup(&import.soup, &plan, &done, NULL), HE_OK);

@@ -45,8 +45,10 @@ static void add_column(he_mesh *m, unsigned serial)
     char name[32];
     he_column *column;
     snprintf(name, sizeof name, "later%u", serial);
-    assert_int_equal(he_column_new(name, HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE, &column, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, HE_VERTEX, HE_FLOAT, 2, HE_INTERPOLATE}, &column,
+                      NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, HE_VERTEX), NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
 }

@@ -129,7 +129,8 @@ static void nothing_is_made_of_what_was_lost(void **state)
     const st_shown from[] = {kept, change(other)};
     he_mesh *content = fixture_mesh("012");
     /* As long as the change is not lost, a mesh can be made from it. */
-    assert_int_equal(st_create_from(store, "c", NULL, fixture_mesh("012"), NULL, &from[1], &made),
+    assert_int_equal(st_create_from(store, &(st_new_mesh){.id = "c", .from = &from[1]},
+                                    fixture_mesh("012"), &made),
                      ST_OK);
     assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
     edit(&w);
@@ -141,7 +142,9 @@ static void nothing_is_made_of_what_was_lost(void **state)
     st_release(made);
     st_release(mesh);
     mesh = create("m");
-    assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[1], &made), ST_LOST);
+    assert_int_equal(
+        st_create_from(store, &(st_new_mesh){.id = "d", .from = &from[1]}, content, &made),
+        ST_LOST);
     assert_int_equal(st_load(store, "d", &made), ST_ABSENT);
     const uint64_t groups = journal.groups;
     assert_int_equal(st_write_begin(mesh, NULL, &w), ST_OK);
@@ -156,7 +159,8 @@ static void nothing_is_made_of_what_was_lost(void **state)
     assert_int_equal(facts(mesh).revision, 1);
     assert_true(journal.groups == groups);
     /* A mesh can be made from the state that was kept. */
-    assert_int_equal(st_create_from(store, "d", NULL, content, NULL, &from[0], &made), ST_OK);
+    assert_int_equal(
+        st_create_from(store, &(st_new_mesh){.id = "d", .from = &from[0]}, content, &made), ST_OK);
     st_release(made);
 }
 

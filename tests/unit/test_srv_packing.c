@@ -34,17 +34,16 @@ static void a_part_comes_back_as_it_was(void **state)
     st_packer *packer = st_packer_new();
     st_unpacker *unpacker = st_unpacker_new();
     for (int again = 0; again < 2; again++) {
-        const unsigned char *out;
+        st_part out = {0};
         const char *why;
-        size_t out_size;
         coding = before;
         memcpy(packed, plain, size);
         const size_t less = st_part_pack(packer, packed, size, &coding);
         assert_true(less < size / 2);
         assert_int_equal(coding, before | HE_CODING_PACKED);
-        assert_int_equal(st_part_unpack(unpacker, packed, less, &out, &out_size, &why), ST_OK);
-        assert_int_equal(out_size, size);
-        assert_memory_equal(out, plain, size);
+        assert_int_equal(st_part_unpack(unpacker, (st_part){packed, less}, &out, &why), ST_OK);
+        assert_int_equal(out.size, size);
+        assert_memory_equal(out.bytes, plain, size);
     }
     st_packer_free(packer);
     st_unpacker_free(unpacker);
@@ -73,11 +72,10 @@ static void what_does_not_get_shorter_stays_as_it_is(void **state)
 
 static void expect_refused(const void *bytes, size_t size, const char *reason)
 {
-    const unsigned char *out;
+    st_part out = {0};
     const char *why = "";
-    size_t out_size;
     st_unpacker *unpacker = st_unpacker_new();
-    assert_int_equal(st_part_unpack(unpacker, bytes, size, &out, &out_size, &why), ST_DAMAGED);
+    assert_int_equal(st_part_unpack(unpacker, (st_part){bytes, size}, &out, &why), ST_DAMAGED);
     assert_non_null(strstr(why, reason));
     st_unpacker_free(unpacker);
 }
@@ -107,15 +105,14 @@ static void a_damaged_part_stays_within_its_room(void **state)
     const size_t less = st_part_pack(packer, packed, size, &coding);
     unsigned refused = 0;
     for (size_t i = 0; i < less; i += less / 500 + 1) {
-        const unsigned char *out;
+        st_part out = {0};
         const char *why = "";
-        size_t out_size = 0;
         packed[i] ^= (unsigned char)(1 << i % 8);
-        st_status status = st_part_unpack(unpacker, packed, less, &out, &out_size, &why);
-        assert_true(status == ST_OK ? out_size <= HE_STORED_PART_ROOM
+        st_status status = st_part_unpack(unpacker, (st_part){packed, less}, &out, &why);
+        assert_true(status == ST_OK ? out.size <= HE_STORED_PART_ROOM
                                     : status == ST_DAMAGED && why[0] != '\0');
         packed[i] ^= (unsigned char)(1 << i % 8);
-        status = st_part_unpack(unpacker, packed, i, &out, &out_size, &why);
+        status = st_part_unpack(unpacker, (st_part){packed, i}, &out, &why);
         assert_int_equal(status, ST_DAMAGED); /* the part is truncated */
         refused++;
     }

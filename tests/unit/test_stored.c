@@ -148,7 +148,8 @@ static he_column *labelled_column(const he_mesh *m)
 {
     static const char *const texts[] = {"stone", "w\xc3\xb6\x6f\x64", ""};
     he_column *column;
-    assert_int_equal(he_column_new("material", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL),
+    assert_int_equal(he_column_new(&(he_column_schema){"material", HE_FACE, HE_UINT32, 1, HE_COPY},
+                                   &column, NULL),
                      HE_OK);
     column->labels = he_labels_new();
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {

@@ -407,7 +407,9 @@ static he_column *add_column(he_mesh *m, const char *name, he_kind domain, he_ty
                              uint32_t components, he_rule rule)
 {
     he_column *column;
-    assert_int_equal(he_column_new(name, domain, type, components, rule, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){name, domain, type, components, rule}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, he_mesh_issued(m, domain), NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     return column;

@@ -155,7 +155,9 @@ static file grid_glb(void)
     file f = {.format = "glb", .bytes = malloc((size_t)1 << 24)};
     assert_non_null(f.bytes);
     assert_int_equal(make(NULL, &mesh), HE_OK);
-    assert_int_equal(he_column_new("part", HE_FACE, HE_UINT32, 1, HE_COPY, &column, NULL), HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"part", HE_FACE, HE_UINT32, 1, HE_COPY}, &column, NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(column, SIDE * SIDE, NULL), HE_OK);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
     assert_int_equal(he_writer_new(he_format_find("glb"), mesh, 0, NULL, &writer, NULL), HE_OK);
@@ -300,8 +302,10 @@ static void what_costs_the_mesh_before_an_answer_is_given_up_anywhere(void **sta
     he_column *uv;
     he_mem_set_hook(&counting);
     assert_int_equal(make(NULL, &mesh), HE_OK);
-    assert_int_equal(he_column_new("uv", HE_HALFEDGE, HE_FLOAT, 2, HE_INTERPOLATE, &uv, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_column_new(&(he_column_schema){"uv", HE_HALFEDGE, HE_FLOAT, 2, HE_INTERPOLATE}, &uv,
+                      NULL),
+        HE_OK);
     assert_int_equal(he_column_extend(uv, he_mesh_issued(mesh, HE_HALFEDGE), NULL), HE_OK);
     for (uint32_t h = 0; h < uv->rows; h++) {
         const float value[2] = {(float)h, 1};
@@ -340,8 +344,9 @@ static he_status run_transform(he_mesh *m)
 static he_status run_plane_split(he_mesh *m)
 {
     he_plane_parts parts;
-    he_status status = he_plane_split(m, (he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL,
-                                      NULL, 0, &parts, NULL);
+    he_status status =
+        he_plane_split(m, &(he_plane){(he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL}, NULL,
+                       0, &parts, NULL);
     if (status == HE_OK) {
         he_plane_parts_clear(&parts);
     }
@@ -395,8 +400,8 @@ static he_status run_copy(he_mesh *m)
 
 static he_status run_plane_cut(he_mesh *m)
 {
-    return he_plane_cut(m, (he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL, HE_CUT_ABOVE,
-                        false, NULL, NULL);
+    return he_plane_cut(m, &(he_plane){(he_vec3){0.001, 0.002, 0}, (he_vec3){1, 0.7, 0}, NULL},
+                        HE_CUT_ABOVE, false, NULL, NULL);
 }
 
 static he_status run_face_delete(he_mesh *m)
@@ -423,7 +428,7 @@ static he_status run_face_inset(he_mesh *m)
     for (uint32_t i = 0; i < SIDE * SIDE / 5; i++) {
         faces[i] = 5 * i;
     }
-    return he_face_inset(m, faces, SIDE * SIDE / 5, false, 0.5, 0, NULL, NULL);
+    return he_face_inset(m, faces, SIDE * SIDE / 5, false, (he_inset_width){0.5, 0}, NULL, NULL);
 }
 
 static he_status run_vertex_move(he_mesh *m)

@@ -41,7 +41,8 @@ static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he
     uint32_t issued = he_mesh_issued(m, HE_VERTEX);
     he_near near;
     he_status status =
-        he_near_make(&near, m->c.position, he_mesh_vertices(m), tolerance, 0, m->watch, err);
+        he_near_make(&near, &(he_near_points){.at = m->c.position, .tolerance = tolerance},
+                     he_mesh_vertices(m), m->watch, err);
     if (status != HE_OK) {
         return status;
     }

@@ -12,12 +12,13 @@ static const double TOLERANCE = 1e-9, NOISE = 0x1p-48;
  * is no double, so coordinates that would need one are scaled less. */
 enum { MOST_EXPONENT = 1000 };
 
-static he_status check(he_vec3 point, he_vec3 normal, const double *tolerance, he_error *err)
+static he_status check(const he_plane *plane, he_error *err)
 {
-    if (!he_vec3_is_finite(point) || !he_vec3_is_finite(normal)) {
+    const double *tolerance = plane->tolerance;
+    if (!he_vec3_is_finite(plane->point) || !he_vec3_is_finite(plane->normal)) {
         return he_fail_plain(err, HE_NOT_FINITE, "the plane's point and normal must be finite");
     }
-    if (he_vec3_extent(normal) == 0) {
+    if (he_vec3_extent(plane->normal) == 0) {
         return he_fail_plain(err, HE_BAD_VALUE, "the plane's normal must not be zero");
     }
     if (tolerance != NULL && !isfinite(*tolerance)) {
@@ -106,27 +107,26 @@ static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *s
     return status;
 }
 
-he_status he_sides_find(const he_mesh *m, he_vec3 point, he_vec3 normal, const double *tolerance,
-                        he_sides *out, he_error *err)
+he_status he_sides_find(const he_mesh *m, const he_plane *plane, he_sides *out, he_error *err)
 {
-    he_status status = check(point, normal, tolerance, err);
+    he_status status = check(plane, err);
     if (status != HE_OK) {
         return status;
     }
-    he_sides sides = {.count = m->c.vertices.issued, .scale = find_scale(m, point)};
+    he_sides sides = {.count = m->c.vertices.issued, .scale = find_scale(m, plane->point)};
     sides.distance = he_mem_zero((size_t)sides.count + 1, sizeof *sides.distance);
     if (sides.distance == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the distances of %u vertices",
                              sides.count);
     }
     double within = 0;
-    status = measure(m, point, unit_of(normal), &sides, &within, err);
+    status = measure(m, plane->point, unit_of(plane->normal), &sides, &within, err);
     if (status != HE_OK) {
         he_sides_clear(&sides);
         return status;
     }
-    if (tolerance != NULL) {
-        within = *tolerance * sides.scale;
+    if (plane->tolerance != NULL) {
+        within = *plane->tolerance * sides.scale;
     }
     for (uint32_t v = 0; v < sides.count; v++) {
         if (fabs(sides.distance[v]) <= within) {

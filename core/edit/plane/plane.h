@@ -8,6 +8,13 @@
 
 #include "mesh/walk.h"
 
+/* A plane, and how near to it a vertex counts as in it. */
+typedef struct he_plane {
+    he_vec3 point;           /* any point of the plane */
+    he_vec3 normal;          /* of any length; it points to the side above */
+    const double *tolerance; /* a distance; NULL for the default of he_sides_find */
+} he_plane;
+
 typedef struct he_sides {
     double *distance; /* for each vertex, times `scale`; exactly 0 in the plane and in dead rows */
     /* The number of vertices that were issued when they were measured. Later vertices count as in
@@ -18,17 +25,16 @@ typedef struct he_sides {
     double scale;
 } he_sides;
 
-/* Measures the vertices against the plane through `point` with a normal of any length. `tolerance`
- * is a distance; NULL means 1e-9 of the longest side of the box around the vertices that have
- * edges, but no less than 2^-48 of their coordinates along the normal, below which distances are
- * rounding noise. An isolated vertex, however far away, has no influence on the tolerance. A vertex
- * that was put where an edge crosses the plane is in the plane when measured again. he_sides_clear
- * frees.
+/* Measures the vertices against a plane. Without a tolerance it takes 1e-9 of the longest side of
+ * the box around the vertices that have edges, but no less than 2^-48 of their coordinates along
+ * the normal, below which distances are rounding noise. An isolated vertex, however far away, has
+ * no influence on the tolerance. A vertex that was put where an edge crosses the plane is in the
+ * plane when measured again. he_sides_clear frees.
  * Returns HE_NOT_FINITE if the point, normal or tolerance is not finite.
  * Returns HE_BAD_VALUE if the normal is zero or the tolerance is negative.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_sides_find(const he_mesh *m, he_vec3 point, he_vec3 normal,
-                                     const double *tolerance, he_sides *out, he_error *err);
+HE_NODISCARD he_status he_sides_find(const he_mesh *m, const he_plane *plane, he_sides *out,
+                                     he_error *err);
 void he_sides_clear(he_sides *sides);
 
 /* Returns 1 if vertex v is above the plane, -1 if it is below, and 0 if it is in the plane. */

@@ -17,8 +17,7 @@ void he_cut_parts_clear(he_cut_parts *parts)
 typedef struct cutter {
     he_mesh *m;
     he_sides sides;
-    he_vec3 point, normal;
-    const double *tolerance;
+    const he_plane *plane;
     int away;        /* the side that is deleted: 1 above, -1 below */
     uint64_t *going; /* faces to delete, as bits */
     he_ids faces;    /* faces to delete, as a list */
@@ -40,7 +39,7 @@ static int side_of_face(const cutter *c, he_face f)
         h = he_next(c->m, h);
     } while (h.i != first.i);
     (void)he_face_normal(c->m, f, &up);
-    return he_vec3_dot(up, c->normal) > 0 ? -1 : 1;
+    return he_vec3_dot(up, c->plane->normal) > 0 ? -1 : 1;
 }
 
 static he_status find_faces(cutter *c, he_error *err)
@@ -137,8 +136,7 @@ static he_status cap_loops(cutter *c, he_error *err)
 static he_status split(cutter *c, he_error *err)
 {
     he_plane_parts parts = {.faces_split = 0};
-    he_status status =
-        he_plane_split(c->m, c->point, c->normal, c->tolerance, NULL, 0, &parts, err);
+    he_status status = he_plane_split(c->m, c->plane, NULL, 0, &parts, err);
     if (status == HE_OK) {
         c->made.edges_split = (uint32_t)parts.vertices.count;
         c->made.faces_split = parts.faces_split;
@@ -186,15 +184,15 @@ static he_status cut(cutter *c, bool cap, he_error *err)
     return status;
 }
 
-he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal, const double *tolerance,
-                       he_cut_side keep, bool cap, he_cut_parts *out, he_error *err)
+he_status he_plane_cut(he_mesh *m, const he_plane *plane, he_cut_side keep, bool cap,
+                       he_cut_parts *out, he_error *err)
 {
-    cutter c = {.m = m, .point = point, .normal = normal, .tolerance = tolerance};
+    cutter c = {.m = m, .plane = plane};
     he_bracket bracket;
     c.away = keep == HE_CUT_ABOVE ? -1 : 1;
     /* The vertices are measured before the split; the vertices that the split makes then count as
      * in the plane. */
-    he_status status = he_sides_find(m, point, normal, tolerance, &c.sides, err);
+    he_status status = he_sides_find(m, plane, &c.sides, err);
     if (status == HE_OK) {
         status = he_edit_begin(m, &bracket, err);
     }

@@ -2,7 +2,7 @@
 #ifndef HE_EDIT_PLANE_PLANE_CUT_H
 #define HE_EDIT_PLANE_PLANE_CUT_H
 
-#include "mesh/mesh.h"
+#include "edit/plane/plane.h"
 
 /* The side of the plane that is kept; above is the side that the normal points to. */
 typedef enum he_cut_side { HE_CUT_ABOVE, HE_CUT_BELOW } he_cut_side;
@@ -13,9 +13,9 @@ typedef struct he_cut_parts {
     he_ids caps; /* the new faces, in the order of the half-edges they began with */
 } he_cut_parts;
 
-/* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h), with `tolerance` or,
- * where that is NULL, the default of plane.h; then the faces of the other side are deleted, with
- * edges and vertices that have no face left (erase.h), and isolated vertices on that side.
+/* plane_cut: V, E, F vary. The mesh is split along the plane (plane_split.h); then the faces of
+ * the other side are deleted, with edges and vertices that have no face left (erase.h), and
+ * isolated vertices on that side.
  *
  *         o-----------o             o-----------o              o-----------o
  *        /           /|            /           /|             /           /|
@@ -38,8 +38,7 @@ typedef struct he_cut_parts {
  * Returns HE_REPEATED_CORNER with `cap` if a loop passes a vertex twice.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
-HE_NODISCARD he_status he_plane_cut(he_mesh *m, he_vec3 point, he_vec3 normal,
-                                    const double *tolerance, he_cut_side keep, bool cap,
+HE_NODISCARD he_status he_plane_cut(he_mesh *m, const he_plane *plane, he_cut_side keep, bool cap,
                                     he_cut_parts *out, he_error *err);
 void he_cut_parts_clear(he_cut_parts *parts);
 

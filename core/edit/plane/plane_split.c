@@ -162,8 +162,8 @@ static he_status split_faces(splitter *s, he_error *err)
     return status;
 }
 
-he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double *tolerance,
-                         const uint32_t *faces, size_t count, he_plane_parts *out, he_error *err)
+he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *faces, size_t count,
+                         he_plane_parts *out, he_error *err)
 {
     splitter s = {.m = m};
     he_bracket bracket;
@@ -172,7 +172,7 @@ he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal, const double
         status = he_watch_phase(m->watch, "measuring", 0.2, err);
     }
     if (status == HE_OK) {
-        status = he_sides_find(m, point, normal, tolerance, &s.sides, err);
+        status = he_sides_find(m, plane, &s.sides, err);
     }
     if (status == HE_OK) {
         status = he_edit_begin(m, &bracket, err);

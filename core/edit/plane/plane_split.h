@@ -2,7 +2,7 @@
 #ifndef HE_EDIT_PLANE_PLANE_SPLIT_H
 #define HE_EDIT_PLANE_PLANE_SPLIT_H
 
-#include "mesh/mesh.h"
+#include "edit/plane/plane.h"
 
 typedef struct he_plane_parts {
     he_ids vertices;      /* new, one for each edge that was split */
@@ -35,8 +35,7 @@ typedef struct he_plane_parts {
  * of half-edge 2e. A face keeps its id on the part with the stored half-edge's origin and the side
  * that leaves it; the other parts descend from it. Diagonals and vertices have no parents.
  *
- * `tolerance` is a distance, or NULL for the default of plane.h. A NULL list of faces stands for
- * all faces.
+ * A NULL list of faces stands for all faces.
  *
  * If it is refused, nothing changes. `out` may be NULL; otherwise he_plane_parts_clear frees it.
  * Returns HE_NOT_FINITE or HE_BAD_VALUE as he_sides_find does.
@@ -46,9 +45,8 @@ typedef struct he_plane_parts {
  * joins.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
-HE_NODISCARD he_status he_plane_split(he_mesh *m, he_vec3 point, he_vec3 normal,
-                                      const double *tolerance, const uint32_t *faces, size_t count,
-                                      he_plane_parts *out, he_error *err);
+HE_NODISCARD he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *faces,
+                                      size_t count, he_plane_parts *out, he_error *err);
 void he_plane_parts_clear(he_plane_parts *parts);
 
 #endif

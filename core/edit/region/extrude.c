@@ -3,11 +3,6 @@
 #include "geometry/geometry.h"
 #include "mesh/walk.h"
 
-typedef struct pull {
-    const he_vec3 *by;
-    double distance;
-} pull;
-
 /* Finds the normal of a region: the direction of the sum of its faces' vector areas. They are
  * scaled by the largest, so that nothing overflows. If they nearly cancel out, the rest is rounding
  * noise and there is no direction, so it returns false. */
@@ -42,16 +37,16 @@ static bool find_direction(const he_mesh *m, const he_region *r, he_vec3 *out)
 static he_status place(const he_mesh *m, const he_region *r, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err)
 {
-    const pull *p = context;
-    if (p->by != NULL) {
-        *shift = *p->by;
+    const he_extrude_motion *motion = context;
+    if (motion->by != NULL) {
+        *shift = *motion->by;
     } else {
         uint32_t f = r->faces.ids.ids[0];
         if (!find_direction(m, r, shift)) {
             return he_fail(err, HE_NO_NORMAL, HE_FACE, f,
                            "face %u and those extruded with it have no normal: give a vector", f);
         }
-        *shift = he_vec3_scale(*shift, p->distance);
+        *shift = he_vec3_scale(*shift, motion->distance);
     }
     *shifts = true;
     for (size_t i = 0; i < r->corners.ids.count; i++) {
@@ -61,8 +56,8 @@ static he_status place(const he_mesh *m, const he_region *r, void *context, he_v
 }
 
 he_status he_face_extrude(he_mesh *m, const uint32_t *faces, size_t count, bool region,
-                          const he_vec3 *by, double distance, he_region_parts *out, he_error *err)
+                          he_extrude_motion motion, he_region_parts *out, he_error *err)
 {
-    pull p = {by, distance};
-    return he_region_draw(m, faces, count, region, (he_region_place){place, &p, NULL}, out, err);
+    return he_region_draw(m, faces, count, region, (he_region_place){place, &motion, NULL}, out,
+                          err);
 }

@@ -3,10 +3,6 @@
 #include "edit/piece/point.h"
 #include "geometry/geometry.h"
 
-typedef struct inward {
-    double factor, distance;
-} inward;
-
 /* How each corner on the rim of a region moves, and buffers for the corners of one face. */
 typedef struct motion {
     he_vec3 *path;   /* the displacement at time 1 */
@@ -235,7 +231,7 @@ static he_status watch_face(const he_mesh *m, const he_region *r, he_face f, mot
 static he_status place(const he_mesh *m, const he_region *r, void *context, he_vec3 *to,
                        he_vec3 *shift, bool *shifts, he_error *err)
 {
-    const inward *in = context;
+    const he_inset_width *in = context;
     motion p;
     double time = in->factor > 0 ? 1 : in->distance;
     (void)shift;
@@ -339,10 +335,10 @@ static he_status mix(const he_mesh *m, const he_region *r, const he_vec3 *to, he
     return HE_OK;
 }
 
-he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region, double factor,
-                        double distance, he_region_parts *out, he_error *err)
+he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region,
+                        he_inset_width width, he_region_parts *out, he_error *err)
 {
-    inward in = {factor, distance};
+    const double factor = width.factor, distance = width.distance;
     bool by_factor = factor < 0 || factor > 0;
     if (by_factor ? !(factor > 0 && factor < 1) : !(distance > 0)) {
         return he_fail_plain(err, HE_BAD_VALUE,
@@ -350,5 +346,5 @@ he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool re
                                        : "the distance must be above 0, not %g",
                              by_factor ? factor : distance);
     }
-    return he_region_draw(m, faces, count, region, (he_region_place){place, &in, mix}, out, err);
+    return he_region_draw(m, faces, count, region, (he_region_place){place, &width, mix}, out, err);
 }

@@ -8,6 +8,15 @@
  * one corner against one side counts as one. */
 enum { HE_INSET_STEPS = 1 << 22 };
 
+/* How far an inset goes, one of two ways. With a `factor` above 0 and below 1, each corner on the
+ * rim goes this part of the way to the mean of its face's corners; in a region, to the mean of
+ * those means for the region's faces at the corner. With factor 0 the sides of the rim move in
+ * parallel by `distance`, within the planes of their faces; a corner so sharp that it would move
+ * more than four times that distance moves less. */
+typedef struct he_inset_width {
+    double factor, distance;
+} he_inset_width;
+
 /* face_inset: every listed face, or with `region` every set of them connected across edges, is
  * detached from its surroundings by a ring of quads (see region.h), and its rim moves inwards.
  *
@@ -28,11 +37,6 @@ enum { HE_INSET_STEPS = 1 << 22 };
  * and two neighbouring corners: the triangle at the rim corner that is nearest to the position is
  * used.
  *
- * With a `factor` above 0 and below 1, each corner on the rim goes this part of the way to the mean
- * of its face's corners; in a region, to the mean of those means for the region's faces at the
- * corner. With factor 0 the sides of the rim move in parallel by `distance`, within the planes of
- * their faces; a corner so sharp that it would move more than four times that distance moves less.
- *
  * CLAMPED. The motion of all corners is scaled down together if necessary: they go at most 99 % of
  * the way to the first point at which, within one face of the region, a side would have no length,
  * a corner would flip, or a reflex corner would hit another side. A face that is not planar is
@@ -47,7 +51,6 @@ enum { HE_INSET_STEPS = 1 << 22 };
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
 HE_NODISCARD he_status he_face_inset(he_mesh *m, const uint32_t *faces, size_t count, bool region,
-                                     double factor, double distance, he_region_parts *out,
-                                     he_error *err);
+                                     he_inset_width width, he_region_parts *out, he_error *err);
 
 #endif

@@ -22,9 +22,11 @@ static he_status find_column(const he_mesh *m, const he_column **out, he_error *
 static he_status column_with(const he_mesh *m, const he_column *column, he_labels *labels,
                              he_column **out, he_error *err)
 {
-    he_status status = column != NULL ? he_column_copy(column, out, err)
-                                      : he_column_new(HE_MATERIAL_ATTRIBUTE, HE_FACE, HE_UINT32, 1,
-                                                      HE_COPY, out, err);
+    he_status status = column != NULL
+                           ? he_column_copy(column, out, err)
+                           : he_column_new(&(he_column_schema){HE_MATERIAL_ATTRIBUTE, HE_FACE,
+                                                               HE_UINT32, 1, HE_COPY},
+                                           out, err);
     if (status == HE_OK && column == NULL) {
         status = he_column_extend(*out, he_mesh_issued(m, HE_FACE), err);
     }

@@ -251,8 +251,10 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
         return; /* other programs see it too */
     }
-    he_notes_add(notes, "in_extras", "stored so that only hedge reads it back: attribute", subject,
-                 (size_t)length, HE_PLACE_NONE, 0);
+    he_notes_add(notes, &(he_warning){.code = "in_extras",
+                                      .text = "stored so that only hedge reads it back: attribute",
+                                      .subject = subject,
+                                      .length = (size_t)length});
 }
 
 /* Adds the attributes that all programs read; then, after the triangles, those that only hedge

@@ -24,8 +24,8 @@ size_t he_gltf_type_bytes(he_gltf_type type)
 static he_status get_type(const he_gltf *asset, uint32_t object, he_gltf_type *type, he_error *err)
 {
     uint64_t code = 0;
-    he_status status =
-        he_gltf_need(asset, object, "componentType", HE_GLTF_INT8, HE_GLTF_FLOAT, &code, err);
+    he_status status = he_gltf_need(asset, object, "componentType",
+                                    (he_gltf_range){HE_GLTF_INT8, HE_GLTF_FLOAT}, &code, err);
     if (status == HE_OK && code == HE_GLTF_UINT32 - 1) {
         status = he_json_fail(&asset->json, object, err, HE_BAD_VALUE,
                               "componentType 5124 does not exist in glTF");
@@ -89,11 +89,20 @@ static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he
     return status;
 }
 
-/* Finds the range of `count` elements of `size` bytes. 64 bits are enough without overflow: all
+/* How the elements of a span lie in memory. */
+typedef struct layout {
+    uint64_t count;
+    size_t size;      /* bytes of an element */
+    size_t alignment; /* bytes of a number in it */
+} layout;
+
+/* Finds the range of the elements of an object. 64 bits are enough without overflow: all
  * numbers are below 2^53 + 1, and a stride is below 2^8. */
-static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_t size,
-                          size_t alignment, span *out, he_error *err)
+static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span *out,
+                          he_error *err)
 {
+    const uint64_t count = elements.count;
+    const size_t size = elements.size, alignment = elements.alignment;
     const he_json *json = &asset->json;
     uint64_t stride = 0, offset = 0;
     he_gltf_buffer part = {.bytes = NULL};
@@ -130,9 +139,11 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
             (unsigned long long)length);
     }
     if ((part.start + offset) % alignment != 0 || stride % alignment != 0) {
-        he_notes_add(&asset->into->notes, "misaligned",
-                     "read although they are misaligned: numbers", NULL, 0, HE_PLACE_BYTE,
-                     he_json_place(json, object));
+        he_notes_add(&asset->into->notes,
+                     &(he_warning){.code = "misaligned",
+                                   .text = "read although they are misaligned: numbers",
+                                   .place = HE_PLACE_BYTE,
+                                   .at = he_json_place(json, object)});
     }
     *out = (span){part.bytes + offset, (size_t)stride,
                   part.place == HE_GLTF_NOWHERE ? part.place : part.place + offset};
@@ -170,7 +181,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     if (he_json_type(json, indices) != '{' || he_json_type(json, values) != '{') {
         return he_json_fail(json, sparse, err, HE_BAD_VALUE, "'indices' and 'values' are needed");
     }
-    he_status status = he_gltf_need(asset, sparse, "count", 1, a->count, &a->changed, err);
+    he_status status =
+        he_gltf_need(asset, sparse, "count", (he_gltf_range){1, a->count}, &a->changed, err);
     if (status == HE_OK) {
         status = get_type(asset, indices, &a->changed_type, err);
     }
@@ -181,7 +193,7 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     }
     if (status == HE_OK) {
         size_t bytes = he_gltf_type_bytes(a->changed_type);
-        status = get_span(asset, indices, a->changed, bytes, bytes, &found, err);
+        status = get_span(asset, indices, (layout){a->changed, bytes, bytes}, &found, err);
         if (status == HE_OK && found.stride != bytes) {
             status = he_json_fail(json, indices, err, HE_BAD_VALUE,
                                   "the buffer view of sparse indices must not have a byteStride");
@@ -193,7 +205,8 @@ static he_status get_sparse(he_gltf *asset, he_gltf_accessor *a, uint32_t sparse
     assert(found.bytes != NULL);
     a->changed_index = found.bytes;
     size_t bytes = element_bytes(a);
-    status = get_span(asset, values, a->changed, bytes, he_gltf_type_bytes(a->type), &found, err);
+    status = get_span(asset, values, (layout){a->changed, bytes, he_gltf_type_bytes(a->type)},
+                      &found, err);
     if (status == HE_OK && found.stride != bytes) {
         status = he_json_fail(json, values, err, HE_BAD_VALUE,
                               "the buffer view of sparse values must not have a byteStride");
@@ -220,7 +233,8 @@ he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor 
         status = get_shape(asset, &a, err);
     }
     if (status == HE_OK) {
-        status = he_gltf_need(asset, a.value, "count", 1, HE_JSON_WHOLE, &a.count, err);
+        status =
+            he_gltf_need(asset, a.value, "count", (he_gltf_range){1, HE_JSON_WHOLE}, &a.count, err);
     }
     if (status == HE_OK && a.count > HE_MAX_ROWS) {
         status = he_json_fail(json, a.value, err, HE_LIMIT,
@@ -234,8 +248,9 @@ he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor 
                    a.type != HE_GLTF_FLOAT && a.type != HE_GLTF_UINT32;
     if (he_json_find(json, a.value, "bufferView") != HE_NONE) {
         span found = {0};
-        status = get_span(asset, a.value, a.count, element_bytes(&a), he_gltf_type_bytes(a.type),
-                          &found, err);
+        status =
+            get_span(asset, a.value,
+                     (layout){a.count, element_bytes(&a), he_gltf_type_bytes(a.type)}, &found, err);
         if (status != HE_OK) {
             return status;
         }

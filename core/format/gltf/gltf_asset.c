@@ -8,8 +8,12 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
     char name[HE_NOTE_SUBJECT];
     size_t length =
         subject == HE_NONE ? 0 : he_json_string(&asset->json, subject, name, sizeof name);
-    he_notes_add(&asset->into->notes, code, text, name, length, HE_PLACE_BYTE,
-                 he_json_place(&asset->json, place));
+    he_notes_add(&asset->into->notes, &(he_warning){.code = code,
+                                                    .text = text,
+                                                    .subject = name,
+                                                    .length = length,
+                                                    .place = HE_PLACE_BYTE,
+                                                    .at = he_json_place(&asset->json, place)});
 }
 
 /* Reports progress. The amount of work is not known before; few files take less than a step for
@@ -53,14 +57,14 @@ he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value, const
     return he_gltf_spend(asset, value, 8 * he_json_span(&asset->json, *item), err);
 }
 
-he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name, uint64_t least,
-                       uint64_t most, uint64_t *out, he_error *err)
+he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name, he_gltf_range range,
+                       uint64_t *out, he_error *err)
 {
     uint32_t value = he_json_find(&asset->json, object, name);
     if (value == HE_NONE) {
         return he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "'%s' is missing", name);
     }
-    return he_json_whole(&asset->json, value, least, most, out, err);
+    return he_json_whole(&asset->json, value, range.least, range.most, out, err);
 }
 
 he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name, uint64_t most,
@@ -215,17 +219,17 @@ static void note_rest(he_gltf *asset)
     }
 }
 
-he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text, size_t length,
-                       uint64_t offset, const he_gltf_bin *bin, he_error *err)
+he_status he_gltf_open(he_gltf *asset, he_import *into, const he_gltf_text *text,
+                       const he_gltf_bin *bin, he_error *err)
 {
-    *asset = (he_gltf){.into = into,
-                       .size = (uint64_t)length + bin->length + he_beside_bytes(into->beside)};
+    *asset = (he_gltf){
+        .into = into, .size = (uint64_t)text->length + bin->length + he_beside_bytes(into->beside)};
     asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
     asset->unpack_room = HE_GLTF_ROOM + HE_GLTF_UNPACKED * asset->size;
     he_watch *watch = into->soup.limits.watch;
     he_status status = he_watch_phase(watch, "parsing", 0.4, err);
     if (status == HE_OK) {
-        status = he_json_parse(&asset->json, text, length, offset, watch, err);
+        status = he_json_parse(&asset->json, text->bytes, text->length, text->place, watch, err);
     }
     if (status == HE_OK) {
         status = he_watch_phase(watch, "reading", 1, err);

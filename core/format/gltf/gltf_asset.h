@@ -53,15 +53,21 @@ typedef struct he_gltf_bin {
     uint64_t length, place;
 } he_gltf_bin;
 
+/* The JSON text of an asset. */
+typedef struct he_gltf_text {
+    const char *bytes;
+    size_t length;
+    uint64_t place; /* where it begins in the file */
+} he_gltf_text;
+
 /* Parses a glTF asset and checks its version, extensions and buffers. `text` and `bin` must outlive
  * the asset.
  * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if the asset is not valid.
  * Returns HE_LIMIT if the asset is too large.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const char *text,
-                                    size_t length, uint64_t offset, const he_gltf_bin *bin,
-                                    he_error *err);
+HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const he_gltf_text *text,
+                                    const he_gltf_bin *bin, he_error *err);
 void he_gltf_close(he_gltf *asset);
 
 /* --- functions that the readers of accessors, materials and scenes share --- */
@@ -105,10 +111,15 @@ HE_NODISCARD he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t by
  * Returns HE_BAD_INDEX if there is no such item. */
 HE_NODISCARD he_status he_gltf_item(he_gltf *asset, const he_ids *list, uint32_t value,
                                     const char *what, uint32_t *item, he_error *err);
+/* A range of whole numbers, with both ends. */
+typedef struct he_gltf_range {
+    uint64_t least, most;
+} he_gltf_range;
+
 /* Reads a member that must exist and be a whole number in a range.
  * Returns HE_BAD_VALUE if the member does not exist or is not in the range. */
 HE_NODISCARD he_status he_gltf_need(const he_gltf *asset, uint32_t object, const char *name,
-                                    uint64_t least, uint64_t most, uint64_t *out, he_error *err);
+                                    he_gltf_range range, uint64_t *out, he_error *err);
 /* Reads a member that is a whole number in a range, or 0 if the member is missing.
  * Returns HE_BAD_VALUE if the number is out of range. */
 HE_NODISCARD he_status he_gltf_may(const he_gltf *asset, uint32_t object, const char *name,

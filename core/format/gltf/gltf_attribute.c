@@ -130,9 +130,13 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
     for (uint32_t i = 0; i < column->components; i++, at += he_type_bytes(column->type)) {
         double value = values[i];
         if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
-            he_notes_add(&s->asset->into->notes, "not_finite",
-                         "set to 0: values that are not finite of", column->name,
-                         strlen(column->name), HE_PLACE_BYTE, place);
+            he_notes_add(&s->asset->into->notes,
+                         &(he_warning){.code = "not_finite",
+                                       .text = "set to 0: values that are not finite of",
+                                       .subject = column->name,
+                                       .length = strlen(column->name),
+                                       .place = HE_PLACE_BYTE,
+                                       .at = place});
             value = 0;
         }
         if (column->type == HE_FLOAT) {
@@ -180,8 +184,13 @@ static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const 
 static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
                          const char *semantic, uint32_t value)
 {
-    he_notes_add(&s->asset->into->notes, code, text, semantic, strlen(semantic), HE_PLACE_BYTE,
-                 he_json_place(&s->asset->json, value));
+    he_notes_add(&s->asset->into->notes,
+                 &(he_warning){.code = code,
+                               .text = text,
+                               .subject = semantic,
+                               .length = strlen(semantic),
+                               .place = HE_PLACE_BYTE,
+                               .at = he_json_place(&s->asset->json, value)});
 }
 
 static bool is_direction(const he_gltf_semantic *known)
@@ -204,26 +213,35 @@ static he_status check_type(const he_gltf *asset, const he_gltf_accessor *a,
                         (int)a->type);
 }
 
-/* Finds or makes the column into which an attribute is read; NULL if there can be none. */
-static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, const char *semantic,
-                             const he_gltf_accessor *a, const he_gltf_semantic **known,
-                             he_column **out, he_error *err)
+/* An attribute of a primitive. */
+typedef struct attribute {
+    char semantic[HE_COLUMN_NAME + 2]; /* its name in the file */
+    he_gltf_accessor values;
+    const he_gltf_semantic *known; /* NULL if the semantic is none of those of glTF */
+    he_column *column;             /* into which it is read; NULL if there can be none */
+} attribute;
+
+/* Finds or makes the column into which an attribute is read. */
+static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, attribute *out,
+                             he_error *err)
 {
     he_soup *soup = &s->asset->into->soup;
+    const he_gltf_accessor *a = &out->values;
+    const char *semantic = out->semantic;
     char name[HE_COLUMN_NAME];
     uint32_t value = a->value;
-    *out = NULL;
-    if (!name_attribute(semantic, name, known) || (a->matrix && a->type != HE_GLTF_FLOAT) ||
-        (*known != NULL &&
-         (a->components < (*known)->least || a->components > (*known)->most || a->matrix))) {
+    out->column = NULL;
+    if (!name_attribute(semantic, name, &out->known) || (a->matrix && a->type != HE_GLTF_FLOAT) ||
+        (out->known != NULL &&
+         (a->components < out->known->least || a->components > out->known->most || a->matrix))) {
         note_ignored(s, "ignored_attribute", "ignored: attribute", semantic, value);
         return HE_OK;
     }
-    he_status status = check_type(s->asset, a, *known, err);
+    he_status status = check_type(s->asset, a, out->known, err);
     if (status != HE_OK) {
         return status;
     }
-    he_type type = column_type(a, *known);
+    he_type type = column_type(a, out->known);
     he_column *column = he_gltf_find_column(soup, HE_VERTEX, name);
     const he_column *corners = he_gltf_find_column(soup, HE_HALFEDGE, name);
     if (p->exact && corners != NULL && corners->rows > p->first_corner) {
@@ -247,7 +265,8 @@ static he_status open_column(he_gltf_surface *s, const he_gltf_primitive *p, con
                             "the mesh would have more than %d attributes", (int)HE_GLTF_ATTRIBUTES);
     }
     he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
-    return he_soup_column(soup, name, HE_VERTEX, type, a->components, rule, out, err);
+    return he_soup_column(soup, &(he_column_schema){name, HE_VERTEX, type, a->components, rule},
+                          &out->column, err);
 }
 
 static size_t number_of(const he_soup *soup, const he_column *column)
@@ -264,28 +283,25 @@ static he_status add_attribute(he_gltf_surface *s, const he_gltf_primitive *p, u
 {
     const he_json *json = &s->asset->json;
     uint32_t value = he_json_of(name);
-    he_gltf_accessor a;
-    const he_gltf_semantic *known = NULL;
-    he_column *column = NULL;
-    char semantic[HE_COLUMN_NAME + 2];
-    he_json_string(json, name, semantic, sizeof semantic);
-    he_status status = he_gltf_accessor_get(s->asset, value, &a, err);
-    if (status == HE_OK && a.count != p->positions.count) {
-        return he_json_fail(json, value, err, HE_BAD_VALUE,
-                            "%llu values are given for %llu vertices", (unsigned long long)a.count,
-                            (unsigned long long)p->positions.count);
+    attribute a = {.known = NULL};
+    he_json_string(json, name, a.semantic, sizeof a.semantic);
+    he_status status = he_gltf_accessor_get(s->asset, value, &a.values, err);
+    if (status == HE_OK && a.values.count != p->positions.count) {
+        return he_json_fail(
+            json, value, err, HE_BAD_VALUE, "%llu values are given for %llu vertices",
+            (unsigned long long)a.values.count, (unsigned long long)p->positions.count);
     }
     if (status == HE_OK) {
-        status = open_column(s, p, semantic, &a, &known, &column, err);
+        status = open_column(s, p, &a, err);
     }
     size_t end = p->first_vertex + (size_t)p->vertices;
-    if (status != HE_OK || column == NULL) {
+    if (status != HE_OK || a.column == NULL) {
         return status;
     }
-    status = he_gltf_extend(s, value, column, end, err);
+    status = he_gltf_extend(s, value, a.column, end, err);
     if (status == HE_OK) {
-        s->given[number_of(&s->asset->into->soup, column)] += p->vertices;
-        status = put_rows(s, p, &a, known, column, err);
+        s->given[number_of(&s->asset->into->soup, a.column)] += p->vertices;
+        status = put_rows(s, p, &a.values, a.known, a.column, err);
     }
     return status;
 }
@@ -314,9 +330,11 @@ void he_gltf_note_attributes(he_gltf_surface *surface)
             continue;
         }
         size_t before = into->notes.count;
-        he_notes_add(&into->notes, "vertices_without",
-                     "set to 0 at vertices without a value: attribute", column->name,
-                     strlen(column->name), HE_PLACE_NONE, 0);
+        he_notes_add(&into->notes,
+                     &(he_warning){.code = "vertices_without",
+                                   .text = "set to 0 at vertices without a value: attribute",
+                                   .subject = column->name,
+                                   .length = strlen(column->name)});
         if (into->notes.count > before) {
             into->notes.items[before].count = all - given;
         }

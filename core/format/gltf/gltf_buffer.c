@@ -156,7 +156,8 @@ static he_status open_buffer(he_gltf *asset, size_t i, uint32_t value, const he_
 {
     he_gltf_buffer *buffer = &asset->buffers[i];
     uint64_t length = 0;
-    he_status status = he_gltf_need(asset, value, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+    he_status status =
+        he_gltf_need(asset, value, "byteLength", (he_gltf_range){1, HE_JSON_WHOLE}, &length, err);
     if (status == HE_OK) {
         status = is_fallback(asset, value) ? find_fallback(asset, i, value, err)
                                            : find_bytes(asset, i, value, bin, length, err);

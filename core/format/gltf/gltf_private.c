@@ -16,9 +16,13 @@ bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive)
 
 static void note_stale(he_gltf_surface *s, uint32_t value)
 {
-    he_notes_add(&s->asset->into->notes, "stale_extras",
-                 "ignored, because they do not fit the geometry: hedge's own data in extras", NULL,
-                 0, HE_PLACE_BYTE, he_json_place(&s->asset->json, value));
+    he_notes_add(
+        &s->asset->into->notes,
+        &(he_warning){
+            .code = "stale_extras",
+            .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
+            .place = HE_PLACE_BYTE,
+            .at = he_json_place(&s->asset->json, value)});
 }
 
 /* Returns true if a failure is about memory, limits or cancellation and must be reported. Any other
@@ -197,8 +201,8 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
         d->rule++;
     }
     if (d->type == HE_TYPE_COUNT || d->rule == HE_RULE_COUNT ||
-        he_gltf_need(s->asset, object, "components", 1, HE_COLUMN_COMPONENTS, &d->components,
-                     NULL) != HE_OK ||
+        he_gltf_need(s->asset, object, "components", (he_gltf_range){1, HE_COLUMN_COMPONENTS},
+                     &d->components, NULL) != HE_OK ||
         he_json_string(json, he_json_find(json, object, "name"), d->name, sizeof d->name) == 0) {
         return HE_OK;
     }
@@ -373,8 +377,9 @@ static he_status take_column(he_gltf_surface *s, uint32_t object, const descript
     he_soup *soup = &s->asset->into->soup;
     he_column *column = he_gltf_find_column(soup, d->domain, d->name);
     bool fresh = column == NULL;
-    he_status status = he_soup_column(soup, d->name, d->domain, d->type, (uint32_t)d->components,
-                                      d->rule, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){d->name, d->domain, d->type, (uint32_t)d->components, d->rule},
+        &column, err);
     if (status == HE_OK) {
         status = he_gltf_extend(s, object, column, d->first + (size_t)d->rows, err);
     }

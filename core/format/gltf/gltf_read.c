@@ -69,8 +69,8 @@ static he_status read_asset(he_import *into, const block *json, const block *bin
     if (has_bin) {
         chunk.bytes = bin->bytes == NULL ? nothing : (const unsigned char *)bin->bytes;
     }
-    const char *text = json->bytes == NULL ? "" : json->bytes;
-    he_status status = he_gltf_open(&asset, into, text, json->length, json->place, &chunk, err);
+    const he_gltf_text text = {json->bytes == NULL ? "" : json->bytes, json->length, json->place};
+    he_status status = he_gltf_open(&asset, into, &text, &chunk, err);
     if (status != HE_OK) {
         return status;
     }
@@ -137,9 +137,12 @@ static he_status take_chunk(glb *g, he_error *err)
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
-        he_notes_add(&g->into->notes, "unaligned_chunk",
-                     "read although its length is not a multiple of 4: a chunk", NULL, 0,
-                     HE_PLACE_BYTE, at);
+        he_notes_add(
+            &g->into->notes,
+            &(he_warning){.code = "unaligned_chunk",
+                          .text = "read although its length is not a multiple of 4: a chunk",
+                          .place = HE_PLACE_BYTE,
+                          .at = at});
         g->padding = 4 - g->left % 4;
     }
     if ((type == JSON_CHUNK) != (number == 0)) {
@@ -156,8 +159,10 @@ static he_status take_chunk(glb *g, he_error *err)
     if (g->chunk != NULL) {
         g->chunk->place = g->offset;
     } else {
-        he_notes_add(&g->into->notes, "ignored_chunk", "ignored: a chunk of another type", NULL, 0,
-                     HE_PLACE_BYTE, at);
+        he_notes_add(&g->into->notes, &(he_warning){.code = "ignored_chunk",
+                                                    .text = "ignored: a chunk of another type",
+                                                    .place = HE_PLACE_BYTE,
+                                                    .at = at});
     }
     return HE_OK;
 }

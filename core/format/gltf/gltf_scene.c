@@ -36,23 +36,29 @@ static he_gltf_frame multiply(const he_gltf_frame *a, const he_gltf_frame *b)
     return out;
 }
 
-/* Reads `count` numbers of a member of a node; if the member is missing, `out` is not changed. */
-static he_status get_numbers(const he_json *json, uint32_t node, const char *name, size_t count,
-                             double *out, bool *found, he_error *err)
+/* A member of a node that is a list of numbers. */
+typedef struct numbers {
+    const char *name;
+    size_t count;
+    double *values; /* not changed if the member is missing */
+    bool found;
+} numbers;
+
+static he_status get_numbers(const he_json *json, uint32_t node, numbers *n, he_error *err)
 {
-    uint32_t list = he_json_find(json, node, name), item = he_json_first(json, list);
-    *found = list != HE_NONE;
+    uint32_t list = he_json_find(json, node, n->name), item = he_json_first(json, list);
+    n->found = list != HE_NONE;
     if (list == HE_NONE) {
         return HE_OK;
     }
     he_status status = HE_OK;
     size_t i = 0;
-    for (; item != HE_NONE && i < count && status == HE_OK;
+    for (; item != HE_NONE && i < n->count && status == HE_OK;
          item = he_json_after(json, list, item), i++) {
-        status = he_json_number(json, item, &out[i], err);
+        status = he_json_number(json, item, &n->values[i], err);
     }
-    if (status == HE_OK && (i < count || item != HE_NONE || he_json_type(json, list) != '[')) {
-        return he_json_fail(json, list, err, HE_BAD_VALUE, "%zu numbers are needed", count);
+    if (status == HE_OK && (i < n->count || item != HE_NONE || he_json_type(json, list) != '[')) {
+        return he_json_fail(json, list, err, HE_BAD_VALUE, "%zu numbers are needed", n->count);
     }
     return status;
 }
@@ -76,9 +82,11 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     }
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
-        he_notes_add(&asset->into->notes, "rotation_made_unit",
-                     "normalized to length 1: the quaternion of a rotation", NULL, 0, HE_PLACE_BYTE,
-                     he_json_place(json, node));
+        he_notes_add(&asset->into->notes,
+                     &(he_warning){.code = "rotation_made_unit",
+                                   .text = "normalized to length 1: the quaternion of a rotation",
+                                   .place = HE_PLACE_BYTE,
+                                   .at = he_json_place(json, node)});
     }
     for (int i = 0; i < 4; i++) {
         q[i] = q[i] / largest / sqrt(sum);
@@ -103,32 +111,37 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
 {
     const he_json *json = &asset->json;
     double m[16] = {0}, t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    bool matrix, moved, turned, scaled;
-    he_status status = get_numbers(json, node, "matrix", 16, m, &matrix, err);
+    numbers matrix = {"matrix", 16, m, false}, translation = {"translation", 3, t, false};
+    numbers rotation = {"rotation", 4, q, false}, scale = {"scale", 3, s, false};
+    he_status status = get_numbers(json, node, &matrix, err);
     if (status == HE_OK) {
-        status = get_numbers(json, node, "translation", 3, t, &moved, err);
+        status = get_numbers(json, node, &translation, err);
     }
     if (status == HE_OK) {
-        status = get_numbers(json, node, "rotation", 4, q, &turned, err);
+        status = get_numbers(json, node, &rotation, err);
     }
-    if (status == HE_OK && turned) {
+    if (status == HE_OK && rotation.found) {
         status = make_unit(asset, node, q, err);
     }
     if (status == HE_OK) {
-        status = get_numbers(json, node, "scale", 3, s, &scaled, err);
+        status = get_numbers(json, node, &scale, err);
     }
     if (status != HE_OK) {
         return status;
     }
-    *moves = matrix || moved || turned || scaled;
-    if (!matrix) {
+    const bool composed = translation.found || rotation.found || scale.found;
+    *moves = matrix.found || composed;
+    if (!matrix.found) {
         *out = compose(t, q, s);
         return HE_OK;
     }
-    if (moved || turned || scaled) {
-        he_notes_add(&asset->into->notes, "matrix_and_more",
-                     "ignored: a translation, rotation or scale beside a matrix", NULL, 0,
-                     HE_PLACE_BYTE, he_json_place(json, node));
+    if (composed) {
+        he_notes_add(
+            &asset->into->notes,
+            &(he_warning){.code = "matrix_and_more",
+                          .text = "ignored: a translation, rotation or scale beside a matrix",
+                          .place = HE_PLACE_BYTE,
+                          .at = he_json_place(json, node)});
     }
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
         return he_json_fail(json, he_json_find(json, node, "matrix"), err, HE_BAD_VALUE,
@@ -270,8 +283,10 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
         *out = scenes.ids[0];
     }
     if (status == HE_OK && scenes.count > 1) {
-        he_notes_add(&asset->into->notes, "other_scenes", "ignored: all scenes but one", NULL, 0,
-                     HE_PLACE_BYTE, he_json_place(json, list));
+        he_notes_add(&asset->into->notes, &(he_warning){.code = "other_scenes",
+                                                        .text = "ignored: all scenes but one",
+                                                        .place = HE_PLACE_BYTE,
+                                                        .at = he_json_place(json, list)});
     }
     he_ids_clear(&scenes);
     return status;

@@ -16,7 +16,8 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
 {
     const he_json *json = &asset->json;
     uint64_t buffer = 0, start = 0, length = 0;
-    he_status status = he_gltf_need(asset, object, "buffer", 0, HE_JSON_WHOLE, &buffer, err);
+    he_status status =
+        he_gltf_need(asset, object, "buffer", (he_gltf_range){0, HE_JSON_WHOLE}, &buffer, err);
     if (status == HE_OK && buffer >= asset->buffer_count) {
         status = he_json_fail(json, object, err, HE_BAD_INDEX,
                               "there is no buffer %llu; the file has %zu",
@@ -26,7 +27,8 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
         status = he_gltf_may(asset, object, "byteOffset", HE_JSON_WHOLE, &start, err);
     }
     if (status == HE_OK) {
-        status = he_gltf_need(asset, object, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+        status = he_gltf_need(asset, object, "byteLength", (he_gltf_range){1, HE_JSON_WHOLE},
+                              &length, err);
     }
     if (status != HE_OK) {
         return status;
@@ -52,43 +54,55 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
 
 /* --- compressed views --- */
 
-/* Finds which of `count` words a string is; `absent` if there is no string. */
-static he_status find_word(const he_gltf *asset, uint32_t object, const char *name,
-                           const char *const *words, int count, int absent, int *out, he_error *err)
+/* A member whose value is one of some words. */
+typedef struct choice {
+    const char *name;
+    const char *const *words;
+    int count;
+    int absent; /* the word that a missing member stands for; -1 if it must not be missing */
+} choice;
+
+/* Finds which of the words the member is. */
+static he_status find_word(const he_gltf *asset, uint32_t object, const choice *c, int *out,
+                           he_error *err)
 {
     const he_json *json = &asset->json;
-    uint32_t value = he_json_find(json, object, name);
-    *out = absent;
-    for (int i = 0; i < count && value != HE_NONE; i++) {
-        if (he_json_is(json, value, words[i])) {
+    uint32_t value = he_json_find(json, object, c->name);
+    *out = c->absent;
+    for (int i = 0; i < c->count && value != HE_NONE; i++) {
+        if (he_json_is(json, value, c->words[i])) {
             *out = i;
             return HE_OK;
         }
     }
-    if (value == HE_NONE && absent >= 0) {
+    if (value == HE_NONE && c->absent >= 0) {
         return HE_OK;
     }
     return value == HE_NONE
-               ? he_json_fail(json, object, err, HE_BAD_VALUE, "'%s' is missing", name)
-               : he_json_fail(json, value, err, HE_UNSUPPORTED, "this %s is not supported", name);
+               ? he_json_fail(json, object, err, HE_BAD_VALUE, "'%s' is missing", c->name)
+               : he_json_fail(json, value, err, HE_UNSUPPORTED, "this %s is not supported",
+                              c->name);
 }
 
 static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_stream *out,
                              he_error *err)
 {
+    static const choice modes = {"mode", he_meshopt_modes, HE_MESHOPT_MODES, -1};
+    static const choice filters = {"filter", he_meshopt_filters, HE_MESHOPT_FILTERS,
+                                   HE_MESHOPT_NONE};
     uint64_t stride = 0;
     int mode = 0, filter = HE_MESHOPT_NONE;
-    he_status status =
-        find_word(asset, object, "mode", he_meshopt_modes, HE_MESHOPT_MODES, -1, &mode, err);
+    he_status status = find_word(asset, object, &modes, &mode, err);
     if (status == HE_OK) {
-        status = find_word(asset, object, "filter", he_meshopt_filters, HE_MESHOPT_FILTERS,
-                           HE_MESHOPT_NONE, &filter, err);
+        status = find_word(asset, object, &filters, &filter, err);
     }
     if (status == HE_OK) {
-        status = he_gltf_need(asset, object, "count", 1, HE_MAX_ROWS, &out->count, err);
+        status =
+            he_gltf_need(asset, object, "count", (he_gltf_range){1, HE_MAX_ROWS}, &out->count, err);
     }
     if (status == HE_OK) {
-        status = he_gltf_need(asset, object, "byteStride", 1, HE_JSON_WHOLE, &stride, err);
+        status = he_gltf_need(asset, object, "byteStride", (he_gltf_range){1, HE_JSON_WHOLE},
+                              &stride, err);
     }
     if (status != HE_OK) {
         return status;
@@ -138,7 +152,8 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     he_meshopt_stream stream = {.mode = HE_MESHOPT_ATTRIBUTES};
     he_gltf_buffer packed = {.bytes = NULL};
     uint64_t length = 0;
-    he_status status = he_gltf_need(asset, view, "byteLength", 1, HE_JSON_WHOLE, &length, err);
+    he_status status =
+        he_gltf_need(asset, view, "byteLength", (he_gltf_range){1, HE_JSON_WHOLE}, &length, err);
     if (status == HE_OK) {
         status = read_stream(asset, object, &stream, err);
     }

@@ -13,9 +13,13 @@ static uint32_t find_private(const he_gltf *asset)
 
 static void note_stale(he_gltf *asset, uint32_t value)
 {
-    he_notes_add(&asset->into->notes, "stale_extras",
-                 "ignored, because they do not fit the geometry: hedge's own data in extras", NULL,
-                 0, HE_PLACE_BYTE, he_json_place(&asset->json, value));
+    he_notes_add(
+        &asset->into->notes,
+        &(he_warning){
+            .code = "stale_extras",
+            .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
+            .place = HE_PLACE_BYTE,
+            .at = he_json_place(&asset->json, value)});
 }
 
 /* --- checking whether the scene is as hedge wrote it --- */

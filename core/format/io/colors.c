@@ -59,8 +59,9 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *not
     double full = above || !colors->fractions ? FULL_BYTE : 1;
     uint32_t components = is_opaque(colors, full) ? 3 : 4;
     he_column *column;
-    he_status status =
-        he_soup_column(soup, "color", domain, HE_DOUBLE, components, HE_INTERPOLATE, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){"color", domain, HE_DOUBLE, components, HE_INTERPOLATE}, &column,
+        err);
     if (status == HE_OK) {
         status = he_column_extend(column, elements, err);
     }

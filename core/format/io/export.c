@@ -101,8 +101,11 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
     for (size_t row = 0; row < column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (!isfinite(component_of(column, row, i))) {
-                he_notes_add(notes, "not_finite", "written as 0: values that are not finite of",
-                             name, strlen(name), HE_PLACE_NONE, 0);
+                he_notes_add(notes,
+                             &(he_warning){.code = "not_finite",
+                                           .text = "written as 0: values that are not finite of",
+                                           .subject = name,
+                                           .length = strlen(name)});
             }
         }
     }
@@ -122,8 +125,10 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
             char subject[HE_COLUMN_NAME + 16];
             int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
                                   column->name);
-            he_notes_add(notes, "attribute_lost", "not written: attribute", subject, (size_t)length,
-                         HE_PLACE_NONE, 0);
+            he_notes_add(notes, &(he_warning){.code = "attribute_lost",
+                                              .text = "not written: attribute",
+                                              .subject = subject,
+                                              .length = (size_t)length});
         }
     }
 }

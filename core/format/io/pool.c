@@ -104,8 +104,9 @@ he_status he_pool_finish(const he_pool *pool, he_soup *soup, const char *name, u
     }
     uint32_t components = has_third(pool) ? 3 : least;
     he_column *column;
-    he_status status = he_soup_column(soup, name, HE_HALFEDGE, HE_DOUBLE, components,
-                                      HE_INTERPOLATE, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){name, HE_HALFEDGE, HE_DOUBLE, components, HE_INTERPOLATE},
+        &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, soup->corner_count, err);
     }

@@ -85,8 +85,8 @@ he_status he_spans_set_label(he_spans *spans, size_t face, const char *text, siz
     return status == HE_OK ? he_spans_set(spans, face, value, err) : status;
 }
 
-he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char **own,
-                       const char **text, size_t *out, he_error *err)
+he_status he_line_name(const he_line *line, const char *p, he_notes *notes, he_name *out,
+                       he_error *err)
 {
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
@@ -103,31 +103,32 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char
                                 "a name contains the control character %u", control);
         }
     }
-    *own = name;
-    *text = name;
+    const char *text = name;
     if (!he_is_utf8(name, length)) {
         if (notes != NULL) {
-            he_notes_add(notes, "not_utf8", "read as Latin-1: a name that is not UTF-8", name,
-                         length, HE_PLACE_LINE, line->number);
+            he_notes_add(notes, &(he_warning){.code = "not_utf8",
+                                              .text = "read as Latin-1: a name that is not UTF-8",
+                                              .subject = name,
+                                              .length = length,
+                                              .place = HE_PLACE_LINE,
+                                              .at = line->number});
         }
         length = widen(name, length, name + room);
-        *text = name + room;
+        text = name + room;
     }
-    *out = length;
+    *out = (he_name){text, length, name};
     return HE_OK;
 }
 
 he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line, const char *p,
                             he_notes *notes, he_error *err)
 {
-    char *own = NULL;
-    const char *text = NULL;
-    size_t length = 0;
-    he_status status = he_line_name(line, p, notes, &own, &text, &length, err);
+    he_name name = {.own = NULL};
+    he_status status = he_line_name(line, p, notes, &name, err);
     if (status == HE_OK) {
-        status = he_spans_set_label(spans, face, text, length, err);
+        status = he_spans_set_label(spans, face, name.text, name.length, err);
     }
-    he_mem_free(own);
+    he_mem_free(name.own);
     return status;
 }
 
@@ -169,7 +170,8 @@ he_status he_spans_finish(he_spans *spans, he_soup *soup, const char *name, he_e
         return HE_OK;
     }
     he_column *column;
-    he_status status = he_soup_column(soup, name, HE_FACE, HE_UINT32, 1, HE_COPY, &column, err);
+    he_status status = he_soup_column(
+        soup, &(he_column_schema){name, HE_FACE, HE_UINT32, 1, HE_COPY}, &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, faces, err);
     }

@@ -23,14 +23,20 @@ HE_NODISCARD he_status he_spans_set(he_spans *spans, size_t face, uint32_t value
 /* Does what he_spans_set does, with a name in UTF-8 as the value. */
 HE_NODISCARD he_status he_spans_set_label(he_spans *spans, size_t face, const char *text,
                                           size_t length, he_error *err);
+/* A name that was read from a file. */
+typedef struct he_name {
+    const char *text; /* UTF-8, does not end in NUL; lies in `own` */
+    size_t length;
+    char *own; /* the caller frees it */
+} he_name;
+
 /* Reads a name in a line: the text from `p` to the end of the line, without blanks around it; each
  * continuation inside it becomes a blank. Bytes that are not UTF-8 are converted from Latin-1, with
- * a warning in `notes` (may be NULL). *text is the name; the caller frees *own, the memory that a
- * converted name needs.
+ * a warning in `notes` (may be NULL).
  * Returns HE_SYNTAX if the name contains a control character.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_line_name(const he_line *line, const char *p, he_notes *notes, char **own,
-                                    const char **text, size_t *length, he_error *err);
+HE_NODISCARD he_status he_line_name(const he_line *line, const char *p, he_notes *notes,
+                                    he_name *out, he_error *err);
 /* Does what he_spans_set_label does, with a name that he_line_name reads from the line. */
 HE_NODISCARD he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line,
                                          const char *p, he_notes *notes, he_error *err);

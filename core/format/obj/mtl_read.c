@@ -20,7 +20,8 @@ typedef struct library {
 
 static void note(library *l, const char *code, const char *text, const char *subject, size_t length)
 {
-    he_notes_add(&l->into->notes, code, text, subject, length, HE_PLACE_NONE, 0);
+    he_notes_add(&l->into->notes,
+                 &(he_warning){.code = code, .text = text, .subject = subject, .length = length});
 }
 
 /* Finds the number of the material with this name; *fresh says whether the name is new. */
@@ -93,37 +94,36 @@ static he_status end_material(library *l, he_error *err)
 
 static he_status begin_material(library *l, const he_line *line, const char *p, he_error *err)
 {
-    char *own = NULL;
-    const char *text = NULL;
-    size_t length = 0;
+    he_name name = {.own = NULL};
     he_status status = end_material(l, err);
     l->length = 0;
     if (status == HE_OK) {
-        status = he_line_name(line, p, NULL, &own, &text, &length, err);
+        status = he_line_name(line, p, NULL, &name, err);
     }
-    if (status == HE_OK && length + 1 > l->room) {
-        char *grown = he_mem_resize(l->name, length + 1);
+    if (status == HE_OK && name.length + 1 > l->room) {
+        char *grown = he_mem_resize(l->name, name.length + 1);
         if (grown == NULL) {
             status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the name of a material");
         } else {
             l->name = grown;
-            l->room = length + 1;
+            l->room = name.length + 1;
         }
     }
     if (status == HE_OK) {
-        if (text != own) {
-            note(l, "not_utf8", "read as Latin-1: a name that is not UTF-8", text, length);
+        if (name.text != name.own) {
+            note(l, "not_utf8", "read as Latin-1: a name that is not UTF-8", name.text,
+                 name.length);
         }
-        memcpy(l->name, text, length);
-        l->name[length] = '\0';
-        l->length = length;
+        memcpy(l->name, name.text, name.length);
+        l->name[name.length] = '\0';
+        l->length = name.length;
         l->look = he_plain_look;
         l->has_opacity = false;
-        if (length == 0) {
+        if (name.length == 0) {
             note(l, "material_name", "left out, because it has no name: a material", NULL, 0);
         }
     }
-    he_mem_free(own);
+    he_mem_free(name.own);
     return status;
 }
 

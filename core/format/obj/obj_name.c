@@ -6,8 +6,10 @@ void he_obj_note_name(const char *name, he_notes *notes)
 {
     for (const char *p = name; *p != '\0'; p++) {
         if (he_obj_printable(p, p == name) != *p) {
-            he_notes_add(notes, "names_changed", "changed so that it fits in a line: a name", name,
-                         strlen(name), HE_PLACE_NONE, 0);
+            he_notes_add(notes, &(he_warning){.code = "names_changed",
+                                              .text = "changed so that it fits in a line: a name",
+                                              .subject = name,
+                                              .length = strlen(name)});
             break;
         }
     }

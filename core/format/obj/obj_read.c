@@ -24,17 +24,27 @@ typedef struct obj {
     uint64_t unknown;     /* the first line with another keyword, 0 for none */
 } obj;
 
-static void note(obj *o, const char *code, const char *text, const char *subject, size_t length,
-                 const he_line *line)
+/* Adds a warning about a line. */
+static void note(obj *o, const he_line *line, he_warning warning)
 {
-    he_notes_add(&o->into->notes, code, text, subject, length, HE_PLACE_LINE, line->number);
+    warning.place = HE_PLACE_LINE;
+    warning.at = line->number;
+    he_notes_add(&o->into->notes, &warning);
 }
 
-/* Reads the numbers of a line. The first `most` of them are stored; the first `finite` of them must
- * be finite. */
-static he_status read_numbers(obj *o, const he_line *line, const char *p, double *values,
-                              size_t most, size_t finite, size_t *count, he_error *err)
+/* The numbers of a line, however many there are. */
+typedef struct numbers {
+    double *values;      /* the first ones */
+    const size_t most;   /* how many of them are stored */
+    const size_t finite; /* how many of them must be finite */
+    size_t count;        /* how many the line has */
+} numbers;
+
+static he_status read_numbers(obj *o, const he_line *line, const char *p, numbers *out,
+                              he_error *err)
 {
+    const size_t most = out->most, finite = out->finite;
+    double *values = out->values;
     size_t n = 0;
     for (p = he_skip_blanks(p, line->end); !he_at_end(p, line->end);
          p = he_skip_blanks(p, line->end)) {
@@ -46,31 +56,35 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, double
             return status;
         }
         if (!is_finite) {
-            note(o, "not_finite", "set to 0: a value that is not finite", NULL, 0, line);
+            note(
+                o, line,
+                (he_warning){.code = "not_finite", .text = "set to 0: a value that is not finite"});
         }
         if (n < most) {
             values[n] = value;
         }
         n++;
     }
-    *count = n;
+    out->count = n;
     return HE_OK;
 }
 
 static void note_extra(obj *o, const he_line *line)
 {
-    note(o, "extra_numbers", "ignored: extra numbers on a line", NULL, 0, line);
+    note(o, line,
+         (he_warning){.code = "extra_numbers", .text = "ignored: extra numbers on a line"});
 }
 
 static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
 {
     double n[7];
-    size_t count = 0;
+    numbers read = {.values = n, .most = 7, .finite = 3};
     he_soup *soup = &o->into->soup;
-    he_status status = read_numbers(o, line, p, n, 7, 3, &count, err);
+    he_status status = read_numbers(o, line, p, &read, err);
     if (status != HE_OK) {
         return status;
     }
+    size_t count = read.count;
     if (count < 3) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin,
                             "a vertex has 3, 4, 6 or 7 numbers, not %zu", count);
@@ -88,7 +102,8 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
         status = he_colors_add(&o->colors, vertex, n + 3, count - 3, err);
     }
     if (count == 4 && n[3] != 1) {
-        note(o, "vertex_weight", "ignored: the weight of a vertex", NULL, 0, line);
+        note(o, line,
+             (he_warning){.code = "vertex_weight", .text = "ignored: the weight of a vertex"});
     }
     return he_line_locate(status, line, err);
 }
@@ -97,17 +112,17 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
                                  size_t least, he_error *err)
 {
     double n[3] = {0, 0, 0};
-    size_t count = 0;
+    numbers read = {.values = n, .most = 3};
     uint64_t limit = o->into->soup.limits.bytes;
-    he_status status = read_numbers(o, line, p, n, 3, 0, &count, err);
+    he_status status = read_numbers(o, line, p, &read, err);
     if (status != HE_OK) {
         return status;
     }
-    if (count < least) {
+    if (read.count < least) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin,
-                            "the line has %zu numbers and needs %zu", count, least);
+                            "the line has %zu numbers and needs %zu", read.count, least);
     }
-    if (count > 3) {
+    if (read.count > 3) {
         note_extra(o, line);
     }
     return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
@@ -149,11 +164,15 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
  * but the shape is not affected. An index of 0 means none. */
 static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
-    he_notes_add(&o->into->notes, pool == &o->uv ? "no_such_uv" : "no_such_normal",
-                 pool == &o->uv
-                     ? "set to 0, because it does not exist: a corner's texture coordinate"
-                     : "set to 0, because it does not exist: a corner's normal",
-                 NULL, 0, HE_PLACE_LINE, at);
+    he_notes_add(
+        &o->into->notes,
+        &(he_warning){.code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
+                      .text =
+                          pool == &o->uv
+                              ? "set to 0, because it does not exist: a corner's texture coordinate"
+                              : "set to 0, because it does not exist: a corner's normal",
+                      .place = HE_PLACE_LINE,
+                      .at = at});
 }
 
 static he_status read_value(obj *o, const he_line *line, const char **p, he_pool *pool,
@@ -268,9 +287,7 @@ static const char *const passed_over[] = {
 
 static he_status read_library(obj *o, const he_line *line, const char *p, he_error *err)
 {
-    char *own = NULL;
-    const char *text = NULL;
-    size_t length = 0;
+    he_name name = {.own = NULL};
     uint32_t number = 0;
     if (o->libraries == NULL) {
         o->libraries = he_labels_new();
@@ -278,14 +295,14 @@ static he_status read_library(obj *o, const he_line *line, const char *p, he_err
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
         }
     }
-    he_status status = he_line_name(line, p, &o->into->notes, &own, &text, &length, err);
-    if (status == HE_OK && length > 0) {
-        status = he_labels_add(o->libraries, text, length, &number, err);
+    he_status status = he_line_name(line, p, &o->into->notes, &name, err);
+    if (status == HE_OK && name.length > 0) {
+        status = he_labels_add(o->libraries, name.text, name.length, &number, err);
     }
     if (status == HE_OK && he_labels_count(o->libraries) > o->library_lines.count) {
         status = he_ids_add(&o->library_lines, (uint32_t)line->number, err);
     }
-    he_mem_free(own);
+    he_mem_free(name.own);
     return status;
 }
 
@@ -327,13 +344,21 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
     for (size_t i = 0; i < sizeof passed_over / sizeof *passed_over; i++) {
         if (*passed_over[i] == *p && strlen(passed_over[i]) == length &&
             memcmp(p, passed_over[i], length) == 0) {
-            note(o, "ignored_keyword", "ignored: lines that begin with", p, length, line);
+            note(o, line,
+                 (he_warning){.code = "ignored_keyword",
+                              .text = "ignored: lines that begin with",
+                              .subject = p,
+                              .length = length});
             return HE_OK;
         }
     }
     o->understood--;
     o->unknown = o->unknown == 0 ? line->number : o->unknown;
-    note(o, "unknown_keyword", "ignored: unknown keyword", p, length, line);
+    note(o, line,
+         (he_warning){.code = "unknown_keyword",
+                      .text = "ignored: unknown keyword",
+                      .subject = p,
+                      .length = length});
     return HE_OK;
 }
 
@@ -347,7 +372,11 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
         return HE_OK;
     }
     if (*p == '$') { /* some programs write comments so */
-        note(o, "ignored_keyword", "ignored: lines that begin with", p, 1, line);
+        note(o, line,
+             (he_warning){.code = "ignored_keyword",
+                          .text = "ignored: lines that begin with",
+                          .subject = p,
+                          .length = 1});
         return HE_OK;
     }
     if (*p == 'v' && he_token_ends(p + 1, end)) {
@@ -465,10 +494,15 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
 {
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
     if (file == NULL) {
-        he_notes_add(&o->into->notes, "library_missing",
-                     "not sent with the file (send both as multipart/form-data): "
-                     "the material library",
-                     name, length, HE_PLACE_LINE, line);
+        he_notes_add(&o->into->notes,
+                     &(he_warning){.code = "library_missing",
+                                   .text =
+                                       "not sent with the file (send both as multipart/form-data): "
+                                       "the material library",
+                                   .subject = name,
+                                   .length = length,
+                                   .place = HE_PLACE_LINE,
+                                   .at = line});
         return HE_OK;
     }
     he_error failure = {0};
@@ -517,8 +551,10 @@ static he_status keep_libraries(obj *o, he_error *err)
     if (count == 0) {
         return HE_OK;
     }
-    he_status status = he_soup_column(&o->into->soup, HE_OBJ_LIBRARY, HE_MESH_KIND, HE_UINT32,
-                                      (uint32_t)count, HE_COPY, &column, err);
+    he_status status = he_soup_column(
+        &o->into->soup,
+        &(he_column_schema){HE_OBJ_LIBRARY, HE_MESH_KIND, HE_UINT32, (uint32_t)count, HE_COPY},
+        &column, err);
     if (status == HE_OK) {
         status = he_column_extend(column, 1, err);
     }

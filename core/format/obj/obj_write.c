@@ -52,10 +52,9 @@ static void note_changed_names(const he_column *column, he_notes *notes)
     }
 }
 
-static he_status find_values(values *v, const he_mesh *mesh, const char *name, const char *keyword,
-                             uint32_t least, he_watch *watch, he_notes *notes, he_error *err)
+static he_status find_values(values *v, const he_mesh *mesh, const char *name, uint32_t least,
+                             he_watch *watch, he_notes *notes, he_error *err)
 {
-    v->keyword = keyword;
     v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, notes);
     if (v->column != NULL) {
         v->of_corners = true;
@@ -96,9 +95,10 @@ static const he_column *find_libraries(obj_writer *w, he_notes *notes)
         he_obj_note_name(w->libraries[i], notes);
     }
     if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
-        he_notes_add(notes, "in_library",
-                     "written to the material library (format=mtl) only: materials", NULL, 0,
-                     HE_PLACE_NONE, 0);
+        he_notes_add(
+            notes,
+            &(he_warning){.code = "in_library",
+                          .text = "written to the material library (format=mtl) only: materials"});
     }
     return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
 }
@@ -122,13 +122,15 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->mesh = mesh;
     w->halfedge = HE_NONE;
+    w->uv.keyword = "vt";
+    w->normal.keyword = "vn";
     w->said[OBJECT] = w->said[GROUP] = w->said[MATERIAL] = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
-        status = find_values(&w->uv, mesh, "uv", "vt", 2, watch, notes, err);
+        status = find_values(&w->uv, mesh, "uv", 2, watch, notes, err);
     }
     if (status == HE_OK) {
-        status = find_values(&w->normal, mesh, "normal", "vn", 3, watch, notes, err);
+        status = find_values(&w->normal, mesh, "normal", 3, watch, notes, err);
     }
     if (status != HE_OK) {
         obj_close(w);
@@ -136,8 +138,10 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->color = he_colors_find(mesh, HE_VERTEX, notes);
     if (w->color != NULL && w->color->components == 4) {
-        he_notes_add(notes, "alpha_lost", "not written: the fourth component of", "vertex color",
-                     strlen("vertex color"), HE_PLACE_NONE, 0);
+        he_notes_add(notes, &(he_warning){.code = "alpha_lost",
+                                          .text = "not written: the fourth component of",
+                                          .subject = "vertex color",
+                                          .length = strlen("vertex color")});
     }
     const he_column *used[SPANS + 4] = {w->color, w->uv.column, w->normal.column};
     used[SPANS + 3] = find_libraries(w, notes);

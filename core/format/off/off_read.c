@@ -44,7 +44,9 @@ typedef struct off {
 
 static void note(off *o, const char *code, const char *text, const he_line *line)
 {
-    he_notes_add(&o->into->notes, code, text, NULL, 0, HE_PLACE_LINE, line->number);
+    he_notes_add(
+        &o->into->notes,
+        &(he_warning){.code = code, .text = text, .place = HE_PLACE_LINE, .at = line->number});
 }
 
 /* Returns the flags of a header word such as STCNOFF; -1 if it is none, -2 if its positions have

@@ -15,8 +15,9 @@ static he_status add_row(he_soup *soup, he_column **column, const char *name, ui
 {
     he_status status = HE_OK;
     if (*column == NULL) {
-        status = he_soup_column(soup, name, HE_VERTEX, HE_DOUBLE, components, HE_INTERPOLATE,
-                                column, err);
+        status = he_soup_column(
+            soup, &(he_column_schema){name, HE_VERTEX, HE_DOUBLE, components, HE_INTERPOLATE},
+            column, err);
     }
     if (status == HE_OK) {
         status = he_column_extend(*column, soup->vertex_count - (*column)->rows, err);

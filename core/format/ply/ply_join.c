@@ -69,9 +69,11 @@ static void join_copies(he_import *into, size_t mark)
     if (vertices > 0) {
         join(soup, column, vertices);
     } else if (soup->vertex_count > 0) {
-        he_notes_add(&into->notes, "stale_copies",
-                     "not joined, because their positions differ: vertices marked as copies", NULL,
-                     0, HE_PLACE_NONE, 0);
+        he_notes_add(
+            &into->notes,
+            &(he_warning){
+                .code = "stale_copies",
+                .text = "not joined, because their positions differ: vertices marked as copies"});
     }
     soup->column_count--;
     memmove(soup->columns + mark, soup->columns + mark + 1,

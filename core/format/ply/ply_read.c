@@ -29,7 +29,8 @@ typedef struct ply {
 
 static void note(ply *o, const char *code, const char *text, uint64_t at)
 {
-    he_notes_add(&o->into->notes, code, text, NULL, 0, o->rows.unit, at);
+    he_notes_add(&o->into->notes,
+                 &(he_warning){.code = code, .text = text, .place = o->rows.unit, .at = at});
 }
 
 /* --- ascii --- */

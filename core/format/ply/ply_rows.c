@@ -20,9 +20,14 @@ static he_status at_place(const he_ply_rows *rows, he_status status, he_error *e
 
 static void note_ignored(const he_ply_rows *rows, const he_ply_property *property)
 {
-    he_notes_add(&rows->into->notes, property->list ? "ignored_list" : "ignored_property",
-                 property->list ? "ignored: list property" : "ignored: property", property->name,
-                 strlen(property->name), HE_PLACE_LINE, property->line);
+    he_notes_add(
+        &rows->into->notes,
+        &(he_warning){.code = property->list ? "ignored_list" : "ignored_property",
+                      .text = property->list ? "ignored: list property" : "ignored: property",
+                      .subject = property->name,
+                      .length = strlen(property->name),
+                      .place = HE_PLACE_LINE,
+                      .at = property->line});
 }
 
 static bool has_column(const he_soup *soup, he_kind domain, const char *name)
@@ -68,8 +73,10 @@ static he_status map_group(he_ply_rows *rows, const he_ply_element *e, he_kind d
     }
     he_column *column;
     he_type type = type_of_group(properties, found, count, group->color);
-    he_status status = he_soup_column(&rows->into->soup, group->attribute, domain, type,
-                                      (uint32_t)count, HE_INTERPOLATE, &column, err);
+    he_status status = he_soup_column(
+        &rows->into->soup,
+        &(he_column_schema){group->attribute, domain, type, (uint32_t)count, HE_INTERPOLATE},
+        &column, err);
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         double full = group->color ? he_ply_full_color(properties[found[i]].type) : 1;
         rows->targets[e->first + found[i]] =
@@ -94,8 +101,8 @@ static he_status map_rest(he_ply_rows *rows, const he_ply_element *e, he_kind do
         }
         he_type type = he_ply_type_column(property->type);
         he_rule rule = type == HE_FLOAT || type == HE_DOUBLE ? HE_INTERPOLATE : HE_COPY;
-        he_status status =
-            he_soup_column(soup, property->name, domain, type, 1, rule, &target->column, err);
+        he_status status = he_soup_column(
+            soup, &(he_column_schema){property->name, domain, type, 1, rule}, &target->column, err);
         if (status != HE_OK) {
             return status;
         }
@@ -144,10 +151,15 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
                           "property '%s' is not a list", property->name);
     }
     if (property->type >= HE_PLY_FLOAT) {
-        he_notes_add(&rows->into->notes, "fraction_indices",
-                     "read although it is not a type of whole numbers: vertex indices of type",
-                     he_ply_type_name(property->type), strlen(he_ply_type_name(property->type)),
-                     HE_PLACE_LINE, property->line);
+        he_notes_add(
+            &rows->into->notes,
+            &(he_warning){
+                .code = "fraction_indices",
+                .text = "read although it is not a type of whole numbers: vertex indices of type",
+                .subject = he_ply_type_name(property->type),
+                .length = strlen(he_ply_type_name(property->type)),
+                .place = HE_PLACE_LINE,
+                .at = property->line});
     }
     rows->targets[e->first + k].role = role;
     return HE_OK;
@@ -166,8 +178,11 @@ static he_status map_uvs(he_ply_rows *rows, const he_ply_element *e, he_error *e
     rows->targets[e->first + k].role = HE_PLY_UVS;
     return he_ply_is_of_corners(rows->header, "uv") && has_column(soup, HE_VERTEX, "uv")
                ? HE_OK
-               : he_soup_column(soup, "uv", HE_HALFEDGE, he_ply_type_column(property->type), 2,
-                                HE_INTERPOLATE, &rows->uv, err);
+               : he_soup_column(soup,
+                                &(he_column_schema){"uv", HE_HALFEDGE,
+                                                    he_ply_type_column(property->type), 2,
+                                                    HE_INTERPOLATE},
+                                &rows->uv, err);
 }
 
 static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_error *err)
@@ -186,8 +201,12 @@ static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_erro
         return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
     }
     if (strcmp(e->name, "tristrips") != 0) {
-        he_notes_add(&rows->into->notes, "ignored_element", "ignored: element", e->name,
-                     strlen(e->name), HE_PLACE_LINE, e->line);
+        he_notes_add(&rows->into->notes, &(he_warning){.code = "ignored_element",
+                                                       .text = "ignored: element",
+                                                       .subject = e->name,
+                                                       .length = strlen(e->name),
+                                                       .place = HE_PLACE_LINE,
+                                                       .at = e->line});
         return HE_OK;
     }
     status = map_corners(rows, e, HE_PLY_STRIP, err);
@@ -324,8 +343,13 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
     he_column *column = target->column;
     bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
     if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_notes_add(&rows->into->notes, "not_finite", "set to 0: values that are not finite of",
-                     column->name, strlen(column->name), rows->unit, rows->at);
+        he_notes_add(&rows->into->notes,
+                     &(he_warning){.code = "not_finite",
+                                   .text = "set to 0: values that are not finite of",
+                                   .subject = column->name,
+                                   .length = strlen(column->name),
+                                   .place = rows->unit,
+                                   .at = rows->at});
         value = 0;
     }
     if (target->full != 1) {
@@ -478,8 +502,13 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
 {
     unsigned char *at = he_column_row(rows->uv, corner);
     if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_notes_add(&rows->into->notes, "not_finite", "set to 0: values that are not finite of",
-                     "uv", strlen("uv"), rows->unit, rows->at);
+        he_notes_add(&rows->into->notes,
+                     &(he_warning){.code = "not_finite",
+                                   .text = "set to 0: values that are not finite of",
+                                   .subject = "uv",
+                                   .length = strlen("uv"),
+                                   .place = rows->unit,
+                                   .at = rows->at});
         value = 0;
     }
     float narrow = (float)value;
@@ -496,11 +525,15 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
     size_t count = rows->uv_count;
     rows->uv_count = 0;
     if (count != 2 * corners) {
-        he_notes_add(&rows->into->notes, count == 0 ? "faces_without_uv" : "texcoord_count",
-                     count == 0 ? "set to 0, because it has none: texture coordinates of a face"
-                                : "set to 0, because there are not two for each corner: texture "
-                                  "coordinates of a face",
-                     NULL, 0, rows->unit, rows->at);
+        he_notes_add(
+            &rows->into->notes,
+            &(he_warning){
+                .code = count == 0 ? "faces_without_uv" : "texcoord_count",
+                .text = count == 0 ? "set to 0, because it has none: texture coordinates of a face"
+                                   : "set to 0, because there are not two for each corner: texture "
+                                     "coordinates of a face",
+                .place = rows->unit,
+                .at = rows->at});
         return HE_OK;
     }
     he_status status = extend(rows, rows->uv, first + corners, err);

@@ -299,11 +299,12 @@ static char *write_whole(const ply_writer *w, uint32_t value, he_ply_type type, 
     return p + he_u32_print(value, p);
 }
 
-/* Writes a value of an element: `row` is the vertex or face; attributes of corners are read at the
- * half-edge `corner`. */
-static char *write_output(const ply_writer *w, const output *o, uint32_t row, uint32_t corner,
-                          bool first, char *p)
+/* Writes the next output of the row, which the caller then counts: `row` is the vertex or face;
+ * attributes of corners are read at the half-edge `corner`. */
+static char *write_output(const ply_writer *w, uint32_t row, uint32_t corner, char *p)
 {
+    const output *o = &w->outputs[w->output];
+    const bool first = w->output == 0; /* the line begins with it */
     if (o->own) {
         return write_whole(w, w->numbers != NULL ? w->numbers[row] : row, o->type, first, p);
     }
@@ -400,7 +401,7 @@ static char *write_vertices(ply_writer *w, char *p, const char *end)
             continue;
         }
         uint32_t corner = w->splits.own != NULL ? w->splits.own[w->row] : HE_NONE;
-        p = write_output(w, &w->outputs[w->output], w->row, corner, w->output == 0, p);
+        p = write_output(w, w->row, corner, p);
         w->output++;
         if (w->output == w->vertex_outputs) {
             p = end_row(w, 0, p);
@@ -418,7 +419,7 @@ static char *write_copies(ply_writer *w, char *p, const char *end)
     const he_ids *copies = &w->splits.copies;
     while (w->row < copies->count && end - p >= VALUE_ROOM) {
         uint32_t corner = copies->ids[w->row], vertex = w->mesh->c.origin[corner];
-        p = write_output(w, &w->outputs[w->output], vertex, corner, w->output == 0, p);
+        p = write_output(w, vertex, corner, p);
         w->output++;
         if (w->output == w->vertex_outputs) {
             p = end_row(w, 0, p);
@@ -484,7 +485,8 @@ static char *write_faces(ply_writer *w, char *p, const char *end)
         if (w->halfedge != HE_NONE) {
             p = write_list(w, p);
         } else if (w->in_face && w->output < w->count) {
-            p = write_output(w, &w->outputs[w->output++], w->row, HE_NONE, false, p);
+            p = write_output(w, w->row, HE_NONE, p);
+            w->output++;
         } else if (w->in_face) {
             p = end_row(w, w->vertex_outputs, p);
             w->in_face = false;

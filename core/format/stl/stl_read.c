@@ -141,8 +141,12 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     } else if (is(word, end, "endfacet")) {
         return end_facet(o, line, word, err);
     } else if (!is(word, end, "outer") && !is(word, end, "loop") && !is(word, end, "endloop")) {
-        he_notes_add(&o->into->notes, "unknown_keyword", "ignored: unknown keyword", word,
-                     (size_t)(end - word), HE_PLACE_LINE, line->number);
+        he_notes_add(&o->into->notes, &(he_warning){.code = "unknown_keyword",
+                                                    .text = "ignored: unknown keyword",
+                                                    .subject = word,
+                                                    .length = (size_t)(end - word),
+                                                    .place = HE_PLACE_LINE,
+                                                    .at = line->number});
         o->unknown = o->unknown == 0 ? line->number : o->unknown;
         *p = line->end;
     }
@@ -186,8 +190,11 @@ static he_status finish_text(stl *o, he_error *err)
                           "not an STL file: it has no facets");
     }
     if (o->in_solid) {
-        he_notes_add(&o->into->notes, "no_endsolid", "the file ends before its last endsolid", NULL,
-                     0, HE_PLACE_LINE, last_line);
+        he_notes_add(&o->into->notes,
+                     &(he_warning){.code = "no_endsolid",
+                                   .text = "the file ends before its last endsolid",
+                                   .place = HE_PLACE_LINE,
+                                   .at = last_line});
     }
     return he_spans_finish(&o->object, &o->into->soup, "object", err);
 }
@@ -251,8 +258,10 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
         status = add_facet(o, at, err);
     }
     if (p[0] != 0 || p[1] != 0) {
-        he_notes_add(&o->into->notes, "attribute_bytes", "ignored: attribute bytes of a facet",
-                     NULL, 0, HE_PLACE_BYTE, at);
+        he_notes_add(&o->into->notes, &(he_warning){.code = "attribute_bytes",
+                                                    .text = "ignored: attribute bytes of a facet",
+                                                    .place = HE_PLACE_BYTE,
+                                                    .at = at});
     }
     o->left--;
     return at_place(status, HE_PLACE_BYTE, at, err);
@@ -263,8 +272,10 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
-        he_notes_add(&o->into->notes, "trailing_bytes", "ignored: bytes after the last facet", NULL,
-                     0, HE_PLACE_BYTE, o->offset);
+        he_notes_add(&o->into->notes, &(he_warning){.code = "trailing_bytes",
+                                                    .text = "ignored: bytes after the last facet",
+                                                    .place = HE_PLACE_BYTE,
+                                                    .at = o->offset});
     }
     o->trailing += n < FACET ? n : FACET;
     if (o->trailing >= FACET || o->count == 0) {

@@ -12,23 +12,23 @@ void he_quote(const char *begin, const char *end, char *text, size_t size)
     text[length] = '\0';
 }
 
-static void add_spot(he_notes *notes, size_t note, he_place place, uint64_t at)
+static void add_spot(he_notes *notes, size_t note, const he_warning *warning)
 {
-    if (place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
-        notes->spots[notes->spot_count++] = (he_note_spot){note, at};
+    if (warning->place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
+        notes->spots[notes->spot_count++] = (he_note_spot){note, warning->at};
     }
 }
 
-void he_notes_add(he_notes *notes, const char *code, const char *text, const char *subject,
-                  size_t length, he_place place, uint64_t at)
+void he_notes_add(he_notes *notes, const he_warning *warning)
 {
     char name[HE_NOTE_SUBJECT];
-    he_quote(subject, subject == NULL ? NULL : subject + length, name, sizeof name);
+    const char *subject = warning->subject;
+    he_quote(subject, subject == NULL ? NULL : subject + warning->length, name, sizeof name);
     for (size_t i = 0; i < notes->count; i++) {
         he_note *note = &notes->items[i];
-        if (strcmp(note->code, code) == 0 && strcmp(note->subject, name) == 0) {
+        if (strcmp(note->code, warning->code) == 0 && strcmp(note->subject, name) == 0) {
             note->count++;
-            add_spot(notes, i, place, at);
+            add_spot(notes, i, warning);
             return;
         }
     }
@@ -37,9 +37,13 @@ void he_notes_add(he_notes *notes, const char *code, const char *text, const cha
         return;
     }
     he_note *note = &notes->items[notes->count++];
-    *note = (he_note){.code = code, .text = text, .count = 1, .place = place, .at = at};
+    *note = (he_note){.code = warning->code,
+                      .text = warning->text,
+                      .count = 1,
+                      .place = warning->place,
+                      .at = warning->at};
     memcpy(note->subject, name, sizeof name);
-    add_spot(notes, notes->count - 1, place, at);
+    add_spot(notes, notes->count - 1, warning);
 }
 
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count)
@@ -48,7 +52,7 @@ void he_notes_add_count(he_notes *notes, const char *code, const char *text, uin
     if (count == 0) {
         return;
     }
-    he_notes_add(notes, code, text, NULL, 0, HE_PLACE_NONE, 0);
+    he_notes_add(notes, &(he_warning){.code = code, .text = text});
     if (notes->count > before) {
         notes->items[before].count = count;
     }

@@ -418,10 +418,12 @@ static st_status unpack(st_reader *reader, st_piece *piece)
     if (reader->unpacker == NULL) {
         reader->unpacker = st_unpacker_new();
     }
+    st_part part = {piece->bytes, piece->size};
     st_status status = reader->unpacker == NULL
                            ? ST_NO_MEMORY
-                           : st_part_unpack(reader->unpacker, piece->bytes, piece->size,
-                                            &piece->bytes, &piece->size, &why);
+                           : st_part_unpack(reader->unpacker, part, &part, &why);
+    piece->bytes = part.bytes;
+    piece->size = part.size;
     piece->coding &= ~(unsigned)HE_CODING_PACKED;
     return status != ST_DAMAGED
                ? status

@@ -213,16 +213,20 @@ st_sql st_stage_drop(st_sqlite *self, const st_stage *stage)
     return outcome == ST_SQL_DONE ? st_purge_add(self, ST_PURGE_PARTS, stage->key, 0) : outcome;
 }
 
-/* Reads the record after which the stage is the content of the mesh. If that record was lost,
- * another one may have its number; *same says whether it is the right one. `chain` is the chain of
- * that record, `next` that of the record after it. */
-static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head, bool *same,
-                          uint64_t *chain, uint64_t *next)
+/* The record after which a stage is the content of the mesh. If that record was lost, another one
+ * may have its number. */
+typedef struct staged_record {
+    bool same;            /* it is the right one */
+    uint64_t chain, next; /* its chain, and that of the record after it */
+} staged_record;
+
+static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head *head,
+                          staged_record *out)
 {
     sqlite3_stmt *s;
     st_frame frame;
     size_t size;
-    *same = false;
+    *out = (staged_record){.same = false};
     st_sql outcome = st_db_find(&self->db, ST_SQL_RECORD, &s, "ii", head->row.key, stage->number);
     if (outcome != ST_SQL_ROW) {
         return outcome;
@@ -230,9 +234,8 @@ static st_sql read_record(st_sqlite *self, const st_stage *stage, const st_head 
     const unsigned char *bytes = st_db_bytes(s, 0, &size);
     if (st_frame_read(bytes, size, &frame, NULL) == HE_OK && frame.record.number == stage->number &&
         frame.record.revision == stage->revision && frame.record.time == stage->time) {
-        *same = true;
-        *chain = frame.chain;
-        *next = st_frame_next_chain(bytes, size);
+        *out = (staged_record){
+            .same = true, .chain = frame.chain, .next = st_frame_next_chain(bytes, size)};
     }
     st_db_reset(s);
     return ST_SQL_DONE;
@@ -270,8 +273,8 @@ static st_sql find_base(st_sqlite *self, const st_head *head, uint64_t needed, u
 st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
 {
     st_head *head;
-    bool same = false;
-    uint64_t chain = 0, next = 0, base = 0;
+    staged_record record = {.same = false};
+    uint64_t base = 0;
     st_sql outcome = st_head_find(self, stage->incarnation, &head);
     if (outcome == ST_SQL_DAMAGED) {
         head = NULL;
@@ -280,20 +283,20 @@ st_sql st_stage_rebase(st_sqlite *self, const st_stage *stage)
     }
     /* A mesh can be loaded only from its base or a later record, so an older stage is useless. */
     if (head != NULL && stage->number > head->row.base) {
-        outcome = read_record(self, stage, head, &same, &chain, &next);
+        outcome = read_record(self, stage, head, &record);
     }
-    if (!same) {
+    if (!record.same) {
         return head != NULL && outcome != ST_SQL_DONE ? outcome : st_stage_drop(self, stage);
     }
     unsigned char facts[ST_FRAME_HEAD];
     memcpy(facts, stage->facts, stage->facts_size);
-    st_frame_seal(facts, stage->facts_size, chain);
+    st_frame_seal(facts, stage->facts_size, record.chain);
     outcome = put_row(self, &(st_snapshot_row){.key = stage->key,
                                                .mesh = head->row.key,
                                                .number = stage->number,
                                                .revision = stage->revision,
                                                .parts = stage->parts,
-                                               .chain = next,
+                                               .chain = record.next,
                                                .facts = facts,
                                                .facts_size = stage->facts_size});
     if (outcome == ST_SQL_DONE) {
