@@ -215,6 +215,9 @@ $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@echo "CC $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+# The assembler includes this file, which the compiler does not list as a dependency.
+$(call object,api/describe/examples.c): api/describe/examples.json
+
 # The archive is made anew each time, so that the object of a deleted source does not stay in it;
 # objects are appended, because two folders may have sources of one name.
 $(BUILD)/libkernel.a: $(call object,$(KERNEL_C))
