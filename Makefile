@@ -112,7 +112,7 @@ STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
         hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
-        screenshot \
+        screenshot examples \
         install uninstall clean ALWAYS
 
 # TESTS selects tests: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`, `make test
@@ -148,6 +148,7 @@ NEEDS.built         = $(NEEDS.test)
 NEEDS.ready         = $(NEEDS.test) lint crosscheck clients fuzz
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
                       $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile) $(if $(WITH_DURABLE),durable)
+NEEDS.examples     := build test
 NEEDS.asan         := build test
 NEEDS.tsan         := build test
 NEEDS.coverage     := build test coverage
@@ -325,6 +326,11 @@ test: built | $(INSTALLED) ## all tests, with their counts
 	    $(if $(WITH_TRANSPORT),tests/transport.sh) $(if $(WITH_LINT),tests/lint.sh) \
 	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh) \
 	    $(if $(WITH_DURABLE),tests/durable.sh)
+
+# Only a person runs this, and reads the difference before it is committed: the tests compare each
+# answer with the file, so a wrong answer must not get there by itself.
+examples: $(BUILD)/tests/api/test_examples ## records the answers of the OpenAPI document's examples in api/describe/examples.json
+	$< record api/describe/examples.json
 
 ASAN_TESTS = $(filter-out transport web tests/web/% install soak hostile durable lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer
