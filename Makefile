@@ -112,7 +112,7 @@ STAMPS     := build/.stamps
 
 .PHONY: all help run page programs built ready test lint format asan tsan coverage crosscheck proof soak durable \
         hostile clients fuzz targets bench bench-http bench-store bench-events bench-slow bench-flood bench-large bench-space report container fresh \
-        screenshot \
+        screenshot examples \
         install uninstall clean ALWAYS
 
 # TESTS selects tests: `make test TESTS=unit`, `make test TESTS=tests/unit/test_build.c`, `make test
@@ -148,6 +148,7 @@ NEEDS.built         = $(NEEDS.test)
 NEEDS.ready         = $(NEEDS.test) lint crosscheck clients fuzz
 NEEDS.test          = build test $(if $(WITH_WEB)$(WITH_INSTALL),web browser) \
                       $(if $(WITH_SOAK),node) $(if $(WITH_HOSTILE),hostile) $(if $(WITH_DURABLE),durable)
+NEEDS.examples     := build test
 NEEDS.asan         := build test
 NEEDS.tsan         := build test
 NEEDS.coverage     := build test coverage
@@ -214,6 +215,9 @@ $(BUILD)/obj/%.o: %.c Makefile | $(INSTALLED)
 	@mkdir -p $(@D)
 	@echo "CC $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+# The assembler includes this file, which the compiler does not list as a dependency.
+$(call object,api/describe/examples.c): api/describe/examples.json
 
 # The archive is made anew each time, so that the object of a deleted source does not stay in it;
 # objects are appended, because two folders may have sources of one name.
@@ -322,6 +326,11 @@ test: built | $(INSTALLED) ## all tests, with their counts
 	    $(if $(WITH_TRANSPORT),tests/transport.sh) $(if $(WITH_LINT),tests/lint.sh) \
 	    $(if $(WITH_SOAK),tests/soak.sh) $(if $(WITH_HOSTILE),tests/hostile.sh) \
 	    $(if $(WITH_DURABLE),tests/durable.sh)
+
+# Only a person runs this, and reads the difference before it is committed: the tests compare each
+# answer with the file, so a wrong answer must not get there by itself.
+examples: $(BUILD)/tests/api/test_examples ## records the answers of the OpenAPI document's examples in api/describe/examples.json
+	$< record api/describe/examples.json
 
 ASAN_TESTS = $(filter-out transport web tests/web/% install soak hostile durable lint,$(TESTS))
 asan: ## all C tests with AddressSanitizer and UndefinedBehaviorSanitizer

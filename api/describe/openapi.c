@@ -175,37 +175,56 @@ static void write_events_schema(api_out *out, const char *event)
     api_out_object_end(out);
 }
 
-/* The body of a request or of an answer. */
-typedef struct content {
-    const char *const *types; /* its media types; ends in NULL */
-    const char *schema;       /* of JSON; NULL: any */
-    /* The schema of an event or of a line; NULL: none. That of a line is an extension, since
-     * OpenAPI has a keyword for it (itemSchema) only from 3.2 on. */
+/* A body and its examples. */
+typedef struct body {
+    const char *const *types; /* media types */
+    const char *schema;
+    /* The schema of an event or of a line; the latter is an extension, since OpenAPI has a keyword
+     * for it (itemSchema) only from 3.2 on. */
     const char *item;
-    /* Returns an example of the body for `route`, or NULL. */
-    const char *(*example)(const char *route, const char *media);
-    const char *route;
-} content;
+    const api_examples *examples;
+    api_example_part part;
+    const char *route; /* whose examples it has; NULL: that of a refusal */
+} body;
+
+static void write_example(api_out *out, const body *b, const char *type, bool json)
+{
+    api_text text = {0};
+    uint32_t found = b->route == NULL ? api_example_problem(b->examples)
+                                      : api_example_find(b->examples, b->part, b->route, type);
+    if (found != HE_NONE && api_example_body(b->examples, found, b->part, &text)) {
+        api_text_add_char(&text, '\0');
+        out->text->failed = out->text->failed || text.failed;
+    }
+    if (text.length > 0 && !text.failed) {
+        api_out_key(out, "example");
+        if (json) {
+            api_out_raw(out, text.bytes, text.length - 1);
+        } else {
+            api_out_string(out, text.bytes);
+        }
+    }
+    api_text_clear(&text);
+}
 
 /* Writes the media types of a body. */
-static void write_content(api_out *out, const content *body)
+static void write_content(api_out *out, const body *b)
 {
-    const char *schema = body->schema, *item = body->item;
     api_out_key(out, "content");
     api_out_object_begin(out);
-    for (const char *const *types = body->types; *types != NULL; types++) {
+    for (const char *const *types = b->types; *types != NULL; types++) {
         api_out_key(out, *types);
         api_out_object_begin(out);
         size_t length = strlen(*types);
         bool lines = strcmp(*types, "application/x-ndjson") == 0;
         bool json = length >= 4 && strcmp(*types + length - 4, "json") == 0 && !lines;
-        if (json && schema != NULL && strncmp(*types, "application/", 12) == 0) {
-            api_schema_ref_key(out, "schema", schema);
-        } else if (lines && item != NULL) {
+        if (json && b->schema != NULL && strncmp(*types, "application/", 12) == 0) {
+            api_schema_ref_key(out, "schema", b->schema);
+        } else if (lines && b->item != NULL) {
             write_bytes_schema(out, *types);
-            write_line_schema(out, item);
+            write_line_schema(out, b->item);
         } else if (strcmp(*types, EVENT_STREAM) == 0) {
-            write_events_schema(out, item);
+            write_events_schema(out, b->item);
         } else if (strcmp(*types, API_MULTIPART) == 0) {
             write_files_schema(out);
         } else if (strcmp(*types, "model/gltf+json") == 0) {
@@ -216,13 +235,7 @@ static void write_content(api_out *out, const content *body)
         } else {
             write_bytes_schema(out, *types);
         }
-        const char *example = body->example(body->route, *types);
-        if (example != NULL && json) {
-            api_out_key(out, "example");
-            api_out_raw(out, example, strlen(example));
-        } else if (example != NULL) {
-            api_out_key_string(out, "example", example);
-        }
+        write_example(out, b, *types, json);
         api_out_object_end(out);
     }
     api_out_object_end(out);
@@ -313,7 +326,8 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
 
 static const char *const job_media[] = {"application/json", NULL};
 
-static void write_success(api_out *out, const api_route *route, int status)
+static void write_success(api_out *out, const api_examples *examples, const api_route *route,
+                          int status)
 {
     const char *what =
         status == 201 ? "Created. The answer has no body and no ETag if memory ran out afterwards, "
@@ -326,27 +340,31 @@ static void write_success(api_out *out, const api_route *route, int status)
     api_out_key_string(out, "description", what);
     write_success_headers(out, route, status);
     if (status == 202) {
-        write_content(out, &(content){.types = job_media,
-                                      .schema = "job",
-                                      .example = api_example_response,
-                                      .route = "delete_job"});
+        write_content(out, &(body){.types = job_media,
+                                   .schema = "job",
+                                   .examples = examples,
+                                   .part = API_EXAMPLE_RESPONSE,
+                                   .route = "delete_job"});
     }
     if (status == 200 || status == 201) {
-        write_content(out, &(content){.types = route->produces,
-                                      .schema = route->response,
-                                      .item = route->item,
-                                      .example = api_example_response,
-                                      .route = route->name});
+        write_content(out, &(body){.types = route->produces,
+                                   .schema = route->response,
+                                   .item = route->item,
+                                   .examples = examples,
+                                   .part = API_EXAMPLE_RESPONSE,
+                                   .route = route->name});
     }
     api_out_object_end(out);
 }
 
 /* Refusals with headers of their own; all others are a "problem". */
-static const struct {
+typedef struct refusal {
     int status;
     const char *name, *header, *doc;
     bool required;
-} headed_problems[] = {
+} refusal;
+
+static const refusal headed_problems[] = {
     {401, "unauthorized", "WWW-Authenticate", "Bearer, and what is wrong with the token.", true},
     {403, "forbidden", "WWW-Authenticate",
      "Bearer with the role that is missing, if that is the reason.", false},
@@ -368,7 +386,7 @@ static void write_refusal(api_out *out, int status)
     api_schema_ref(out, "responses", name);
 }
 
-static void write_responses(api_out *out, const api_route *route)
+static void write_responses(api_out *out, const api_examples *examples, const api_route *route)
 {
     char code[8];
     api_out_key(out, "responses");
@@ -377,7 +395,7 @@ static void write_responses(api_out *out, const api_route *route)
         snprintf(code, sizeof code, "%d", *status);
         api_out_key(out, code);
         if (*status < 400) {
-            write_success(out, route, *status);
+            write_success(out, examples, route, *status);
         } else {
             write_refusal(out, *status);
         }
@@ -497,7 +515,7 @@ static void write_security(api_out *out, const api_route *route)
     api_out_array_end(out);
 }
 
-static void write_operation(api_out *out, const api_route *route)
+static void write_operation(api_out *out, const api_examples *examples, const api_route *route)
 {
     char method[16] = "";
     for (size_t i = 0; i + 1 < sizeof method && route->method[i] != '\0'; i++) {
@@ -521,14 +539,15 @@ static void write_operation(api_out *out, const api_route *route)
         api_out_key(out, "requestBody");
         api_out_object_begin(out);
         api_out_key_bool(out, "required", route->body_kind != API_BODY_OPTION);
-        write_content(out, &(content){.types = route->consumes,
-                                      .schema = route->request,
-                                      .example = api_example_request,
-                                      .route = route->name});
+        write_content(out, &(body){.types = route->consumes,
+                                   .schema = route->request,
+                                   .examples = examples,
+                                   .part = API_EXAMPLE_REQUEST,
+                                   .route = route->name});
         api_out_object_end(out);
     }
     write_security(out, route);
-    write_responses(out, route);
+    write_responses(out, examples, route);
     api_out_object_end(out);
 }
 
@@ -542,7 +561,7 @@ static bool is_first_of_path(size_t i)
     return true;
 }
 
-static void write_paths(api_out *out)
+static void write_paths(api_out *out, const api_examples *examples)
 {
     api_out_key(out, "paths");
     api_out_object_begin(out);
@@ -556,7 +575,7 @@ static void write_paths(api_out *out)
         write_path_parameters(out, path);
         for (size_t j = i; j < api_routes().count; j++) {
             if (strcmp(api_routes().rows[j].path, path) == 0) {
-                write_operation(out, &api_routes().rows[j]);
+                write_operation(out, examples, &api_routes().rows[j]);
             }
         }
         api_out_object_end(out);
@@ -588,30 +607,24 @@ static void write_security_schemes(api_out *out)
     api_out_object_end(out);
 }
 
-static const char *example_problem(const char *route, const char *media)
-{
-    (void)route;
-    (void)media;
-    return api_example_problem();
-}
-
-static void write_problem(api_out *out, const char *name, const char *header, const char *doc,
-                          bool required)
+static void write_problem(api_out *out, const api_examples *examples, const refusal *row)
 {
     static const char *const problem[] = {"application/problem+json", NULL};
-    api_out_key(out, name);
+    api_out_key(out, row->name);
     api_out_object_begin(out);
     api_out_key_string(out, "description", "Why the request was refused (RFC 9457).");
     api_out_key(out, "headers");
     api_out_object_begin(out);
-    if (header != NULL) {
-        write_header(out, header, doc, required);
+    if (row->header != NULL) {
+        write_header(out, row->header, row->doc, row->required);
     }
     refer_to_headers(out, coding_headers);
     refer_to_headers(out, rate_headers);
     api_out_object_end(out);
-    write_content(out,
-                  &(content){.types = problem, .schema = "problem", .example = example_problem});
+    write_content(out, &(body){.types = problem,
+                               .schema = "problem",
+                               .examples = examples,
+                               .part = API_EXAMPLE_RESPONSE});
     api_out_object_end(out);
 }
 
@@ -641,7 +654,7 @@ static void write_shared_headers(api_out *out)
     api_out_object_end(out);
 }
 
-static void write_components(api_out *out)
+static void write_components(api_out *out, const api_examples *examples)
 {
     api_out_key(out, "components");
     api_out_object_begin(out);
@@ -655,10 +668,9 @@ static void write_components(api_out *out)
     write_security_schemes(out);
     api_out_key(out, "responses");
     api_out_object_begin(out);
-    write_problem(out, "problem", NULL, NULL, false);
+    write_problem(out, examples, &(refusal){.name = "problem"});
     for (size_t i = 0; i < HEADED_PROBLEMS; i++) {
-        write_problem(out, headed_problems[i].name, headed_problems[i].header,
-                      headed_problems[i].doc, headed_problems[i].required);
+        write_problem(out, examples, &headed_problems[i]);
     }
     api_out_object_end(out);
     api_out_object_end(out);
@@ -666,6 +678,11 @@ static void write_components(api_out *out)
 
 void api_openapi_write(api_out *out, const char *version, const char *url)
 {
+    api_examples examples;
+    if (!api_examples_read(&examples)) {
+        out->text->failed = true;
+        return;
+    }
     api_out_object_begin(out);
     api_out_key_string(out, "openapi", "3.1.0");
     api_out_key(out, "info");
@@ -696,7 +713,8 @@ void api_openapi_write(api_out *out, const char *version, const char *url)
     api_out_array_begin(out);
     api_out_array_end(out);
     api_tags_write(out);
-    write_paths(out);
-    write_components(out);
+    write_paths(out, &examples);
+    write_components(out, &examples);
     api_out_object_end(out);
+    api_examples_clear(&examples);
 }

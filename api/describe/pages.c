@@ -1,5 +1,6 @@
 #include "api/describe/openapi.h"
 #include "api/describe/operations.h"
+#include "api/describe/page_records.h"
 #include "api/request/handlers.h"
 
 #include <stdatomic.h>
@@ -14,12 +15,60 @@ static const char viewer_policy[] =
 static const char text_policy[] =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+/* The answers of this file; a document has the members of one of the tables. */
+typedef struct facts {
+    const char *status, *store, *memory;
+    const char *name, *version, *meshes, *jobs, *operations, *openapi, *docs;
+} facts;
+
+static const api_field health_fields[] = {
+    API_FIELD("status", "#health_name", facts, status, .required = true),
+};
+const api_record api_health_record = {"health", health_fields,
+                                      sizeof health_fields / sizeof *health_fields};
+
+static const api_field readiness_fields[] = {
+    API_FIELD("status", "#health_name", facts, status, .required = true),
+    API_FIELD("store", "#store_name", facts, store, .required = true,
+              .doc = "full: the disk is full, and only deletions are accepted."),
+    API_FIELD("memory", "#memory_name", facts, memory, .required = true,
+              .doc = "full: requests that need much memory are refused."),
+};
+const api_record api_readiness_record = {"readiness", readiness_fields,
+                                         sizeof readiness_fields / sizeof *readiness_fields};
+
+static const api_field version_fields[] = {
+    API_FIELD("name", "text", facts, name, .required = true),
+    API_FIELD("version", "text", facts, version, .required = true),
+};
+const api_record api_version_record = {"version", version_fields,
+                                       sizeof version_fields / sizeof *version_fields};
+
+static const api_field index_fields[] = {
+    API_FIELD("name", "text", facts, name, .required = true),
+    API_FIELD("version", "text", facts, version, .required = true),
+    API_FIELD("meshes", "text", facts, meshes, .required = true,
+              .doc = "The path of the list of meshes."),
+    API_FIELD("jobs", "text", facts, jobs, .required = true,
+              .doc = "The path of the list of jobs."),
+    API_FIELD("operations", "text", facts, operations, .required = true,
+              .doc = "The path of the table of operations."),
+    API_FIELD("openapi", "text", facts, openapi, .required = true,
+              .doc = "The path of the OpenAPI document."),
+    API_FIELD("docs", "text", facts, docs, .required = true, .doc = "The path of the manual."),
+};
+const api_record api_index_record = {"index", index_fields,
+                                     sizeof index_fields / sizeof *index_fields};
+
+static void answer(api_exchange *x, const api_record *record, const facts *value)
+{
+    api_record_write(&x->out, record, value);
+    api_answer_json(x, 200);
+}
+
 void api_live_get(api_exchange *x)
 {
-    api_out_object_begin(&x->out);
-    api_out_key_string(&x->out, "status", "alive");
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    answer(x, &api_health_record, &(facts){.status = "alive"});
 }
 
 void api_ready_get(api_exchange *x)
@@ -36,38 +85,29 @@ void api_ready_get(api_exchange *x)
                  health.reason[0] == '\0' ? "" : ", ", health.reason);
         return;
     }
-    api_out_object_begin(&x->out);
-    api_out_key_string(&x->out, "status", "ready");
-    api_out_key_string(&x->out, "store", health.status == ST_FULL ? "full" : "writable");
     const bool full = options->is_full != NULL && options->is_full(options->ready_context);
-    api_out_key_string(&x->out, "memory", full ? "full" : "free");
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    answer(x, &api_readiness_record,
+           &(facts){.status = "ready",
+                    .store = health.status == ST_FULL ? "full" : "writable",
+                    .memory = full ? "full" : "free"});
 }
 
 void api_version_get(api_exchange *x)
 {
-    api_out_object_begin(&x->out);
-    api_out_key_string(&x->out, "name", "hedged");
-    api_out_key_string(&x->out, "version", x->service->options.version);
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    answer(x, &api_version_record,
+           &(facts){.name = "hedged", .version = x->service->options.version});
 }
 
 void api_index_get(api_exchange *x)
 {
-    static const char *const links[][2] = {
-        {"meshes", "/v1/meshes"},        {"jobs", "/v1/jobs"}, {"operations", "/v1/operations"},
-        {"openapi", "/v1/openapi.json"}, {"docs", "/docs"},
-    };
-    api_out_object_begin(&x->out);
-    api_out_key_string(&x->out, "name", "hedged");
-    api_out_key_string(&x->out, "version", x->service->options.version);
-    for (size_t i = 0; i < sizeof links / sizeof *links; i++) {
-        api_out_key_string(&x->out, links[i][0], links[i][1]);
-    }
-    api_out_object_end(&x->out);
-    api_answer_json(x, 200);
+    answer(x, &api_index_record,
+           &(facts){.name = "hedged",
+                    .version = x->service->options.version,
+                    .meshes = "/v1/meshes",
+                    .jobs = "/v1/jobs",
+                    .operations = "/v1/operations",
+                    .openapi = "/v1/openapi.json",
+                    .docs = "/docs"});
 }
 
 void api_page_get(api_exchange *x)

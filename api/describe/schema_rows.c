@@ -1,29 +1,51 @@
 #include "api/describe/schema_rows.h"
 
+#include "api/describe/page_records.h"
+#include "api/document/summary.h"
+#include "api/document/upload.h"
+#include "api/job/job_out.h"
+#include "api/read/records.h"
+
 #include <stddef.h>
+#include <string.h>
 
 enum { OPTIONAL = false, REQUIRED = true }; /* names for a column of the table */
 
+/* The tables from which answers are written, too. */
+static const api_record *const records[] = {
+    &api_counts_record,   &api_box_record,     &api_mesh_item_record, &api_job_record,
+    &api_summary_record,  &api_entry_record,   &api_counted_record,   &api_job_state_record,
+    &api_import_record,   &api_warning_record, &api_health_record,    &api_readiness_record,
+    &api_version_record,  &api_index_record,   &api_token_record,     &api_ticket_record,
+    &api_reloaded_record,
+};
+enum { RECORDS = sizeof records / sizeof *records };
+
+size_t api_record_count(void)
+{
+    return RECORDS;
+}
+
+const api_record *api_record_at(size_t i)
+{
+    return records[i];
+}
+
+const api_record *api_record_find(const char *schema)
+{
+    size_t i = 0;
+    while (i < RECORDS && strcmp(records[i]->schema, schema) != 0) {
+        i++;
+    }
+    return i < RECORDS ? records[i] : NULL;
+}
+
 const api_member api_answer_members[] = {
-    {"counts", "vertices", "count", REQUIRED, "Elements that are not deleted."},
-    {"counts", "halfedges", "count", REQUIRED, "Twice the number of edges."},
-    {"counts", "edges", "count", REQUIRED, NULL},
-    {"counts", "faces", "count", REQUIRED, NULL},
-    {"counts", "boundary_loops", "count", OPTIONAL, "Only in the summary."},
-    {"counts", "isolated_vertices", "count", OPTIONAL, "Only in the summary."},
-    {"counts", "components", "count", OPTIONAL,
-     "Connected by shared vertices; isolated vertices are left out."},
-    {"counts", "components_by_edge", "count", OPTIONAL, "Connected by shared edges."},
+    {"counts", NULL, NULL, REQUIRED, NULL},
 
-    {"box", "min", "point", REQUIRED, NULL},
-    {"box", "max", "point", REQUIRED, NULL},
+    {"box", NULL, NULL, REQUIRED, NULL},
 
-    {"mesh_item", "id", "text", REQUIRED, NULL},
-    {"mesh_item", "name", "text", REQUIRED, NULL},
-    {"mesh_item", "revision", "count", REQUIRED, NULL},
-    {"mesh_item", "counts", "#counts", REQUIRED, NULL},
-    {"mesh_item", "damage", "text", OPTIONAL,
-     "What is damaged on the disk. The mesh can only be deleted or replaced."},
+    {"mesh_item", NULL, NULL, REQUIRED, NULL},
 
     {"mesh_page", "items", "*#mesh_item", REQUIRED, NULL},
     {"mesh_page", "next", "text?", REQUIRED, "The cursor of the next page."},
@@ -34,69 +56,19 @@ const api_member api_answer_members[] = {
     {"mesh_page", "memory_budget", "count", OPTIONAL,
      "Memory that the server may use; 0: no limit."},
 
-    {"job", "id", "text", REQUIRED,
-     "Only the token that started the job may see and cancel it; without tokens, every client that "
-     "knows the id."},
-    {"job", "operation", "text", REQUIRED, "The operationId of the request."},
-    {"job", "state", "#job_state", REQUIRED, NULL},
-    {"job", "phase", "text?", REQUIRED, "What the job is doing, or did last."},
-    {"job", "progress", "number", REQUIRED, "From 0 to 1; it never decreases."},
-    {"job", "mesh", "text?", REQUIRED, "The id of its mesh; null while the mesh has no id."},
-    {"job", "created", "time", REQUIRED, NULL},
-    {"job", "started", "time?", REQUIRED, NULL},
-    {"job", "finished", "time?", REQUIRED, NULL},
-    {"job", "status", "integer?", REQUIRED,
-     "The HTTP status that the request would have been answered with."},
-    {"job", "location", "text?", REQUIRED,
-     "The header Location that the request would have been answered with."},
-    {"job", "result_link", "text?", REQUIRED, "The path of the result alone, once there is one."},
-    {"job", "result", "#job_result?", OPTIONAL,
-     "The body that the request would have been answered with; null if there is none, or if it is "
-     "not JSON, a whole mesh, or too large to keep."},
-    {"job", "problem", "#problem?", OPTIONAL, "The problem, if the job failed."},
+    {"job", NULL, NULL, REQUIRED, NULL},
 
     {"job_page", "items", "*#job", REQUIRED, NULL},
     {"job_page", "next", "text?", REQUIRED, "The cursor of the next page."},
 
-    {"summary", "id", "text", REQUIRED, NULL},
-    {"summary", "name", "text", REQUIRED, NULL},
-    {"summary", "revision", "count", REQUIRED, NULL},
-    {"summary", "counts", "#counts", REQUIRED, NULL},
-    {"summary", "euler", "integer", REQUIRED, "Vertices that have an edge - edges + faces."},
-    {"summary", "genus", "integer?", REQUIRED, "Null if a bow-tie makes it meaningless."},
-    {"summary", "closed", "flag", REQUIRED, "No boundary, and at least one face."},
-    {"summary", "manifold", "flag", REQUIRED, "No bow-tie, and at least one face."},
-    {"summary", "degrees", "#degrees", REQUIRED,
-     "For each number of corners, how many faces have it."},
-    {"summary", "bbox", "#box?", REQUIRED, NULL},
-    {"summary", "area", "number", REQUIRED, NULL},
-    {"summary", "volume", "number?", REQUIRED, "Null unless closed."},
-    {"summary", "memory_bytes", "count", REQUIRED, NULL},
-    {"summary", "created", "time", REQUIRED, NULL},
-    {"summary", "modified", "time", REQUIRED, NULL},
+    {"summary", NULL, NULL, REQUIRED, NULL},
 
-    {"import", "format", "text", REQUIRED, NULL},
-    {"import", "vertices", "count", REQUIRED, NULL},
-    {"import", "faces", "count", REQUIRED, NULL},
-    {"import", "attributes", "*#attribute_read", OPTIONAL, "The attributes that the body has."},
-    {"import", "repairs", "*#repair", REQUIRED,
-     "The repairs that were asked for, in the order in which they were made."},
-    {"import", "warnings", "*#warning", REQUIRED, NULL},
-    {"import", "more_warnings", "count", OPTIONAL, "How many warnings are not listed."},
+    {"import", NULL, NULL, REQUIRED, NULL},
 
     {"attribute_read", "domain", "#domain", REQUIRED, NULL},
     {"attribute_read", "name", "text", REQUIRED, NULL},
 
-    {"warning", "code", "text", REQUIRED, NULL},
-    {"warning", "detail", "text", REQUIRED, NULL},
-    {"warning", "count", "count", REQUIRED, "How often it occurred."},
-    {"warning", "line", "count", OPTIONAL, "The first line, in a text file."},
-    {"warning", "byte", "count", OPTIONAL, "The first byte, in a binary file."},
-    {"warning", "lines", "*count", OPTIONAL, "The lines, at most 100 for all warnings together."},
-    {"warning", "bytes", "*count", OPTIONAL,
-     "The bytes in a binary file, at most 100 for all warnings together."},
-    {"warning", "vertices", "*id", OPTIONAL,
-     "For bowtie and isolated_vertices: the first 100 of these vertices."},
+    {"warning", NULL, NULL, REQUIRED, NULL},
 
     {"repair", "repair", "#repair_name", REQUIRED, NULL},
     {"repair", "count", "count", REQUIRED,
@@ -330,20 +302,9 @@ const api_member api_answer_members[] = {
      "After undo and redo: how many steps can still be undone."},
     {"edited", "redo", "count", OPTIONAL, "After undo and redo: how many steps can be redone."},
 
-    {"counted", "vertices", "count", REQUIRED, NULL},
-    {"counted", "edges", "count", REQUIRED, NULL},
-    {"counted", "faces", "count", REQUIRED, NULL},
+    {"counted", NULL, NULL, REQUIRED, NULL},
 
-    {"entry", "revision", "count", REQUIRED, NULL},
-    {"entry", "action", "#action", REQUIRED, NULL},
-    {"entry", "inverts", "count", OPTIONAL, "The revision that it undid or redid."},
-    {"entry", "ops", "*text", REQUIRED, NULL},
-    {"entry", "created", "#counted", OPTIONAL, "How many elements, if it is known."},
-    {"entry", "deleted", "#counted", OPTIONAL, NULL},
-    {"entry", "modified", "#counted", OPTIONAL, NULL},
-    {"entry", "undoable", "flag", REQUIRED, "Can it still be undone?"},
-    {"entry", "bytes", "count", REQUIRED, "Memory that is kept to undo it."},
-    {"entry", "time", "time", REQUIRED, NULL},
+    {"entry", NULL, NULL, REQUIRED, NULL},
 
     {"history", "revision", "count", REQUIRED, NULL},
     {"history", "entries", "*#entry", REQUIRED, "Newest first."},
@@ -483,9 +444,7 @@ const api_member api_answer_members[] = {
 
     {"bye", "reason", "#bye_reason", REQUIRED, NULL},
 
-    {"job_state_told", "id", "text", REQUIRED, NULL},
-    {"job_state_told", "state", "#job_state", REQUIRED, NULL},
-    {"job_state_told", "progress", "number", REQUIRED, "From 0 to 1."},
+    {"job_state_told", NULL, NULL, REQUIRED, NULL},
 
     {"mesh_event_edit", "event", "=edit", REQUIRED, NULL},
     {"mesh_event_edit", "id", "text", REQUIRED, "For Last-Event-ID."},
@@ -543,35 +502,18 @@ const api_member api_answer_members[] = {
 
     {"operations", "operations", "*#operation_row", REQUIRED, NULL},
 
-    {"token", "name", "text?", REQUIRED, "Null if the server needs no tokens."},
-    {"token", "role", "#role_name", REQUIRED, NULL},
-    {"token", "prefixes", "*text", REQUIRED,
-     "The token sees only meshes whose ids begin with one of these; if the list is empty, all."},
-    {"token", "expires", "time?", REQUIRED, "Null: never."},
+    {"token", NULL, NULL, REQUIRED, NULL},
 
-    {"ticket", "path", "text", REQUIRED, "The path with the ticket at its end."},
-    {"ticket", "expires", "time", REQUIRED, NULL},
+    {"ticket", NULL, NULL, REQUIRED, NULL},
 
-    {"reloaded", "tokens", "count?", REQUIRED,
-     "How many tokens are accepted; null if the server needs none."},
+    {"reloaded", NULL, NULL, REQUIRED, NULL},
 
-    {"health", "status", "#health_name", REQUIRED, NULL},
-    {"readiness", "status", "#health_name", REQUIRED, NULL},
-    {"readiness", "store", "#store_name", REQUIRED,
-     "full: the disk is full, and only deletions are accepted."},
-    {"readiness", "memory", "#memory_name", REQUIRED,
-     "full: requests that need much memory are refused."},
+    {"health", NULL, NULL, REQUIRED, NULL},
+    {"readiness", NULL, NULL, REQUIRED, NULL},
 
-    {"version", "name", "text", REQUIRED, NULL},
-    {"version", "version", "text", REQUIRED, NULL},
+    {"version", NULL, NULL, REQUIRED, NULL},
 
-    {"index", "name", "text", REQUIRED, NULL},
-    {"index", "version", "text", REQUIRED, NULL},
-    {"index", "meshes", "text", REQUIRED, "The path of the list of meshes."},
-    {"index", "jobs", "text", REQUIRED, "The path of the list of jobs."},
-    {"index", "operations", "text", REQUIRED, "The path of the table of operations."},
-    {"index", "openapi", "text", REQUIRED, "The path of the OpenAPI document."},
-    {"index", "docs", "text", REQUIRED, "The path of the manual."},
+    {"index", NULL, NULL, REQUIRED, NULL},
 
     {"problem_element", "kind", "#element_kind", REQUIRED, NULL},
     {"problem_element", "id", "id", REQUIRED, NULL},

@@ -332,28 +332,42 @@ static void write_type(api_out *out, const char *type, size_t length, const char
     api_out_object_end(out);
 }
 
+/* Returns member `i` of the schema whose rows begin at `rows`, from its table if it has one; a row
+ * without a schema after the last one. */
+static api_member member_at(const api_member *rows, const api_record *record, size_t i)
+{
+    if (record != NULL) {
+        const api_field *field = &record->fields[i];
+        return i < record->count ? (api_member){rows->schema, field->name, field->type,
+                                                field->required, field->doc}
+                                 : (api_member){0};
+    }
+    return rows[i].schema != NULL && strcmp(rows[i].schema, rows->schema) == 0 ? rows[i]
+                                                                               : (api_member){0};
+}
+
 /* Writes the schema whose rows begin at `rows`; returns the number of its rows. */
 static size_t write_schema(api_out *out, const api_member *rows, bool closed)
 {
+    const api_record *record = rows->name == NULL ? api_record_find(rows->schema) : NULL;
     size_t count = 0;
-    while (rows[count].schema != NULL && strcmp(rows[count].schema, rows[0].schema) == 0) {
-        count++;
-    }
-    api_out_key(out, rows[0].schema);
+    api_out_key(out, rows->schema);
     api_out_object_begin(out);
     api_out_key_string(out, "type", "object");
     api_out_key(out, "properties");
     api_out_object_begin(out);
-    for (size_t i = 0; i < count; i++) {
-        api_out_key(out, rows[i].name);
-        write_type(out, rows[i].type, strlen(rows[i].type), rows[i].doc);
+    for (api_member m = member_at(rows, record, 0); m.schema != NULL;
+         m = member_at(rows, record, ++count)) {
+        api_out_key(out, m.name);
+        write_type(out, m.type, strlen(m.type), m.doc);
     }
     api_out_object_end(out);
     api_out_key(out, "required");
     api_out_array_begin(out);
     for (size_t i = 0; i < count; i++) {
-        if (rows[i].required) {
-            api_out_string(out, rows[i].name);
+        const api_member m = member_at(rows, record, i);
+        if (m.required) {
+            api_out_string(out, m.name);
         }
     }
     api_out_array_end(out);
@@ -361,7 +375,7 @@ static size_t write_schema(api_out *out, const api_member *rows, bool closed)
         api_out_key_bool(out, "additionalProperties", false);
     }
     api_out_object_end(out);
-    return count;
+    return record != NULL ? 1 : count;
 }
 
 /* Writes the schema of an object with one member: of_vertex or of_vertices. */

@@ -146,7 +146,6 @@ static void write_one(api_out *out, he_repair repair, const he_repair_plan *plan
 void api_repairs_write(api_out *out, const he_repair_plan *plan, const he_repaired *done,
                        const he_import *import)
 {
-    api_out_key(out, "repairs");
     api_out_array_begin(out);
     for (he_repair repair = HE_REPAIR_WELD; repair < HE_REPAIR_COUNT; repair++) {
         if ((plan->which & he_repair_bit(repair)) != 0) {

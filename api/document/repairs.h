@@ -11,9 +11,9 @@
  */
 bool api_repairs_read(api_exchange *x, he_repair_plan *plan);
 
-/* Writes the member "repairs" into an object that is open: one object per requested repair, in the
- * order in which they were applied. `import` has the places of removed elements in the file; NULL
- * if the body was JSON. */
+/* Writes the array "repairs" of the report: one object per requested repair, in the order in which
+ * they were applied. `import` has the places of removed elements in the file; NULL if the body was
+ * JSON. */
 void api_repairs_write(api_out *out, const he_repair_plan *plan, const he_repaired *done,
                        const he_import *import);
 

@@ -32,24 +32,89 @@ bool api_summary_find(api_exchange *x, const he_mesh *mesh, api_summary *out)
     return true;
 }
 
-static void write_counts(api_out *out, const he_topology *t)
+/* The counts of a mesh; those that must be computed are only in its summary. */
+typedef struct counts {
+    uint64_t vertices, halfedges, edges, faces;
+    bool computed;
+    uint32_t boundary_loops, isolated_vertices, components, components_by_edge;
+} counts;
+
+static const api_field count_fields[] = {
+    API_FIELD("vertices", "count", counts, vertices, .required = true,
+              .doc = "Elements that are not deleted."),
+    API_FIELD("halfedges", "count", counts, halfedges, .required = true,
+              .doc = "Twice the number of edges."),
+    API_FIELD("edges", "count", counts, edges, .required = true),
+    API_FIELD("faces", "count", counts, faces, .required = true),
+    API_FIELD("boundary_loops", "count", counts, boundary_loops,
+              .known = API_KNOWN(counts, computed), .doc = "Only in the summary."),
+    API_FIELD("isolated_vertices", "count", counts, isolated_vertices,
+              .known = API_KNOWN(counts, computed), .doc = "Only in the summary."),
+    API_FIELD("components", "count", counts, components, .known = API_KNOWN(counts, computed),
+              .doc = "Connected by shared vertices; isolated vertices are left out."),
+    API_FIELD("components_by_edge", "count", counts, components_by_edge,
+              .known = API_KNOWN(counts, computed), .doc = "Connected by shared edges."),
+};
+const api_record api_counts_record = {"counts", count_fields,
+                                      sizeof count_fields / sizeof *count_fields};
+
+static const api_field box_fields[] = {
+    API_FIELD("min", "point", he_box, min, .required = true),
+    API_FIELD("max", "point", he_box, max, .required = true),
+};
+const api_record api_box_record = {"box", box_fields, sizeof box_fields / sizeof *box_fields};
+
+static void write_brief_counts(api_out *out, const void *value)
 {
-    api_out_key(out, "counts");
-    api_out_object_begin(out);
-    api_out_key_u64(out, "vertices", t->vertices);
-    api_out_key_u64(out, "halfedges", 2 * (uint64_t)t->edges);
-    api_out_key_u64(out, "edges", t->edges);
-    api_out_key_u64(out, "faces", t->faces);
-    api_out_key_u64(out, "boundary_loops", t->boundary_loops);
-    api_out_key_u64(out, "isolated_vertices", t->isolated_vertices);
-    api_out_key_u64(out, "components", t->components);
-    api_out_key_u64(out, "components_by_edge", t->components_by_edge);
-    api_out_object_end(out);
+    const st_counts *c = &((const st_card *)value)->counts;
+    const counts shown = {.vertices = c->vertices,
+                          .halfedges = 2 * (uint64_t)c->edges,
+                          .edges = c->edges,
+                          .faces = c->faces};
+    api_record_write(out, &api_counts_record, &shown);
 }
 
-static void write_degrees(api_out *out, const api_summary *summary)
+static const api_field item_fields[] = {
+    API_FIELD("id", "text", st_card, id, .required = true),
+    API_FIELD("name", "text", st_card, name, .required = true),
+    API_FIELD("revision", "count", st_card, revision, .required = true),
+    API_FIELD_MADE("counts", "#counts", write_brief_counts, .required = true),
+    API_FIELD("damage", "text", st_card, damage, .zero_is_none = true,
+              .doc = "What is damaged on the disk. The mesh can only be deleted or replaced."),
+};
+const api_record api_mesh_item_record = {"mesh_item", item_fields,
+                                         sizeof item_fields / sizeof *item_fields};
+
+/* A mesh, and what was computed of its content. */
+typedef struct whole {
+    const api_summary *summary;
+    const char *id, *name;
+    uint64_t revision;
+    int64_t euler, genus;
+    bool has_genus, closed, manifold, has_box, has_volume;
+    double area, volume;
+    uint64_t memory_bytes;
+    double created, modified;
+} whole;
+
+static void write_counts(api_out *out, const void *value)
 {
-    api_out_key(out, "degrees");
+    const he_topology *t = &((const whole *)value)->summary->topology;
+    const counts shown = {.vertices = t->vertices,
+                          .halfedges = 2 * (uint64_t)t->edges,
+                          .edges = t->edges,
+                          .faces = t->faces,
+                          .computed = true,
+                          .boundary_loops = t->boundary_loops,
+                          .isolated_vertices = t->isolated_vertices,
+                          .components = t->components,
+                          .components_by_edge = t->components_by_edge};
+    api_record_write(out, &api_counts_record, &shown);
+}
+
+static void write_degrees(api_out *out, const void *value)
+{
+    const api_summary *summary = ((const whole *)value)->summary;
     api_out_object_begin(out);
     for (size_t i = 0; i < summary->degree_count; i++) {
         char key[16];
@@ -59,69 +124,64 @@ static void write_degrees(api_out *out, const api_summary *summary)
     api_out_object_end(out);
 }
 
-static void write_box(api_out *out, const api_summary *summary)
+static void write_box(api_out *out, const void *value)
 {
-    api_out_key(out, "bbox");
-    if (!summary->has_box) {
-        api_out_null(out);
-        return;
-    }
-    api_out_object_begin(out);
-    api_out_key_vec3(out, "min", summary->box.min);
-    api_out_key_vec3(out, "max", summary->box.max);
-    api_out_object_end(out);
+    api_record_write(out, &api_box_record, &((const whole *)value)->summary->box);
 }
 
-static void write_identity(api_out *out, const char *id, const char *name, uint64_t revision)
-{
-    api_out_key_string(out, "id", id);
-    api_out_key_string(out, "name", name);
-    api_out_key_u64(out, "revision", revision);
-}
+static const api_field summary_fields[] = {
+    API_FIELD("id", "text", whole, id, .required = true),
+    API_FIELD("name", "text", whole, name, .required = true),
+    API_FIELD("revision", "count", whole, revision, .required = true),
+    API_FIELD_MADE("counts", "#counts", write_counts, .required = true),
+    API_FIELD("euler", "integer", whole, euler, .required = true,
+              .doc = "Vertices that have an edge - edges + faces."),
+    API_FIELD("genus", "integer?", whole, genus, .required = true,
+              .known = API_KNOWN(whole, has_genus),
+              .doc = "Null if a bow-tie makes it meaningless."),
+    API_FIELD("closed", "flag", whole, closed, .required = true,
+              .doc = "No boundary, and at least one face."),
+    API_FIELD("manifold", "flag", whole, manifold, .required = true,
+              .doc = "No bow-tie, and at least one face."),
+    API_FIELD_MADE("degrees", "#degrees", write_degrees, .required = true,
+                   .doc = "For each number of corners, how many faces have it."),
+    API_FIELD_MADE("bbox", "#box?", write_box, .required = true,
+                   .known = API_KNOWN(whole, has_box)),
+    API_FIELD("area", "number", whole, area, .required = true),
+    API_FIELD("volume", "number?", whole, volume, .required = true,
+              .known = API_KNOWN(whole, has_volume), .doc = "Null unless closed."),
+    API_FIELD("memory_bytes", "count", whole, memory_bytes, .required = true),
+    API_FIELD("created", "time", whole, created, .required = true),
+    API_FIELD("modified", "time", whole, modified, .required = true),
+};
+const api_record api_summary_record = {"summary", summary_fields,
+                                       sizeof summary_fields / sizeof *summary_fields};
 
 void api_write_brief(api_out *out, const st_card *card)
 {
-    const st_counts *counts = &card->counts;
-    write_identity(out, card->id, card->name, card->revision);
-    api_out_key(out, "counts");
-    api_out_object_begin(out);
-    api_out_key_u64(out, "vertices", counts->vertices);
-    api_out_key_u64(out, "halfedges", 2 * (uint64_t)counts->edges);
-    api_out_key_u64(out, "edges", counts->edges);
-    api_out_key_u64(out, "faces", counts->faces);
-    api_out_object_end(out);
-    if (card->damage[0] != '\0') {
-        api_out_key_string(out, "damage", card->damage);
-    }
+    api_record_members(out, &api_mesh_item_record, card);
 }
 
 void api_write_summary(api_out *out, const st_mesh_info *info, const api_summary *summary)
 {
     const he_topology *t = &summary->topology;
-    write_identity(out, info->id, info->name, info->revision);
-    write_counts(out, t);
-    api_out_key(out, "euler");
-    api_out_i64(out, t->euler);
-    api_out_key(out, "genus");
-    if (t->has_genus) {
-        api_out_i64(out, t->genus);
-    } else {
-        api_out_null(out);
-    }
-    api_out_key_bool(out, "closed", t->closed);
-    api_out_key_bool(out, "manifold", t->manifold);
-    write_degrees(out, summary);
-    write_box(out, summary);
-    api_out_key_number(out, "area", summary->measures.area);
-    api_out_key(out, "volume");
-    if (summary->measures.has_volume) {
-        api_out_number(out, summary->measures.volume);
-    } else {
-        api_out_null(out);
-    }
-    api_out_key_u64(out, "memory_bytes", summary->memory_bytes);
-    api_out_key_time(out, "created", info->created);
-    api_out_key_time(out, "modified", info->modified);
+    const whole value = {.summary = summary,
+                         .id = info->id,
+                         .name = info->name,
+                         .revision = info->revision,
+                         .euler = t->euler,
+                         .genus = t->genus,
+                         .has_genus = t->has_genus,
+                         .closed = t->closed,
+                         .manifold = t->manifold,
+                         .has_box = summary->has_box,
+                         .has_volume = summary->measures.has_volume,
+                         .area = summary->measures.area,
+                         .volume = summary->measures.volume,
+                         .memory_bytes = summary->memory_bytes,
+                         .created = info->created,
+                         .modified = info->modified};
+    api_record_members(out, &api_summary_record, &value);
 }
 
 static void write_answer(api_exchange *x, const api_summary *summary, int status,

@@ -5,9 +5,13 @@
 #ifndef HE_API_DOCUMENT_SUMMARY_H
 #define HE_API_DOCUMENT_SUMMARY_H
 
+#include "api/json/record.h"
 #include "api/request/exchange.h"
 #include "geometry/geometry.h"
 #include "query/topology.h"
+
+/* The members of a summary, of an item in the list of meshes, and of their parts. */
+extern const api_record api_summary_record, api_mesh_item_record, api_counts_record, api_box_record;
 
 enum { API_SUMMARY_DEGREES = 128 };
 

@@ -579,92 +579,119 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     return true;
 }
 
-/* Writes where a warning applies, as "lines":[7,12], or "bytes", for the first occurrences that it
- * counts. */
-static void write_spots(api_out *out, const he_notes *notes, size_t i)
+/* A warning as its members show it. */
+typedef struct warning {
+    const char *code, *detail;
+    uint64_t count;
+    uint64_t at; /* place of the first occurrence */
+    bool has_line, has_byte, has_lines, has_bytes, has_vertices;
+    const he_notes *notes; /* for the places of all occurrences of a note */
+    size_t note;
+    const uint32_t *vertices;
+    size_t named; /* number of vertices */
+} warning;
+
+/* Writes where a warning applies, for the first occurrences that it counts. */
+static void write_spots(api_out *out, const void *value)
 {
-    if (notes->items[i].place == HE_PLACE_NONE || notes->items[i].count == 1) {
-        return;
-    }
-    api_out_key(out, notes->items[i].place == HE_PLACE_LINE ? "lines" : "bytes");
+    const warning *w = value;
     api_out_array_begin(out);
-    for (size_t k = 0; k < notes->spot_count; k++) {
-        if (notes->spots[k].note == i) {
-            api_out_u64(out, notes->spots[k].at);
+    for (size_t k = 0; k < w->notes->spot_count; k++) {
+        if (w->notes->spots[k].note == w->note) {
+            api_out_u64(out, w->notes->spots[k].at);
         }
     }
     api_out_array_end(out);
 }
 
+static void write_warned(api_out *out, const void *value)
+{
+    const warning *w = value;
+    api_out_ids(out, w->vertices, w->named);
+}
+
+static const api_field warning_fields[] = {
+    API_FIELD("code", "text", warning, code, .required = true),
+    API_FIELD("detail", "text", warning, detail, .required = true),
+    API_FIELD("count", "count", warning, count, .required = true, .doc = "How often it occurred."),
+    API_FIELD("line", "count", warning, at, .known = API_KNOWN(warning, has_line),
+              .doc = "The first line, in a text file."),
+    API_FIELD("byte", "count", warning, at, .known = API_KNOWN(warning, has_byte),
+              .doc = "The first byte, in a binary file."),
+    API_FIELD_MADE("lines", "*count", write_spots, .known = API_KNOWN(warning, has_lines),
+                   .doc = "The lines, at most 100 for all warnings together."),
+    API_FIELD_MADE("bytes", "*count", write_spots, .known = API_KNOWN(warning, has_bytes),
+                   .doc = "The bytes in a binary file, at most 100 for all warnings together."),
+    API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(warning, has_vertices),
+                   .doc = "For bowtie and isolated_vertices: the first 100 of these vertices."),
+};
+const api_record api_warning_record = {"warning", warning_fields,
+                                       sizeof warning_fields / sizeof *warning_fields};
+
 static void write_note(api_out *out, const he_notes *notes, size_t i)
 {
     char text[HE_ERROR_TEXT];
     const he_note *note = &notes->items[i];
+    const bool many = note->count != 1;
     he_note_text(note, text, sizeof text);
-    api_out_object_begin(out);
-    api_out_key_string(out, "code", note->code);
-    api_out_key_string(out, "detail", text);
-    api_out_key_u64(out, "count", note->count);
-    if (note->place != HE_PLACE_NONE) {
-        api_out_key_u64(out, note->place == HE_PLACE_LINE ? "line" : "byte", note->at);
-    }
-    write_spots(out, notes, i);
-    api_out_object_end(out);
+    const warning value = {.code = note->code,
+                           .detail = text,
+                           .count = note->count,
+                           .at = note->at,
+                           .has_line = note->place == HE_PLACE_LINE,
+                           .has_byte = note->place == HE_PLACE_BYTE,
+                           .has_lines = many && note->place == HE_PLACE_LINE,
+                           .has_bytes = many && note->place == HE_PLACE_BYTE,
+                           .notes = notes,
+                           .note = i};
+    api_record_write(out, &api_warning_record, &value);
 }
 
-/* A warning about vertices of the mesh. */
-typedef struct vertex_warning {
-    const char *code, *detail;
-    uint64_t count;
-    const he_ids *ids; /* the first of them, or all */
-} vertex_warning;
-
-/* Writes a warning with the place of its first vertex in the file. */
-static void write_vertices(api_out *out, const upload *u, const vertex_warning *warning)
+/* Writes a warning about vertices of the mesh, with the place of the first of them in the file. The
+ * caller sets code, detail and count. */
+static void write_vertices(api_out *out, const upload *u, warning value, const he_ids *ids)
 {
-    const he_ids *ids = warning->ids;
-    size_t named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
     const he_places *places = u->has_import ? &u->import.vertices : NULL;
-    if (warning->count == 0) {
+    if (value.count == 0) {
         return;
     }
-    api_out_object_begin(out);
-    api_out_key_string(out, "code", warning->code);
-    api_out_key_string(out, "detail", warning->detail);
-    api_out_key_u64(out, "count", warning->count);
+    value.has_vertices = true;
+    value.vertices = ids->ids;
+    value.named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
     if (places != NULL && places->unit != HE_PLACE_NONE && places->count > 0) {
         uint32_t v = ids->ids[0];
         v = u->repaired.vertex_from == NULL ? v : u->repaired.vertex_from[v];
-        api_out_key_u64(out, places->unit == HE_PLACE_LINE ? "line" : "byte",
-                        he_places_find(places, v));
+        value.has_line = places->unit == HE_PLACE_LINE;
+        value.has_byte = !value.has_line;
+        value.at = he_places_find(places, v);
     }
-    api_out_key_ids(out, "vertices", ids->ids, named);
-    api_out_object_end(out);
+    api_record_write(out, &api_warning_record, &value);
 }
 
 /* Writes a warning about seams that another program left: it wrote one vertex for each corner with
  * different values. */
 static void write_seams(api_out *out, const upload *u)
 {
-    if (u->seams == 0) {
-        return;
+    const warning value = {.code = "open_seams",
+                           .detail = "faces lie apart though their edges coincide: repair=weld "
+                                     "sews them and keeps what their corners say",
+                           .count = u->seams};
+    if (u->seams > 0) {
+        api_record_write(out, &api_warning_record, &value);
     }
-    api_out_object_begin(out);
-    api_out_key_string(out, "code", "open_seams");
-    api_out_key_string(
-        out, "detail",
-        "faces lie apart though their edges coincide: repair=weld sews them and keeps "
-        "what their corners say");
-    api_out_key_u64(out, "count", u->seams);
-    api_out_object_end(out);
 }
 
-static void write_attributes(api_out *out, const upload *u)
+/* The report of an import as its members show it. */
+typedef struct report {
+    const upload *u;
+    const char *format;
+    uint64_t vertices, faces, more;
+    bool has_attributes;
+} report;
+
+static void write_attributes(api_out *out, const void *value)
 {
-    if (u->attribute_count == 0) {
-        return;
-    }
-    api_out_key(out, "attributes");
+    const upload *u = ((const report *)value)->u;
     api_out_array_begin(out);
     for (size_t i = 0; i < u->attribute_count; i++) {
         api_out_object_begin(out);
@@ -675,36 +702,57 @@ static void write_attributes(api_out *out, const upload *u)
     api_out_array_end(out);
 }
 
-void api_upload_write_report(api_exchange *x)
+static void write_repairs(api_out *out, const void *value)
 {
-    const upload *u = x->state;
-    const vertex_warning bowties = {"bowtie",
-                                    "fans of faces meet at a vertex without sharing an edge",
-                                    u->bowties.count, &u->bowties};
-    const vertex_warning isolated = {"isolated_vertices", "no face has these vertices", u->isolated,
-                                     &u->isolated_ids};
-    api_out *out = &x->out;
-    api_out_key(out, "import");
-    api_out_object_begin(out);
-    api_out_key_string(out, "format",
-                       u->format != NULL  ? u->format->name
-                       : u->shape != NULL ? "shape"
-                                          : "json");
-    api_out_key_u64(out, "vertices", u->vertices);
-    api_out_key_u64(out, "faces", u->faces);
-    write_attributes(out, u);
+    const upload *u = ((const report *)value)->u;
     api_repairs_write(out, &u->plan, &u->repaired, u->has_import ? &u->import : NULL);
-    api_out_key(out, "warnings");
+}
+
+static void write_warnings(api_out *out, const void *value)
+{
+    const upload *u = ((const report *)value)->u;
+    const warning bowties = {.code = "bowtie",
+                             .detail = "fans of faces meet at a vertex without sharing an edge",
+                             .count = u->bowties.count};
+    const warning isolated = {
+        .code = "isolated_vertices", .detail = "no face has these vertices", .count = u->isolated};
     api_out_array_begin(out);
     for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {
         write_note(out, &u->import.notes, i);
     }
-    write_vertices(out, u, &bowties);
-    write_vertices(out, u, &isolated);
+    write_vertices(out, u, bowties, &u->bowties);
+    write_vertices(out, u, isolated, &u->isolated_ids);
     write_seams(out, u);
     api_out_array_end(out);
-    if (u->has_import && u->import.notes.more > 0) {
-        api_out_key_u64(out, "more_warnings", u->import.notes.more);
-    }
-    api_out_object_end(out);
+}
+
+static const api_field import_fields[] = {
+    API_FIELD("format", "text", report, format, .required = true),
+    API_FIELD("vertices", "count", report, vertices, .required = true),
+    API_FIELD("faces", "count", report, faces, .required = true),
+    API_FIELD_MADE("attributes", "*#attribute_read", write_attributes,
+                   .known = API_KNOWN(report, has_attributes),
+                   .doc = "The attributes that the body has."),
+    API_FIELD_MADE("repairs", "*#repair", write_repairs, .required = true,
+                   .doc = "The repairs that were asked for, in the order in which they were made."),
+    API_FIELD_MADE("warnings", "*#warning", write_warnings, .required = true),
+    API_FIELD("more_warnings", "count", report, more, .zero_is_none = true,
+              .doc = "How many warnings are not listed."),
+};
+const api_record api_import_record = {"import", import_fields,
+                                      sizeof import_fields / sizeof *import_fields};
+
+void api_upload_write_report(api_exchange *x)
+{
+    const upload *u = x->state;
+    const report value = {.u = u,
+                          .format = u->format != NULL  ? u->format->name
+                                    : u->shape != NULL ? "shape"
+                                                       : "json",
+                          .vertices = u->vertices,
+                          .faces = u->faces,
+                          .more = u->has_import ? u->import.notes.more : 0,
+                          .has_attributes = u->attribute_count > 0};
+    api_out_key(&x->out, "import");
+    api_record_write(&x->out, &api_import_record, &value);
 }

@@ -13,7 +13,11 @@
 #ifndef HE_API_DOCUMENT_UPLOAD_H
 #define HE_API_DOCUMENT_UPLOAD_H
 
+#include "api/json/record.h"
 #include "api/request/exchange.h"
+
+/* The members of the report of an import, and of a warning in it. */
+extern const api_record api_import_record, api_warning_record;
 
 bool api_upload_begin(api_exchange *x);
 bool api_upload_feed(api_exchange *x, const char *bytes, size_t length);

@@ -27,42 +27,19 @@ void api_job_result_path(const api_job *job, char out[API_JOB_RESULT_PATH])
     }
 }
 
-static void write_text(api_out *out, const char *key, const char *text)
-{
-    if (text[0] == '\0') {
-        api_out_key_null(out, key);
-    } else {
-        api_out_key_string(out, key, text);
-    }
-}
+/* A job as its members show it. */
+typedef struct shown {
+    api_job job;
+    const char *state;
+    bool has_status, has_result, has_problem;
+    double progress;
+    char link[API_JOB_RESULT_PATH];
+} shown;
 
-static void write_time(api_out *out, const char *key, double seconds)
+/* Writes the body of the answer. */
+static void write_body(api_out *out, const void *value)
 {
-    if (seconds == 0) {
-        api_out_key_null(out, key);
-    } else {
-        api_out_key_time(out, key, seconds);
-    }
-}
-
-/* Writes the answer of the job's request, once the job has ended. */
-static void write_answer(api_out *out, const api_job *job, bool whole)
-{
-    bool ended = job->state >= API_JOB_DONE;
-    api_out_key(out, "status");
-    if (!ended || job->status == 0) {
-        api_out_null(out);
-    } else {
-        api_out_u64(out, (uint64_t)job->status);
-    }
-    write_text(out, "location", ended ? job->location : "");
-    char path[API_JOB_RESULT_PATH];
-    api_job_result_path(job, path);
-    write_text(out, "result_link", path);
-    if (!whole || !ended) {
-        return;
-    }
-    api_out_key(out, job->state == API_JOB_DONE ? "result" : "problem");
+    const api_job *job = &((const shown *)value)->job;
     if (job->body == NULL || !job->shown) {
         api_out_null(out);
     } else {
@@ -70,42 +47,76 @@ static void write_answer(api_out *out, const api_job *job, bool whole)
     }
 }
 
-static void write_progress(api_out *out, const api_job *job)
-{
-    api_out_key_number(out, "progress", floor(job->progress * STEPS) / STEPS);
-}
+static const api_field job_fields[] = {
+    API_FIELD("id", "text", shown, job.id, .required = true,
+              .doc = "Only the token that started the job may see and cancel it; without tokens, "
+                     "every client that knows the id."),
+    API_FIELD("operation", "text", shown, job.operation, .required = true,
+              .doc = "The operationId of the request."),
+    API_FIELD("state", "#job_state", shown, state, .required = true),
+    API_FIELD("phase", "text?", shown, job.phase, .required = true, .zero_is_none = true,
+              .doc = "What the job is doing, or did last."),
+    API_FIELD("progress", "number", shown, progress, .required = true,
+              .doc = "From 0 to 1; it never decreases."),
+    API_FIELD("mesh", "text?", shown, job.mesh, .required = true, .zero_is_none = true,
+              .doc = "The id of its mesh; null while the mesh has no id."),
+    API_FIELD("created", "time", shown, job.created, .required = true),
+    API_FIELD("started", "time?", shown, job.started, .required = true, .zero_is_none = true),
+    API_FIELD("finished", "time?", shown, job.finished, .required = true, .zero_is_none = true),
+    API_FIELD("status", "integer?", shown, job.status, .required = true,
+              .known = API_KNOWN(shown, has_status),
+              .doc = "The HTTP status that the request would have been answered with."),
+    API_FIELD("location", "text?", shown, job.location, .required = true, .zero_is_none = true,
+              .doc = "The header Location that the request would have been answered with."),
+    API_FIELD("result_link", "text?", shown, link, .required = true, .zero_is_none = true,
+              .doc = "The path of the result alone, once there is one."),
+    API_FIELD_MADE("result", "#job_result?", write_body, .known = API_KNOWN(shown, has_result),
+                   .doc = "The body that the request would have been answered with; null if there "
+                          "is none, or if it is not JSON, a whole mesh, or too large to keep."),
+    API_FIELD_MADE("problem", "#problem?", write_body, .known = API_KNOWN(shown, has_problem),
+                   .doc = "The problem, if the job failed."),
+};
+const api_record api_job_record = {"job", job_fields, sizeof job_fields / sizeof *job_fields};
 
-static void write_job_state(api_out *out, const api_job *job)
+static const api_field state_fields[] = {
+    API_FIELD("id", "text", shown, job.id, .required = true),
+    API_FIELD("state", "#job_state", shown, state, .required = true),
+    API_FIELD("progress", "number", shown, progress, .required = true, .doc = "From 0 to 1."),
+};
+const api_record api_job_state_record = {"job_state_told", state_fields,
+                                         sizeof state_fields / sizeof *state_fields};
+
+/* Fills `out` with a job as its members show it; `whole` adds the body of the answer. */
+static void show(const api_job *job, bool whole, shown *out)
 {
-    api_out_key_string(out, "id", job->id);
-    api_out_key_string(out, "state", states[job->state]);
-    write_progress(out, job);
+    const bool ended = job->state >= API_JOB_DONE;
+    *out = (shown){.job = *job,
+                   .state = states[job->state],
+                   .has_status = ended && job->status != 0,
+                   .has_result = whole && job->state == API_JOB_DONE,
+                   .has_problem = whole && ended && job->state != API_JOB_DONE,
+                   .progress = floor(job->progress * STEPS) / STEPS};
+    api_job_result_path(job, out->link);
+    if (!ended) {
+        out->job.location[0] = '\0';
+    }
 }
 
 void api_write_job(api_out *out, const api_job *job, bool whole)
 {
-    api_out_object_begin(out);
-    api_out_key_string(out, "id", job->id);
-    api_out_key_string(out, "operation", job->operation);
-    api_out_key_string(out, "state", states[job->state]);
-    write_text(out, "phase", job->phase);
-    write_progress(out, job);
-    write_text(out, "mesh", job->mesh);
-    write_time(out, "created", job->created);
-    write_time(out, "started", job->started);
-    write_time(out, "finished", job->finished);
-    write_answer(out, job, whole);
-    api_out_object_end(out);
+    shown value;
+    show(job, whole, &value);
+    api_record_write(out, &api_job_record, &value);
 }
 
 void api_event_job_state(api_text *text, const api_job *job)
 {
     api_text data = {0};
     api_out out;
+    shown value;
     api_out_init(&out, &data);
-    api_out_object_begin(&out);
-    write_job_state(&out, job);
-    api_out_object_end(&out);
+    show(job, false, &value);
+    api_record_write(&out, &api_job_state_record, &value);
     api_event_add(text, "job", &data);
     api_text_clear(&data);
 }

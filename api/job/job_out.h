@@ -3,7 +3,10 @@
 #define HE_API_JOB_JOB_OUT_H
 
 #include "api/job/job.h"
-#include "api/json/json_out.h"
+#include "api/json/record.h"
+
+/* The members of a job, and of the event that tells the listeners of its mesh of it. */
+extern const api_record api_job_record, api_job_state_record;
 
 const char *api_job_state_name(api_job_state state);
 /* Writes the path of the answer of a job; "" if the job has no answer of its own, or none yet. */

@@ -2,12 +2,14 @@
 #include "api/request/handlers.h"
 
 #include "api/event/changes.h"
+#include "api/read/records.h"
 
 #include <string.h>
 
 /* Writes "a,b,..." as ["a","b","..."]. */
-static void write_names(api_out *out, const char *names)
+static void write_ops(api_out *out, const void *value)
 {
+    const char *names = ((const st_entry *)value)->ops;
     api_out_array_begin(out);
     while (*names != '\0') {
         size_t length = strcspn(names, ",");
@@ -17,36 +19,63 @@ static void write_names(api_out *out, const char *names)
     api_out_array_end(out);
 }
 
-static void write_tally(api_out *out, const char *key, const uint32_t counts[3])
+static void write_action(api_out *out, const void *value)
 {
-    api_out_key(out, key);
-    api_out_object_begin(out);
-    api_out_key_u64(out, he_kind_plural(HE_VERTEX), counts[0]);
-    api_out_key_u64(out, he_kind_plural(HE_EDGE), counts[1]);
-    api_out_key_u64(out, he_kind_plural(HE_FACE), counts[2]);
-    api_out_object_end(out);
+    api_out_string(out, api_action_name(((const st_entry *)value)->action));
 }
 
-static void write_entry(api_out *out, const st_entry *entry)
+typedef struct counted {
+    uint32_t vertices, edges, faces;
+} counted;
+
+static const api_field counted_fields[] = {
+    API_FIELD("vertices", "count", counted, vertices, .required = true),
+    API_FIELD("edges", "count", counted, edges, .required = true),
+    API_FIELD("faces", "count", counted, faces, .required = true),
+};
+const api_record api_counted_record = {"counted", counted_fields,
+                                       sizeof counted_fields / sizeof *counted_fields};
+
+static void write_counted(api_out *out, const uint32_t counts[3])
 {
-    api_out_object_begin(out);
-    api_out_key_u64(out, "revision", entry->revision);
-    api_out_key_string(out, "action", api_action_name(entry->action));
-    if (entry->inverts != 0) {
-        api_out_key_u64(out, "inverts", entry->inverts);
-    }
-    api_out_key(out, "ops");
-    write_names(out, entry->ops);
-    if (entry->tally.known) {
-        write_tally(out, "created", entry->tally.created);
-        write_tally(out, "deleted", entry->tally.deleted);
-        write_tally(out, "modified", entry->tally.modified);
-    }
-    api_out_key_bool(out, "undoable", entry->undoable);
-    api_out_key_u64(out, "bytes", entry->bytes);
-    api_out_key_time(out, "time", entry->time);
-    api_out_object_end(out);
+    const counted value = {counts[0], counts[1], counts[2]};
+    api_record_write(out, &api_counted_record, &value);
 }
+
+static void write_created(api_out *out, const void *value)
+{
+    write_counted(out, ((const st_entry *)value)->tally.created);
+}
+
+static void write_deleted(api_out *out, const void *value)
+{
+    write_counted(out, ((const st_entry *)value)->tally.deleted);
+}
+
+static void write_modified(api_out *out, const void *value)
+{
+    write_counted(out, ((const st_entry *)value)->tally.modified);
+}
+
+static const api_field entry_fields[] = {
+    API_FIELD("revision", "count", st_entry, revision, .required = true),
+    API_FIELD_MADE("action", "#action", write_action, .required = true),
+    API_FIELD("inverts", "count", st_entry, inverts, .zero_is_none = true,
+              .doc = "The revision that it undid or redid."),
+    API_FIELD_MADE("ops", "*text", write_ops, .required = true),
+    API_FIELD_MADE("created", "#counted", write_created, .known = API_KNOWN(st_entry, tally.known),
+                   .doc = "How many elements, if it is known."),
+    API_FIELD_MADE("deleted", "#counted", write_deleted, .known = API_KNOWN(st_entry, tally.known)),
+    API_FIELD_MADE("modified", "#counted", write_modified,
+                   .known = API_KNOWN(st_entry, tally.known)),
+    API_FIELD("undoable", "flag", st_entry, undoable, .required = true,
+              .doc = "Can it still be undone?"),
+    API_FIELD("bytes", "count", st_entry, bytes, .required = true,
+              .doc = "Memory that is kept to undo it."),
+    API_FIELD("time", "time", st_entry, time, .required = true),
+};
+const api_record api_entry_record = {"entry", entry_fields,
+                                     sizeof entry_fields / sizeof *entry_fields};
 
 /* A page of the history: entries from revision `first` down to the one after `last`. */
 typedef struct page {
@@ -69,7 +98,7 @@ static void write_entries(api_exchange *x, const page *p, uint64_t *next)
     api_out_key(&x->out, "entries");
     api_out_array_begin(&x->out);
     for (uint64_t i = 0; more && i < p->limit; i++) {
-        write_entry(&x->out, &entry);
+        api_record_write(&x->out, &api_entry_record, &entry);
         more = find_entry(x, p, --revision, &entry);
     }
     api_out_array_end(&x->out);

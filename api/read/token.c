@@ -2,6 +2,7 @@
  * ticket that replaces it, and reading the file of tokens again. */
 #include "api/request/handlers.h"
 
+#include "api/read/records.h"
 #include "api/request/gate.h"
 #include "system/clock.h"
 
@@ -9,33 +10,75 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Answers with the rights of the request's token. On a server without tokens every client is an
- * admin. */
-void api_token_get(api_exchange *x)
+/* The rights of a token as their members show them. */
+typedef struct rights {
+    const api_token *token; /* NULL: the server needs no tokens */
+    const char *name, *role;
+    bool ends;
+    double expires;
+} rights;
+
+static void write_prefixes(api_out *out, const void *value)
 {
-    const api_token *token = x->token;
-    api_out *out = &x->out;
-    api_out_object_begin(out);
-    api_out_key(out, "name");
-    if (token != NULL) {
-        api_out_string(out, token->name);
-    } else {
-        api_out_null(out);
-    }
-    api_out_key_string(out, "role", api_role_name(token == NULL ? API_ROLE_ADMIN : token->role));
-    api_out_key(out, "prefixes");
+    const api_token *token = ((const rights *)value)->token;
     api_out_array_begin(out);
     for (size_t i = 0; token != NULL && i < token->prefix_count; i++) {
         api_out_string(out, token->prefixes[i]);
     }
     api_out_array_end(out);
-    api_out_key(out, "expires");
-    if (token != NULL && isfinite(token->expires)) {
-        api_out_time(out, token->expires);
-    } else {
-        api_out_null(out);
-    }
-    api_out_object_end(out);
+}
+
+static const api_field token_fields[] = {
+    API_FIELD("name", "text?", rights, name, .required = true,
+              .doc = "Null if the server needs no tokens."),
+    API_FIELD("role", "#role_name", rights, role, .required = true),
+    API_FIELD_MADE("prefixes", "*text", write_prefixes, .required = true,
+                   .doc =
+                       "The token sees only meshes whose ids begin with one of these; if the list "
+                       "is empty, all."),
+    API_FIELD("expires", "time?", rights, expires, .required = true,
+              .known = API_KNOWN(rights, ends), .doc = "Null: never."),
+};
+const api_record api_token_record = {"token", token_fields,
+                                     sizeof token_fields / sizeof *token_fields};
+
+typedef struct ticket {
+    const char *path;
+    double expires;
+} ticket;
+
+static const api_field ticket_fields[] = {
+    API_FIELD("path", "text", ticket, path, .required = true,
+              .doc = "The path with the ticket at its end."),
+    API_FIELD("expires", "time", ticket, expires, .required = true),
+};
+const api_record api_ticket_record = {"ticket", ticket_fields,
+                                      sizeof ticket_fields / sizeof *ticket_fields};
+
+typedef struct reloaded {
+    bool needs_tokens;
+    uint64_t tokens;
+} reloaded;
+
+static const api_field reloaded_fields[] = {
+    API_FIELD("tokens", "count?", reloaded, tokens, .required = true,
+              .known = API_KNOWN(reloaded, needs_tokens),
+              .doc = "How many tokens are accepted; null if the server needs none."),
+};
+const api_record api_reloaded_record = {"reloaded", reloaded_fields,
+                                        sizeof reloaded_fields / sizeof *reloaded_fields};
+
+/* Answers with the rights of the request's token. On a server without tokens every client is an
+ * admin. */
+void api_token_get(api_exchange *x)
+{
+    const api_token *token = x->token;
+    const rights value = {.token = token,
+                          .name = token == NULL ? NULL : token->name,
+                          .role = api_role_name(token == NULL ? API_ROLE_ADMIN : token->role),
+                          .ends = token != NULL && isfinite(token->expires),
+                          .expires = token == NULL ? 0 : token->expires};
+    api_record_write(&x->out, &api_token_record, &value);
     api_answer_json(x, 200);
 }
 
@@ -77,27 +120,24 @@ void api_tickets_post(api_exchange *x)
 {
     static const char *const members[] = {"path", NULL};
     const char *target;
-    api_ticket ticket;
+    api_ticket made;
     api_in in;
     if (!api_in_only(&x->root, members) || !api_in_need(&x->root, "path", &in) ||
         !api_in_string(&in, API_MAX_URI, &target) || !check_target(x, &in, target)) {
         return;
     }
-    if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), &ticket)) {
+    if (!api_tickets_make(x->service->tickets, x->token, target, st_clock_utc(), &made)) {
         api_fail(x, API_TOO_MANY_TICKETS, "too many tickets are waiting to be used");
         return;
     }
-    char *whole = api_arena_array(&x->arena, strlen(target) + sizeof ticket.text + 10, 1);
+    char *whole = api_arena_array(&x->arena, strlen(target) + sizeof made.text + 10, 1);
     if (whole == NULL) {
         api_fail_memory(x);
         return;
     }
-    (void)snprintf(whole, strlen(target) + sizeof ticket.text + 10, "%s%c" API_TICKET "%s", target,
-                   strchr(target, '?') == NULL ? '?' : '&', ticket.text);
-    api_out_object_begin(&x->out);
-    api_out_key_string(&x->out, "path", whole);
-    api_out_key_time(&x->out, "expires", ticket.expires);
-    api_out_object_end(&x->out);
+    (void)snprintf(whole, strlen(target) + sizeof made.text + 10, "%s%c" API_TICKET "%s", target,
+                   strchr(target, '?') == NULL ? '?' : '&', made.text);
+    api_record_write(&x->out, &api_ticket_record, &(ticket){whole, made.expires});
     api_answer_json(x, 200);
 }
 
@@ -110,14 +150,10 @@ static void reload(api_exchange *x)
         api_fail(x, API_RELOAD_FAILED, "%s", message);
         return;
     }
-    api_out_object_begin(&x->out);
-    api_out_key(&x->out, "tokens");
-    if (options->tokens != NULL) {
-        api_out_u64(&x->out, api_tokens_count(options->tokens));
-    } else {
-        api_out_null(&x->out);
-    }
-    api_out_object_end(&x->out);
+    const reloaded value = {.needs_tokens = options->tokens != NULL,
+                            .tokens =
+                                options->tokens == NULL ? 0 : api_tokens_count(options->tokens)};
+    api_record_write(&x->out, &api_reloaded_record, &value);
     api_answer_json(x, 200);
 }
 

@@ -1,7 +1,7 @@
-/* The examples in the OpenAPI document must equal the answers of the service. */
-#include "tests/api/request.h"
+/* The examples in the OpenAPI document must equal the answers of the service. Called as
+ * `test_examples record FILE`, which `make examples` does, this program writes the file anew. */
+#include "tests/api/examples_record.h"
 
-#include "api/describe/examples.h"
 #include "api/describe/routes.h"
 
 #include <setjmp.h>
@@ -11,140 +11,62 @@
 
 #include <cmocka.h>
 
-static const api_route *route_of(const char *name)
+/* Prints a line of the file, and its end. */
+static void print_line(const char *mark, const char *line)
 {
-    for (size_t i = 0; i < api_routes().count; i++) {
-        if (strcmp(api_routes().rows[i].name, name) == 0) {
-            return &api_routes().rows[i];
-        }
-    }
-    fail_msg("an example is of %s, which is no route", name);
-    return NULL;
+    print_error("%s%.*s\n", mark, (int)strcspn(line, "\n"), line);
 }
 
-static bool is_one_of(const char *name, const char *const *names)
+static const char *line_after(const char *line)
 {
-    while (*names != NULL && (name == NULL || strcmp(name, *names) != 0)) {
-        names++;
-    }
-    return *names != NULL;
+    line += strcspn(line, "\n");
+    return *line == '\0' ? line : line + 1;
 }
 
-/* Replaces values in an answer that differ between runs and machines (ids, times) by those of the
- * example, if both have the same form. */
-static void settle(cJSON *answer, const cJSON *example)
+static bool is_same_line(const char *a, const char *b)
 {
-    static const char *const times[] = {"created",  "modified", "time", "started",
-                                        "finished", "expires",  NULL};
-    static const char *const ids[] = {"id", NULL};
-    static const char *const links[] = {"result_link", NULL};
-    static const char *const tickets[] = {"path", NULL};
-    static const char *const sizes[] = {"budget", "memory_bytes", "bytes", NULL};
-    for (cJSON *a = answer->child; a != NULL && example != NULL; a = a->next) {
-        const cJSON *e = example->child;
-        while (e != NULL && a->string != NULL && strcmp(a->string, e->string) != 0) {
-            e = e->next;
-        }
-        if (cJSON_IsArray(answer)) {
-            e = cJSON_GetArrayItem(example, 0);
-            for (const cJSON *b = answer->child; b != a && e != NULL; b = b->next) {
-                e = e->next;
+    size_t length = strcspn(a, "\n");
+    return length == strcspn(b, "\n") && memcmp(a, b, length) == 0;
+}
+
+/* Moves `*a` and `*b` to the nearest lines that are equal. */
+static void find_equal(const char **a, const char **b)
+{
+    for (size_t distance = 0;; distance++) {
+        const char *x = *a;
+        for (size_t i = 0; i <= distance; i++, x = line_after(x)) {
+            const char *y = *b;
+            for (size_t k = i; k < distance; k++) {
+                y = line_after(y);
+            }
+            if (is_same_line(x, y) && (*x == '\0') == (*y == '\0')) {
+                *a = x;
+                *b = y;
+                return;
             }
         }
-        if (e == NULL) {
+    }
+}
+
+/* Prints the lines that differ, each group below the route of its example. */
+static void print_difference(const char *recorded, const char *answered)
+{
+    const char *route = recorded;
+    while (*recorded != '\0' || *answered != '\0') {
+        if (is_same_line(recorded, answered) && *recorded != '\0' && *answered != '\0') {
+            route = strncmp(recorded, "      \"route\"", 13) == 0 ? recorded : route;
+            recorded = line_after(recorded);
+            answered = line_after(answered);
             continue;
         }
-        if (is_one_of(a->string, times) && cJSON_IsString(a) && cJSON_IsString(e)) {
-            assert_int_equal(strlen(a->valuestring), strlen(e->valuestring));
-            memcpy(a->valuestring, e->valuestring, strlen(e->valuestring));
-        } else if (cJSON_IsString(a) && cJSON_IsString(e) && is_one_of(a->string, ids) &&
-                   strlen(a->valuestring) == API_JOB_ID) {
-            assert_int_equal(strlen(e->valuestring), API_JOB_ID);
-            memcpy(a->valuestring, e->valuestring, API_JOB_ID);
-        } else if (cJSON_IsString(a) && cJSON_IsString(e) && is_one_of(a->string, links)) {
-            assert_int_equal(strlen(a->valuestring), strlen(e->valuestring));
-            memcpy(a->valuestring + strlen("/v1/jobs/"), API_EXAMPLE_JOB, API_JOB_ID);
-        } else if (cJSON_IsString(a) && cJSON_IsString(e) && is_one_of(a->string, tickets)) {
-            assert_int_equal(strlen(a->valuestring), strlen(e->valuestring));
-            const char *random = strstr(e->valuestring, "hedge_");
-            memcpy(a->valuestring + (random - e->valuestring), random, strlen(random));
-        } else if (is_one_of(a->string, sizes) && cJSON_IsNumber(a) && cJSON_IsNumber(e)) {
-            assert_true(a->valuedouble > 0);
-            cJSON_SetNumberValue(a, e->valuedouble);
-        } else {
-            settle(a, e);
+        const char *a = recorded, *b = answered;
+        find_equal(&a, &b);
+        print_line("", route);
+        for (; recorded < a; recorded = line_after(recorded)) {
+            print_line("-", recorded);
         }
-    }
-}
-
-/* Replaces the incarnation of the mesh in the events, since it is random, by that of the
- * example. */
-static void settle_ids(char *stream)
-{
-    static const char fixed[] = "5d1b27c0e4a9f386";
-    for (char *id = stream; (id = strstr(id, "id: ")) != NULL; id++) {
-        assert_int_equal(id[4 + sizeof fixed - 1], '.');
-        memcpy(id + 4, fixed, sizeof fixed - 1);
-    }
-}
-
-static void compare(const api_example *row, const bench_reply *r)
-{
-    if (strcmp(row->produces, "text/event-stream") == 0) {
-        settle_ids(r->body);
-    }
-    if (strcmp(row->produces, "application/json") != 0 && row->status < 400) {
-        assert_string_equal(r->body, row->response);
-        return;
-    }
-    cJSON *example = cJSON_Parse(row->response);
-    assert_non_null(example);
-    assert_non_null(r->json);
-    cJSON_DeleteItemFromObject(r->json, "request_id");
-    settle(r->json, example);
-    if (!cJSON_Compare(r->json, example, true)) {
-        char *answer = cJSON_PrintUnformatted(r->json);
-        print_error("%s %s is answered\n%s\nand not\n%s\n", row->route, row->target, answer,
-                    row->response);
-        cJSON_free(answer);
-        fail();
-    }
-    cJSON_Delete(example);
-}
-
-static void start_job(api_bench *b, const char *method, const char *target, const char *body,
-                      char path[64])
-{
-    const char *const headers[] = {"Prefer", "respond-async", NULL};
-    bench_reply r = bench_send(b, method, target, headers, body);
-    assert_int_equal(r.status, 202);
-    snprintf(path, 64, "%s", bench_header(&r, "Location"));
-    bench_reply_free(&r);
-}
-
-/* Starts the jobs that the examples are about; `done` and `waiting` become the paths of one that
- * has ended and one that waits. */
-static void start_jobs(api_bench *b, char done[64], char waiting[64])
-{
-    start_job(b, "POST", "/v1/meshes?id=disk", "{\"shape\":\"disk\",\"segments\":3}", done);
-    bench_run_jobs(b, 1);
-    bench_reply r = bench_send(b, "DELETE", "/v1/meshes/disk", NULL, NULL);
-    assert_int_equal(r.status, 204);
-    bench_reply_free(&r);
-    start_job(b, "PUT", "/v1/meshes/later", "{\"shape\":\"cube\"}", waiting);
-}
-
-/* Replaces the job in the target of an example by one of the two that this test started. */
-static void name_job(const char *target, const char *done, const char *waiting, char *out,
-                     size_t size)
-{
-    const char *const named[] = {"/v1/jobs/" API_EXAMPLE_JOB, "/v1/jobs/" API_EXAMPLE_WAITING};
-    const char *const places[] = {done, waiting};
-    snprintf(out, size, "%s", target);
-    for (size_t i = 0; i < 2; i++) {
-        size_t length = strlen(named[i]);
-        if (strncmp(target, named[i], length) == 0) {
-            snprintf(out, size, "%s%s", places[i], target + length);
+        for (; answered < b; answered = line_after(answered)) {
+            print_line("+", answered);
         }
     }
 }
@@ -152,28 +74,19 @@ static void name_job(const char *target, const char *done, const char *waiting, 
 static void each_example_is_a_real_answer(void **state)
 {
     (void)state;
-    api_bench *b = bench_new();
-    char done[64], waiting[64];
-    start_jobs(b, done, waiting);
-    for (size_t i = 0; i < api_example_count(); i++) {
-        const api_example *row = api_example_at(i);
-        const api_route *route = route_of(row->route);
-        /* A refusal is sent as application/problem+json whatever the client accepts, so the request
-         * may accept anything. */
-        const char *accept = row->status < 400 ? row->produces : "*/*";
-        const char *headers[] = {"Accept", accept, "Content-Type", row->consumes, NULL};
-        headers[2] = row->consumes == NULL ? NULL : headers[2];
-        char target[256];
-        name_job(row->target, done, waiting, target, sizeof target);
-        bench_reply r = bench_send(b, route->method, target, headers, row->request);
-        if (r.status != row->status) {
-            fail_msg("%s %s: %d: %s", route->method, row->target, r.status, r.body);
-        }
-        assert_string_equal(r.route, route->path);
-        compare(row, &r);
-        bench_reply_free(&r);
+    api_examples file;
+    api_text text = {0};
+    assert_true(api_examples_read(&file));
+    examples_record(&file, &text);
+    api_text_add_char(&text, '\0');
+    assert_false(text.failed);
+    if (strcmp(api_examples_text, text.bytes) != 0) {
+        print_error("api/describe/examples.json (-) and the answers of the service (+) differ:\n");
+        print_difference(api_examples_text, text.bytes);
+        fail_msg("if the new answers are right, `make examples` records them");
     }
-    bench_free(b);
+    api_text_clear(&text);
+    api_examples_clear(&file);
 }
 
 static const cJSON *member(const cJSON *object, const char *name)
@@ -185,79 +98,145 @@ static const cJSON *member(const cJSON *object, const char *name)
     return found;
 }
 
-/* Requires that `body` is the example given for this media type in `content`. */
-static void find_in(const cJSON *content, const char *media, const char *body)
+/* Requires that the example of `content` for this media type is this body of an example. */
+static void find_in(const cJSON *content, const char *media, const api_examples *file,
+                    uint32_t example, api_example_part part)
 {
     const cJSON *shown = member(member(content, media), "example");
+    api_text body = {0};
+    assert_true(api_example_body(file, example, part, &body));
+    api_text_add_char(&body, '\0');
     if (cJSON_IsString(shown)) {
-        assert_string_equal(shown->valuestring, body);
+        assert_string_equal(shown->valuestring, body.bytes);
     } else {
-        cJSON *parsed = cJSON_Parse(body);
+        cJSON *parsed = cJSON_Parse(body.bytes);
         assert_true(cJSON_Compare(shown, parsed, true));
         cJSON_Delete(parsed);
+    }
+    api_text_clear(&body);
+}
+
+static void find_example(const cJSON *document, const api_examples *file, const cJSON *row)
+{
+    const char *name = member(row, "route")->valuestring;
+    const char *produces = member(row, "produces")->valuestring;
+    const cJSON *consumes = cJSON_GetObjectItemCaseSensitive(row, "consumes");
+    const api_route *route = examples_route(name);
+    char method[8] = "", status[8];
+    for (size_t c = 0; c + 1 < sizeof method && route->method[c] != '\0'; c++) {
+        method[c] = (char)(route->method[c] | 32);
+    }
+    const cJSON *operation = member(member(member(document, "paths"), route->path), method);
+    snprintf(status, sizeof status, "%d", member(row, "status")->valueint);
+    find_in(member(member(member(operation, "responses"), status), "content"), produces, file,
+            api_example_find(file, API_EXAMPLE_RESPONSE, name, produces), API_EXAMPLE_RESPONSE);
+    if (consumes != NULL) {
+        find_in(member(member(operation, "requestBody"), "content"), consumes->valuestring, file,
+                api_example_find(file, API_EXAMPLE_REQUEST, name, consumes->valuestring),
+                API_EXAMPLE_REQUEST);
     }
 }
 
 static void the_description_shows_them(void **state)
 {
     (void)state;
+    api_examples file;
+    assert_true(api_examples_read(&file));
+    cJSON *rows = cJSON_Parse(api_examples_text);
     api_bench *b = bench_new();
     bench_reply r = bench_send(b, "GET", "/v1/openapi.json", NULL, NULL);
     assert_non_null(r.json);
-    for (size_t i = 0; i < api_example_count(); i++) {
-        const api_example *row = api_example_at(i);
-        const api_route *route = route_of(row->route);
-        char method[8] = "", status[8];
-        for (size_t c = 0; c + 1 < sizeof method && route->method[c] != '\0'; c++) {
-            method[c] = (char)(route->method[c] | 32);
-        }
-        if (row->status >= 400) {
-            continue;
-        }
-        const cJSON *operation = member(member(member(r.json, "paths"), route->path), method);
-        snprintf(status, sizeof status, "%d", row->status);
-        find_in(member(member(member(operation, "responses"), status), "content"), row->produces,
-                api_example_response(row->route, row->produces));
-        if (row->request != NULL) {
-            find_in(member(member(operation, "requestBody"), "content"), row->consumes,
-                    api_example_request(row->route, row->consumes));
+    for (const cJSON *row = member(rows, "examples")->child; row != NULL; row = row->next) {
+        if (member(row, "status")->valueint < 400) {
+            find_example(r.json, &file, row);
         }
     }
     find_in(member(member(member(member(r.json, "components"), "responses"), "problem"), "content"),
-            "application/problem+json", api_example_problem());
+            "application/problem+json", &file, api_example_problem(&file), API_EXAMPLE_RESPONSE);
     bench_reply_free(&r);
     bench_free(b);
+    cJSON_Delete(rows);
+    api_examples_clear(&file);
 }
 
 /* The document shows no examples for these answers, because they are as long as the tables that
  * they print. */
-static const char *const too_long[] = {"list_operations", "get_openapi", NULL};
+static bool is_too_long(const char *route)
+{
+    return strcmp(route, "list_operations") == 0 || strcmp(route, "get_openapi") == 0;
+}
 
 static void no_route_is_without_one(void **state)
 {
     (void)state;
+    api_examples file;
+    assert_true(api_examples_read(&file));
     for (size_t i = 0; i < api_routes().count; i++) {
         const api_route *route = &api_routes().rows[i];
-        if ((route->flags & API_FIXED) || is_one_of(route->name, too_long)) {
+        if ((route->flags & API_FIXED) || is_too_long(route->name)) {
             continue;
         }
-        if (route->response != NULL &&
-            api_example_response(route->name, route->produces[0]) == NULL) {
+        if (route->response != NULL && api_example_find(&file, API_EXAMPLE_RESPONSE, route->name,
+                                                        route->produces[0]) == HE_NONE) {
             fail_msg("%s has no example of an answer", route->name);
         }
-        if (route->request != NULL &&
-            api_example_request(route->name, route->consumes[0]) == NULL) {
+        if (route->request != NULL && api_example_find(&file, API_EXAMPLE_REQUEST, route->name,
+                                                       route->consumes[0]) == HE_NONE) {
             fail_msg("%s has no example of a body", route->name);
         }
     }
+    api_examples_clear(&file);
 }
 
-int main(void)
+static void long_values_are_laid_out_on_lines(void **state)
+{
+    (void)state;
+    static const char json[] =
+        "{\"short\":[1,\"a, \\\"b\\\": "
+        "c\"],\"long\":{\"first\":\"0123456789012345678901234567890123"
+        "4567890123456789\",\"second\":[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15]},\"none\":[]}";
+    static const char lines[] =
+        "{\n"
+        "  \"short\": [1, \"a, \\\"b\\\": c\"],\n"
+        "  \"long\": {\n"
+        "    \"first\": \"01234567890123456789012345678901234567890123456789\",\n"
+        "    \"second\": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]\n"
+        "  },\n"
+        "  \"none\": []\n"
+        "}\n";
+    api_text text = {0};
+    examples_lay_out(json, strlen(json), &text);
+    api_text_add_char(&text, '\0');
+    assert_string_equal(text.bytes, lines);
+    api_text_clear(&text);
+}
+
+/* Writes the file at `path` with the answers of the service; a person reads the difference. */
+static int record_file(const char *path)
+{
+    api_examples file;
+    api_text text = {0};
+    assert_true(api_examples_read(&file));
+    examples_record(&file, &text);
+    FILE *to = fopen(path, "w");
+    bool written = to != NULL && fwrite(text.bytes, 1, text.length, to) == text.length;
+    written = to != NULL && fclose(to) == 0 && written;
+    if (!written) {
+        perror(path);
+    }
+    api_text_clear(&text);
+    api_examples_clear(&file);
+    return written ? 0 : 1;
+}
+
+int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_example_is_a_real_answer),
         cmocka_unit_test(the_description_shows_them),
         cmocka_unit_test(no_route_is_without_one),
+        cmocka_unit_test(long_values_are_laid_out_on_lines),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return argc == 3 && strcmp(argv[1], "record") == 0 ? record_file(argv[2])
+                                                       : cmocka_run_group_tests(tests, NULL, NULL);
 }

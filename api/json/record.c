@@ -1,0 +1,152 @@
+#include "api/json/record.h"
+
+#include <string.h>
+
+static bool is_type(const api_field *field, const char *type)
+{
+    size_t length = strlen(type);
+    return strncmp(field->type, type, length) == 0 && strspn(field->type + length, "?") <= 1 &&
+           field->type[length + strspn(field->type + length, "?")] == '\0';
+}
+
+static bool is_nullable(const api_field *field)
+{
+    return field->type[strlen(field->type) - 1] == '?';
+}
+
+static bool is_zero(const api_field *field, const void *at)
+{
+    switch (field->form) {
+    case API_FORM_NONE:
+    case API_FORM_VEC3:
+        return false;
+    case API_FORM_BOOL:
+        return !*(const bool *)at;
+    case API_FORM_INT:
+        return *(const int *)at == 0;
+    case API_FORM_I64:
+        return *(const int64_t *)at == 0;
+    case API_FORM_U32:
+        return *(const uint32_t *)at == 0;
+    case API_FORM_U64:
+        return *(const uint64_t *)at == 0;
+    case API_FORM_DOUBLE:
+        return *(const double *)at == 0;
+    case API_FORM_TEXT:
+        return (*(const char *const *)at)[0] == '\0';
+    case API_FORM_CHARS:
+        return *(const char *)at == '\0';
+    }
+    return false;
+}
+
+static bool has_value(const api_field *field, const char *value)
+{
+    const void *at = value + field->offset;
+    if (field->known != 0 && !*(const bool *)(const void *)(value + field->known - 1)) {
+        return false;
+    }
+    if (field->form == API_FORM_TEXT && *(const char *const *)at == NULL) {
+        return false;
+    }
+    return !field->zero_is_none || !is_zero(field, at);
+}
+
+static void write_value(api_out *out, const api_field *field, const char *value)
+{
+    const void *at = value + field->offset;
+    switch (field->form) {
+    case API_FORM_NONE:
+        field->write(out, value);
+        break;
+    case API_FORM_BOOL:
+        api_out_bool(out, *(const bool *)at);
+        break;
+    case API_FORM_INT:
+        api_out_i64(out, *(const int *)at);
+        break;
+    case API_FORM_I64:
+        api_out_i64(out, *(const int64_t *)at);
+        break;
+    case API_FORM_U32:
+        if (is_type(field, "id")) {
+            api_out_id(out, *(const uint32_t *)at);
+        } else {
+            api_out_u64(out, *(const uint32_t *)at);
+        }
+        break;
+    case API_FORM_U64:
+        api_out_u64(out, *(const uint64_t *)at);
+        break;
+    case API_FORM_DOUBLE:
+        if (is_type(field, "time")) {
+            api_out_time(out, *(const double *)at);
+        } else {
+            api_out_number(out, *(const double *)at);
+        }
+        break;
+    case API_FORM_TEXT:
+        api_out_string(out, *(const char *const *)at);
+        break;
+    case API_FORM_CHARS:
+        api_out_string(out, at);
+        break;
+    case API_FORM_VEC3:
+        api_out_vec3(out, *(const he_vec3 *)at);
+        break;
+    }
+}
+
+void api_record_members(api_out *out, const api_record *record, const void *value)
+{
+    for (size_t i = 0; i < record->count; i++) {
+        const api_field *field = &record->fields[i];
+        if (has_value(field, value)) {
+            api_out_key(out, field->name);
+            write_value(out, field, value);
+        } else if (field->required) {
+            api_out_key_null(out, field->name);
+        }
+    }
+}
+
+void api_record_write(api_out *out, const api_record *record, const void *value)
+{
+    api_out_object_begin(out);
+    api_record_members(out, record, value);
+    api_out_object_end(out);
+}
+
+/* Returns true if a value may be missing only where the schema allows that. */
+static bool is_missing_allowed(const api_field *field)
+{
+    return !field->required || is_nullable(field) || (field->known == 0 && !field->zero_is_none);
+}
+
+bool api_field_fits(const api_field *field)
+{
+    if (!is_missing_allowed(field) || (field->form == API_FORM_NONE) != (field->write != NULL)) {
+        return false;
+    }
+    switch (field->form) {
+    case API_FORM_NONE:
+        return true;
+    case API_FORM_BOOL:
+        return is_type(field, "flag");
+    case API_FORM_INT:
+    case API_FORM_I64:
+        return is_type(field, "integer");
+    case API_FORM_U32:
+        return is_type(field, "count") || is_type(field, "id");
+    case API_FORM_U64:
+        return is_type(field, "count");
+    case API_FORM_DOUBLE:
+        return is_type(field, "number") || is_type(field, "time");
+    case API_FORM_TEXT:
+    case API_FORM_CHARS:
+        return is_type(field, "text") || field->type[0] == '#'; /* a name of an enumeration */
+    case API_FORM_VEC3:
+        return is_type(field, "point");
+    }
+    return false;
+}

@@ -1,0 +1,91 @@
+/* record.h - writing plain structs as JSON objects, from tables.
+ *
+ * A row describes one member: its name, its type in the OpenAPI document, and where its value lies
+ * in a struct. The same rows give the schema (api/describe/schemas.c) and the answer, so that these
+ * cannot disagree:
+ *
+ *     static const api_field fields[] = {
+ *         API_FIELD("revision", "count", st_entry, revision, .required = true),
+ *         API_FIELD("inverts", "count", st_entry, inverts, .zero_is_none = true,
+ *                   .doc = "The revision that it undid or redid."),
+ *         API_FIELD_MADE("ops", "*text", write_ops, .required = true),
+ *     };
+ *     const api_record api_entry_record = {"entry", fields, sizeof fields / sizeof *fields};
+ *
+ * A member without a value is null if it is required, else it is left out. */
+#ifndef HE_API_JSON_RECORD_H
+#define HE_API_JSON_RECORD_H
+
+#include "api/json/json_out.h"
+
+#include <stddef.h>
+
+/* The C type of a value. API_FORM finds it. */
+typedef enum api_form {
+    API_FORM_NONE, /* the value is made by the row's function */
+    API_FORM_BOOL,
+    API_FORM_INT,
+    API_FORM_I64,
+    API_FORM_U32,
+    API_FORM_U64,
+    API_FORM_DOUBLE,
+    API_FORM_TEXT,  /* const char *, may be NULL: no value */
+    API_FORM_CHARS, /* an array of char */
+    API_FORM_VEC3
+} api_form;
+
+typedef struct api_field {
+    const char *name;
+    const char *type; /* as in api/describe/schema_rows.h */
+    bool required;
+    const char *doc; /* may be NULL */
+    api_form form;
+    size_t offset;     /* of the value in the struct */
+    bool zero_is_none; /* 0 or "" means that there is no value */
+    size_t known;      /* 1 + the offset of a bool that says if there is a value; 0: always */
+    /* Writes a value that is not in the struct as it is shown, after its name; the struct is at
+     * `value`. */
+    void (*write)(api_out *out, const void *value);
+} api_field;
+
+/* All rows of a schema. */
+typedef struct api_record {
+    const char *schema;
+    const api_field *fields;
+    size_t count;
+} api_record;
+
+#define API_FORM(lvalue) \
+    _Generic((lvalue),                                                                             \
+        bool: API_FORM_BOOL,                                                                       \
+        int: API_FORM_INT,                                                                         \
+        int64_t: API_FORM_I64,                                                                     \
+        uint32_t: API_FORM_U32,                                                                    \
+        uint64_t: API_FORM_U64,                                                                    \
+        double: API_FORM_DOUBLE,                                                                   \
+        const char *: API_FORM_TEXT,                                                               \
+        char *: API_FORM_CHARS,                                                                    \
+        he_vec3: API_FORM_VEC3)
+/* A row whose value is a member of a struct. */
+#define API_FIELD(name_, type_, struct_, member_, ...)                          \
+    {                                                                           \
+        .name = (name_), .type = (type_), .offset = offsetof(struct_, member_), \
+        .form = API_FORM(((struct_ *)0)->member_), __VA_ARGS__                  \
+    }
+/* A row whose value a function writes. */
+#define API_FIELD_MADE(name_, type_, write_, ...)                        \
+    {                                                                    \
+        .name = (name_), .type = (type_), .write = (write_), __VA_ARGS__ \
+    }
+#define API_KNOWN(struct_, member_) (offsetof(struct_, member_) + 1)
+
+/* Writes the members of the struct at `value` into the object that is open. */
+void api_record_members(api_out *out, const api_record *record, const void *value);
+/* Writes the struct at `value` as an object. */
+void api_record_write(api_out *out, const api_record *record, const void *value);
+
+/* Returns true if a value of this C type can be written as the schema's type says. A test asks that
+ * of all rows. */
+bool api_field_fits(const api_field *field);
+
+#endif
