@@ -32,7 +32,8 @@ static size_t bytes_of(const he_soup *soup)
            (soup->corner_capacity + soup->face_capacity) * sizeof(uint32_t);
 }
 
-/* Makes room for one more row of an array; `most` is what the limits allow. */
+/* Makes room for one more row of an array. `limit` is the caller's limit on rows (0 for none),
+ * `most` the maximum of the structure. */
 static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity, size_t count,
                       uint64_t limit, uint64_t most, const char *what, he_error *err)
 {
