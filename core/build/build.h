@@ -42,8 +42,8 @@ void he_soup_clear(he_soup *soup);
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_NOT_FINITE if a coordinate is not finite. */
 HE_NODISCARD he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err);
-/* Begin a face (he_soup_begin_face) and add its corners one by one. The vertex of a corner is not
- * checked here, because a corner may name a vertex that is added later. */
+/* he_soup_begin_face begins a face, he_soup_add_corner adds a corner to the last face. The vertex
+ * of a corner is not checked here, because a corner may name a vertex that is added later. */
 HE_NODISCARD he_status he_soup_begin_face(he_soup *soup, he_error *err);
 HE_NODISCARD he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err);
 HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count,

@@ -27,10 +27,11 @@
 #include "mesh/mesh.h"
 
 /* A frame transforms positions before they become floats: (p - origin) * scale is within the unit
- * ball for every vertex that has edges. So it is for an isolated vertex, unless its distance from
- * the centre of the bounding box of the others is more than 4,096 times half of the box's longest
- * side: then it would leave the floats too few digits for the others, and it is drawn at the point
- * where the line to it leaves the ball. If no vertex has edges, the ball contains all vertices.
+ * ball for every vertex that has edges. The ball also contains an isolated vertex, unless its
+ * distance from the centre of the bounding box of the vertices with edges is more than 4,096 times
+ * half of the box's longest side: in a larger frame the floats would have too few digits for the
+ * rest of the mesh, so such a vertex is drawn at the point where the line to it leaves the ball. If
+ * no vertex has edges, the ball contains all vertices.
  *
  * The scale is a power of two, and the origin a multiple of an eighth of its inverse: so an edit
  * that hardly changes the box does not change the frame, nor the rows of vertices that did not

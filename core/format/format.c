@@ -108,7 +108,8 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c;
 }
 
-/* Returns true if `word` equals `text` up to the parameters of `text`, if it has any. */
+/* Returns true if `text`, without the parameters that may follow a media type, is `word`. Letter
+ * case does not matter. */
 static bool same_word(const char *word, const char *text)
 {
     while (*word != '\0' && lower(*text) == *word) {

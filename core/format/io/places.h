@@ -1,5 +1,5 @@
-/* places.h - the place in the input of each vertex or face, so that errors found later (a third
- * face on an edge, an index beyond the last vertex) can name the line.
+/* places.h - the line or byte of the input at which each vertex or face begins, so that errors
+ * found later (a third face on an edge, an index beyond the last vertex) can name it.
  *
  * Elements mostly follow one another at equal steps (a line each, or a fixed number of bytes each),
  * so a run of such elements is stored as one entry. */
@@ -9,7 +9,7 @@
 #include "base/mem.h"
 
 typedef struct he_place_run {
-    uint64_t at; /* place of element `first` */
+    uint64_t at; /* line or byte of element `first` */
     uint32_t first;
 } he_place_run;
 

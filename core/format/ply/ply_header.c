@@ -256,7 +256,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
 {
     const char *p = line->begin;
     word w = next_word(line, &p);
-    if (w.begin == w.end || *w.begin == '#') { /* lines.h keeps no long line that begins with '#' */
+    if (w.begin == w.end || *w.begin == '#') { /* lines.h does not keep all of a comment */
         return HE_OK;
     }
     if (!h->begun) {
