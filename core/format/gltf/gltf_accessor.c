@@ -67,7 +67,7 @@ static size_t element_bytes(const he_gltf_accessor *a)
     return rows * ((rows * bytes + 3) / 4 * 4);
 }
 
-/* The range of elements in a buffer that an object with bufferView and byteOffset refers to. */
+/* The elements in a buffer to which a JSON object with bufferView and byteOffset refers. */
 typedef struct span {
     const unsigned char *bytes;
     size_t stride;
@@ -89,8 +89,8 @@ static he_status get_view(he_gltf *asset, uint32_t view, he_gltf_buffer *out, he
     return status;
 }
 
-/* Finds the range of `count` elements of `size` bytes. 64 bits are enough without overflow: all
- * numbers are below 2^53 + 1, and a stride is below 2^8. */
+/* Finds the `count` elements of `size` bytes to which a JSON object refers. Nothing overflows 64
+ * bits, because all numbers are at most 2^53, and a stride is below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_t size,
                           size_t alignment, span *out, he_error *err)
 {
@@ -139,8 +139,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, uint64_t count, size_
     return HE_OK;
 }
 
-/* Checks the indices of the elements that a sparse accessor changes. They must rise, so that a walk
- * over the elements reaches each in its turn. */
+/* Checks the indices of the elements that a sparse accessor replaces. They must rise, because a
+ * walk over the elements meets them in rising order. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {

@@ -52,7 +52,8 @@ he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_gltf_buffer *o
 
 /* --- compressed views --- */
 
-/* Finds which of `count` words a string is; `absent` if there is no string. */
+/* Reads a member that must be one of `count` words. *out becomes the index of the word, or `absent`
+ * if the member is missing and `absent` is not negative. */
 static he_status find_word(const he_gltf *asset, uint32_t object, const char *name,
                            const char *const *words, int count, int absent, int *out, he_error *err)
 {
@@ -101,8 +102,8 @@ static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_s
                          : he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "%s", wrong);
 }
 
-/* Checks whether the bytes can be a stream of this layout. If not, no memory is allocated for its
- * elements. */
+/* Refuses bytes that cannot be a stream of this layout, before memory for its elements is
+ * allocated. */
 static he_status check_stream(const he_gltf *asset, uint32_t object,
                               const he_meshopt_stream *stream, const he_gltf_buffer *packed,
                               he_error *err)
@@ -151,7 +152,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     if (status != HE_OK) {
         return status;
     }
-    /* below 2^32 and 2^9 */
+    /* The product does not overflow: its factors are below 2^32 and 2^9. */
     uint64_t bytes = stream.count * stream.stride;
     if (length > bytes) {
         return he_json_fail(json, view, err, HE_BAD_VALUE,
@@ -182,7 +183,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     return he_gltf_tell(asset, err);
 }
 
-/* Returns the index of a view in the list of views, whose values rise. */
+/* Returns the index of a view (a JSON value) in the list of views, which is in rising order. */
 static size_t number_of(const he_ids *views, uint32_t view)
 {
     size_t from = 0, to = views->count;
