@@ -20,7 +20,7 @@
 
 typedef struct he_siphash {
     uint64_t v[4];
-    unsigned char tail[8]; /* bytes of the last word, which is not complete yet */
+    unsigned char tail[8]; /* the bytes of the last word, while it is not complete */
     uint64_t length;
 } he_siphash;
 

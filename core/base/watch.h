@@ -34,15 +34,15 @@ typedef struct he_watch {
     void *context;
     const struct he_exec *exec; /* threads for the work (exec.h), or NULL */
     const char *phase;
-    double span_from, span_to; /* the span, as fractions of the whole */
-    double from, to;           /* the phase, as fractions of the whole */
+    double span_from, span_to; /* begin and end of the span, as fractions of the whole work */
+    double from, to;           /* begin and end of the phase, as fractions of the whole work */
     double done;
     bool cancelled;
 } he_watch;
 
 void he_watch_init(he_watch *watch, bool (*tell)(void *context, const char *phase, double done),
                    void *context);
-/* Begins a span: the work that follows, until the next span, ends at fraction `to` of the whole. */
+/* Begins a span: the work until the next span begins ends at fraction `to` of the whole work. */
 void he_watch_span(he_watch *watch, double to);
 /* Begins the next phase, which ends at fraction `to` of its span.
  * Returns HE_CANCELLED if the watch cancelled the work. */

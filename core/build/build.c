@@ -157,7 +157,8 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
-/* Finds the turns, or all defects: invalid faces first, then edges and fans. */
+/* Finds the turn of each corner (turn.h). If the soup has defects, finds all of them instead:
+ * invalid faces first, then edges and fans. */
 static he_status find_turns(const he_soup *soup, he_corners *corners, he_turns *turns,
                             he_report *report, uint64_t *total, he_error *err)
 {

@@ -12,7 +12,7 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* Limits on a soup; 0 means the structure's own maximum. */
+/* Limits on a soup; 0 means that only the limits of every mesh apply. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
     uint64_t bytes;  /* memory of the soup */

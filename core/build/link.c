@@ -10,7 +10,7 @@ typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
     he_content *c;
-    uint32_t *turn;  /* turn of each corner; from the second pass on, its half-edge */
+    uint32_t *turn;  /* turn of each corner (turn.h); once edges are numbered, its half-edge */
     uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
     uint32_t edges[HE_MOST_LANES]; /* number of the first edge of each lane (exec.h) */

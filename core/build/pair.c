@@ -89,8 +89,8 @@ typedef struct filed {
 
 #define DOWNWARD 0x80000000u
 
-/* Sorts all corners by the smaller end of their edge (bucket sort): starts[v] to starts[v + 1] are
- * the entries of vertex v. */
+/* Sorts all corners by the smaller end of their edge (bucket sort): the entries of vertex v begin
+ * at starts[v] and end before starts[v + 1]. */
 static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
     const size_t faces = soup->face_count;

@@ -33,7 +33,7 @@ static size_t bytes_of(const he_soup *soup)
 }
 
 /* Makes room for one more row of an array. `limit` is the caller's limit on rows (0 for none),
- * `most` the maximum of the structure. */
+ * `most` the number that no soup may exceed. */
 static he_status grow(he_soup *soup, void *array, size_t size, size_t *capacity, size_t count,
                       uint64_t limit, uint64_t most, const char *what, he_error *err)
 {

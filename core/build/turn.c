@@ -22,7 +22,7 @@ typedef struct turning {
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *turn, *first;
     unsigned char *found; /* the flags that each part of the work has found */
-    size_t *matched;      /* number of corners with a turn in each part of the work */
+    size_t *matched;      /* number of corners that have a turn, in each part of the work */
     unsigned all;         /* the flags that any part has found */
 } turning;
 

@@ -19,15 +19,15 @@
 #include "build/corner.h"
 
 typedef struct he_turns {
-    uint32_t *turn;  /* turn of each corner, HE_NONE at a boundary */
+    uint32_t *turn;  /* the next corner around the vertex of each corner; HE_NONE at a boundary */
     uint32_t *first; /* first corner of each vertex, HE_NONE if it has none */
     uint32_t *spare; /* a word for each corner, memory that the caller may use for anything */
     size_t edges;
 } he_turns;
 
-/* Finds the turn of each corner. On success the caller owns the arrays. If the soup has defects,
- * they are added to `report` and counted in *total, and `out` is as it was. If some faces are not
- * valid, only these faces are reported: rest.h checks the others.
+/* Finds the next corner around the vertex of each corner. The caller owns the arrays on success. If
+ * the soup has defects, they are added to `report` and counted in *total, and `out` is as it was.
+ * If some faces are not valid, only these faces are reported: rest.h checks the others.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report,

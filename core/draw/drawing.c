@@ -15,7 +15,7 @@ static int exponent_of(double half)
 {
     int exponent = 0;
     double part = frexp(half, &exponent);
-    return part == 0.5 ? exponent - 1 : exponent; /* a power of two is its own bound */
+    return part == 0.5 ? exponent - 1 : exponent; /* `half` may itself be a power of two */
 }
 
 /* Rounds a number to the nearest multiple of 2^exponent. A number so large that it must be such a

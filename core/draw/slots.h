@@ -44,7 +44,7 @@ typedef struct he_slots {
     he_frame frame;
     uint32_t vertices;    /* rows of vertices, one for each id issued */
     uint32_t count, dead; /* number of slots, and of dead slots among them */
-    uint32_t *owner;      /* face of each slot; in a dead slot HE_SLOT_DEAD and a link of slots.c */
+    uint32_t *owner;      /* face of each slot; in a dead one HE_SLOT_DEAD and a link of a list */
     uint32_t *first;      /* first slot of each face, HE_NONE if the face is dead */
     size_t owner_capacity, first_capacity;
     uint32_t faces;             /* entries of `first` */

@@ -210,7 +210,7 @@ struct he_reader {
     const he_reading *reading;
     void *state;
     he_import import;
-    he_error failure; /* HE_OK until a call has failed */
+    he_error failure; /* error of the first call that failed; status HE_OK until then */
 };
 
 he_status he_reader_new(const he_format *format, const he_limits *limits, he_reader **out,

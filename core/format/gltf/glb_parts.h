@@ -42,8 +42,8 @@ typedef struct he_glb_part {
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t *numbers; /* numbers of vertices, NULL if they are the ids */
-    he_splits splits;  /* for corners whose values differ at one vertex */
+    uint32_t *numbers; /* number of each vertex in the file, NULL if it is the id */
+    he_splits splits;  /* copies of vertices whose corners have different values */
     he_cuts cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;

@@ -53,8 +53,8 @@ HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
-/* Extends a column so that it has `end` rows. The rows before `begin`, which is the first row to be
- * written, get defaults.
+/* Extends a column so that it has `end` rows; new rows get the default. Errors name the JSON value
+ * `value`.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,

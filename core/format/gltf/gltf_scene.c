@@ -87,7 +87,7 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     return HE_OK;
 }
 
-/* Returns T * R * S. */
+/* Returns the product of a translation t, the rotation of a unit quaternion q, and a scaling s. */
 static he_gltf_frame compose(const double *t, const double *q, const double *s)
 {
     double x = q[0], y = q[1], z = q[2], w = q[3];

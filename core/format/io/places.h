@@ -24,7 +24,7 @@ void he_places_init(he_places *places, he_place unit, uint32_t step);
 void he_places_clear(he_places *places);
 HE_NODISCARD he_status he_places_begin_run(he_places *places, uint32_t element, uint64_t at,
                                            he_error *err);
-/* Adds the place of an element. Elements must come in order.
+/* Adds the line or byte `at` of an element. Elements must come in order.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD static inline he_status he_places_add(he_places *places, uint32_t element, uint64_t at,
                                                    he_error *err)
@@ -37,7 +37,7 @@ HE_NODISCARD static inline he_status he_places_add(he_places *places, uint32_t e
     }
     return he_places_begin_run(places, element, at, err);
 }
-/* Returns the place in the input of an element that was added before. */
+/* Returns the line or byte of an element that was added before. */
 uint64_t he_places_find(const he_places *places, uint32_t element);
 
 #endif

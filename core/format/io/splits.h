@@ -12,7 +12,7 @@
 
 #include "format/io/export.h"
 
-/* The vertices of a file after splitting. {0} is empty: no columns, no copies. */
+/* The vertices of a file after splitting. {0} means that no vertex is split. */
 typedef struct he_splits {
     uint32_t *number; /* number of the vertex that is written for each half-edge with a face */
     uint32_t *own;    /* half-edge whose values each vertex has; HE_NONE if it has no face */

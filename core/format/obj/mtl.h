@@ -25,10 +25,12 @@
 
 /* Adds the materials of a library to those of an import. Warnings about the library name no lines,
  * because these would be taken for lines of the file that is imported. After a failure the
- * materials read so far stay. Returns HE_SYNTAX, with the line, if a line cannot occur in a
- * library, or if a library that is not empty has no newmtl. Returns HE_LIMIT if there are too many
- * materials. Returns HE_UNSUPPORTED if the text is UTF-16. Returns HE_NO_MEMORY if memory is out.
- */
+ * materials read so far stay.
+ * Returns HE_SYNTAX, with the line, if a line cannot occur in a library, or if a library that is
+ * not empty has no newmtl.
+ * Returns HE_LIMIT if there are too many materials.
+ * Returns HE_UNSUPPORTED if the text is UTF-16.
+ * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_mtl_read(const char *bytes, size_t n, he_import *into, he_error *err);
 
 /* The attribute of a mesh that keeps the names of the material libraries in its OBJ file: uint32

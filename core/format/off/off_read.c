@@ -30,7 +30,7 @@ typedef struct off {
     double numbers[VERTEX_NUMBERS]; /* numbers of the present vertex, or of the present face's
                                        colour */
     size_t number_count;            /* how many numbers were read; not all may be stored */
-    uint64_t number_line;           /* line of the first of these numbers */
+    uint64_t number_line;           /* line on which the first of `numbers` was read */
     bool spread;                    /* some vertex continues on the next line */
     uint64_t lacking;  /* line of the first vertex that ends before its last number, or 0 */
     uint32_t integers; /* bit i is set if numbers[i] was written as an integer */
@@ -246,8 +246,9 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
                             ((o->has & HE_OFF_UV) != 0 && p.uv == 0));
     o->spread |= spread;
     o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
-    /* If vertices continue on the next line, surplus numbers belong to the next vertex. Then no
-     * vertex may omit its last values, because the two cases could not be distinguished. */
+    /* If a vertex continues on the next line, surplus numbers there belong to the next vertex. In a
+     * file with such a vertex no vertex may omit its last values, because it could not be
+     * distinguished from one that continues. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin,
                             "the line has %zu numbers, which is not what the header declares",

@@ -12,7 +12,7 @@ enum { HEADER_LINE = 1 << 16 };
 
 typedef struct ply {
     he_import *into;
-    he_lines lines; /* for the header, and for rows in ASCII */
+    he_lines lines; /* lines of the header, and of rows in ASCII */
     he_ply_header header;
     he_ply_rows rows;
     bool big;

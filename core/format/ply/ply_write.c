@@ -26,7 +26,7 @@ typedef struct output {
 typedef struct ply_writer {
     const he_mesh *mesh;
     uint32_t *numbers; /* numbers of vertices */
-    he_splits splits;  /* for corners whose values differ at one vertex */
+    he_splits splits;  /* copies of vertices whose corners have different values */
     /* The attributes of corners that are written as properties of vertices. */
     const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;

@@ -29,7 +29,7 @@
 enum {
     HE_JSON_DEPTH = 128,     /* most open arrays and objects */
     HE_JSON_CARRY = 1024,    /* most bytes of a number in a text that comes in pieces */
-    HE_JSON_NAMES = 512,     /* most bytes of all names on the path to a value in such a text */
+    HE_JSON_NAMES = 512,     /* most bytes of all names on the path to a value, in such a text */
     HE_JSON_STRING = 1 << 16 /* a longer string comes as several tokens (HE_TOKEN_PART) */
 };
 
@@ -76,7 +76,7 @@ typedef enum he_lexer_state {
     HE_JSON_NAME,         /* after ',' in an object */
     HE_JSON_AFTER,        /* ',' or a closing bracket */
     HE_JSON_DONE,         /* only blanks may follow */
-    HE_JSON_IN_STRING,    /* from here on: within a token */
+    HE_JSON_IN_STRING,    /* this state and all after it are inside a token */
     HE_JSON_IN_NUMBER,
     HE_JSON_IN_WORD,
     HE_JSON_IN_NAME,
@@ -109,7 +109,7 @@ typedef struct he_lexer {
     he_lexer_carry *carry;        /* NULL if the piece is the whole text */
     he_lexer_state state;
 
-    size_t depth_most;  /* at most HE_JSON_DEPTH, the initial value */
+    size_t depth_most;  /* most open arrays and objects, at most HE_JSON_DEPTH (the default) */
     size_t number_most; /* most bytes of a number in a text in pieces, at most HE_JSON_CARRY */
     size_t name_most;   /* most bytes of a name as written */
 

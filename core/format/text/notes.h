@@ -14,7 +14,7 @@ enum { HE_NOTES = 32, HE_NOTE_SUBJECT = 80, HE_NOTE_SPOTS = 100 };
 
 typedef struct he_note {
     const char *code;              /* a stable slug, static */
-    const char *text;              /* one sentence without the subject, static */
+    const char *text;              /* one sentence without the subject; a string literal */
     char subject[HE_NOTE_SUBJECT]; /* what the warning is about: printable ASCII, may be "" */
     uint64_t count;                /* how often it occurred */
     he_place place;                /* unit of `at` */
@@ -31,7 +31,7 @@ typedef struct he_notes {
     he_note items[HE_NOTES];
     size_t count;
     uint64_t more;
-    he_note_spot spots[HE_NOTE_SPOTS]; /* the first occurrences of all notes together */
+    he_note_spot spots[HE_NOTE_SPOTS]; /* places of the first occurrences of all notes together */
     size_t spot_count;
 } he_notes;
 
