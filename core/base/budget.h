@@ -5,23 +5,24 @@
  * pair of triangles, is charged as many steps as it is worth. How many steps work takes depends on
  * its input alone, never on a clock or on the number of threads.
  *
- * A budget may carry a watch (watch.h), which is stepped every HE_BUDGET_STRIDE steps, so work that
- * is charged while it is done can be cancelled within a millisecond. */
+ * A budget may carry a watch (progress and cancellation, watch.h), which is asked every
+ * HE_BUDGET_STRIDE steps whether to go on, so that work that is charged while it is done can be
+ * cancelled within a millisecond. */
 #ifndef HE_BASE_BUDGET_H
 #define HE_BASE_BUDGET_H
 
 #include "base/watch.h"
 
 typedef struct he_budget {
-    uint64_t left;    /* steps; UINT64_MAX means no limit */
-    he_watch *watch;  /* borrowed, or NULL */
-    uint32_t unheard; /* steps charged since the watch was last stepped */
+    uint64_t left;    /* steps that may still be taken; UINT64_MAX means no limit */
+    he_watch *watch;  /* borrowed; NULL if the work cannot be cancelled */
+    uint32_t unheard; /* steps charged since the watch was last asked */
 } he_budget;
 
 enum { HE_BUDGET_STRIDE = 1 << 15 };
 
-/* The slow parts of he_budget_take, which alone calls them: one refuses the work, the other asks
- * the watch whether to go on. */
+/* Only he_budget_take calls these two functions: he_budget_exhausted refuses work for which too few
+ * steps are left, he_budget_ask asks the watch whether to go on. */
 HE_NODISCARD he_status he_budget_exhausted(he_budget *budget, he_error *err);
 HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 

@@ -55,7 +55,7 @@ he_status he_run_ranges(he_watch *watch, size_t count, he_range work, void *cont
 typedef struct lanes {
     he_range work;
     void *context;
-    size_t count, length, done; /* rows in all; rows of a lane; rows that each lane has done */
+    size_t count, length, done; /* rows in all, rows of a lane, rows of each lane done so far */
 } lanes;
 
 static he_status run_lane(void *context, uint32_t lane, he_error *err)

@@ -4,6 +4,9 @@
  * the kernel cuts a job into parts, none of which writes what another reads, and hands them to the
  * host. Without a watch, or without a host, the parts run one after another on the caller's thread.
  *
+ * A job is a loop over `count` rows. It is cut into ranges of HE_PART_ROWS rows, or into lanes: at
+ * most HE_MOST_LANES long parts of equal length, each of which is done block by block in order.
+ *
  *     he_run_ranges   0 |--0--|--1--|--2--|--3--|-4-| count   any thread takes the next range
  *     he_run_lanes    0 |0 0 0 0 0 0|1 1 1 1 1 1 1 1| count   a lane does its blocks in order
  *
@@ -34,13 +37,13 @@ typedef struct he_exec {
 } he_exec;
 
 enum {
-    HE_PART_ROWS = 16384, /* rows of a range: its work takes far longer than handing it over, and
-                             far less than a second */
+    HE_PART_ROWS = 16384, /* rows of a range: so many that the work takes far longer than giving it
+                             to a thread, and so few that it takes far less than a second */
     HE_MOST_LANES = 8
 };
 
-/* The work of one range or lane: the rows `from` to `to` of the job; `which` is the number of the
- * range or lane. */
+/* The work of one range, or of one block of a lane: rows `from` to `to` - 1 of the job; `which` is
+ * the number of the range or lane. */
 typedef he_status (*he_range)(void *context, uint32_t which, size_t from, size_t to, he_error *err);
 
 /* Returns into how many ranges he_run_ranges cuts `count` rows. */
@@ -52,7 +55,7 @@ HE_NODISCARD he_status he_run_ranges(he_watch *watch, size_t count, he_range wor
                                      he_error *err);
 /* Returns how many lanes are worth starting for `count` rows. */
 uint32_t he_lanes(const he_watch *watch, size_t count);
-/* Calls `work` for each lane. Lane i goes through its part of the rows in order, block by block. */
+/* Calls `work` for each block of each lane. The blocks of one lane are done in order. */
 HE_NODISCARD he_status he_run_lanes(he_watch *watch, uint32_t lanes, size_t count, he_range work,
                                     void *context, he_error *err);
 

@@ -27,9 +27,10 @@ void he_mem_set_hook(const he_mem_hook *replacement)
  * advice covers every page of the block: a mapping of which one part has other flags could not be
  * moved when it grows, only copied.
  *
- * A block that is a mapping of its own begins directly behind the C library's header. Other large
- * blocks lie in the heap, when much was freed there before. Advice would stay on those pages after
- * the block is freed, and small blocks allocated there later would take 2 MiB each. */
+ * If the C library gets a block by mmap, the block begins in the first page of the mapping,
+ * directly behind the library's HEADER bytes. A large block anywhere else lies in the heap and gets
+ * no advice: the advice would stay on its pages after it is freed, and small blocks allocated there
+ * later would take 2 MiB each. */
 enum { PAGE = 4096, LARGE_BLOCK = 4 << 20, HEADER = 2 * sizeof(size_t) };
 
 static void ask_for_huge_pages(void *memory, size_t size)

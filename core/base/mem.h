@@ -1,10 +1,10 @@
 /* mem.h - the allocator: all memory of core and api comes from here.
  *
- * The hook is the only global in the kernel. It is set once, before the first thread starts; tests
- * install one that fails the N-th call, the server one that counts bytes. All functions accept NULL
- * where free does. Sizes are multiplied with an overflow check: a product that does not fit fails
- * like an allocation. A block of 4 MiB or more that is a mapping of its own uses transparent huge
- * pages where the system has them. */
+ * The hook, which can replace the C library's allocator, is the only global variable of the kernel.
+ * It is set once, before the first thread starts; tests install one that fails the N-th call, the
+ * server one that counts bytes. All functions accept NULL where free does. Sizes are multiplied
+ * with an overflow check: a product that does not fit fails like an allocation. A block of 4 MiB or
+ * more that the C library got by mmap uses transparent huge pages where the system has them. */
 #ifndef HE_BASE_MEM_H
 #define HE_BASE_MEM_H
 
@@ -12,7 +12,7 @@
 
 #include <stddef.h>
 
-/* The functions of an allocator. `resize` is realloc with one meaning everywhere: size 0 frees the
+/* The functions of an allocator. `resize` works like realloc, except that size 0 always frees the
  * block and returns NULL. */
 typedef struct he_mem_hook {
     void *(*resize)(void *context, void *memory, size_t size);
@@ -28,15 +28,15 @@ void *he_mem_resize(void *memory, size_t size);
 void he_mem_free(void *memory);
 /* Returns count * size bytes, zeroed; NULL if memory is out. */
 void *he_mem_zero(size_t count, size_t size);
-/* Makes an array (`memory` is NULL) or resizes it. Returns NULL if memory is out; the caller then
- * still owns the old block. */
+/* Allocates an array if `memory` is NULL, else resizes the array at `memory`. Returns NULL if
+ * memory is out; the caller then still owns the old block. */
 void *he_mem_array(void *memory, size_t count, size_t size);
 
 /* Returns the capacity to grow to so that `need` fits and appending takes amortised constant
  * time. */
 size_t he_mem_grown(size_t capacity, size_t need);
 
-/* A growable list of ids, used for every answer of unknown length. {0} is empty. */
+/* A growable list of ids. {0} is the empty list. */
 typedef struct he_ids {
     uint32_t *ids;
     size_t count, capacity;

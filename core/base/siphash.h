@@ -1,8 +1,8 @@
 /* siphash.h - a keyed hash of 128 bits: SipHash-2-4-128.
  *
- * J.-P. Aumasson and D. J. Bernstein, "SipHash: a fast short-input PRF" (INDOCRYPT 2012), with the
- * doubled output of its authors. Without the key an attacker can neither foresee the slot of a name
- * in a hash table nor construct two bodies with equal hashes.
+ * J.-P. Aumasson and D. J. Bernstein, "SipHash: a fast short-input PRF" (INDOCRYPT 2012), in the
+ * authors' variant with 128 bits of output. Without the key an attacker can neither foresee the
+ * slot of a name in a hash table nor construct two request bodies with equal hashes.
  *
  * Use:
  *
@@ -20,7 +20,7 @@
 
 typedef struct he_siphash {
     uint64_t v[4];
-    unsigned char tail[8]; /* bytes of the last word, which is not complete yet */
+    unsigned char tail[8]; /* the bytes of the last word, while it is not complete */
     uint64_t length;
 } he_siphash;
 

@@ -6,7 +6,8 @@
  * left alone.
  *
  * HE_STATUS_MAP is the one list of outcomes: enum, slug (the `code` clients see) and title come
- * from it. Adding a refusal is adding a line here and naming it in the rows that give it. */
+ * from it. A new refusal takes a line here, and is named in the rows of those operations (core/op)
+ * that return it. */
 #ifndef HE_BASE_STATUS_H
 #define HE_BASE_STATUS_H
 
@@ -95,7 +96,7 @@ typedef enum he_kind {
     HE_KIND_COUNT
 } he_kind;
 
-/* The unit of a place in an input: a line or a byte. */
+/* The unit in which a position in an input is given: lines or bytes. */
 typedef enum he_place { HE_PLACE_NONE, HE_PLACE_LINE, HE_PLACE_BYTE } he_place;
 
 enum { HE_ERROR_TEXT = 192 };
@@ -104,9 +105,9 @@ typedef struct he_error {
     he_status status;
     he_kind kind;   /* kind of the element that the error names; HE_KIND_COUNT if it names none */
     uint32_t id;    /* id of that element */
-    he_place place; /* unit of `at`: a line counts from 1, a byte from 0 */
-    uint64_t at;
-    char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, without the place */
+    he_place place; /* unit of `at`: lines are counted from 1, bytes from 0 */
+    uint64_t at;    /* position in the input at which the error was found */
+    char text[HE_ERROR_TEXT]; /* one plain sentence with the offending value, but without `at` */
 } he_error;
 
 /* Returns the slug of a status, such as "boundary_edge", which clients see as `code`; never

@@ -1,4 +1,4 @@
-/* text_hash.h - the hash of a string, for the tables of strings (labels.c,
+/* text_hash.h - the hash of a string, for hash tables of strings (labels.c,
  * format/text/json_parse.c). */
 #ifndef HE_BASE_TEXT_HASH_H
 #define HE_BASE_TEXT_HASH_H
@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 /* Hashes a string by FNV-1a with a final mixing step. Strings come from files, so an attacker may
- * choose them; without the seed he cannot choose many strings whose hashes collide and make a
- * search long. The address of the table is a sufficient seed. */
+ * choose them; without the seed he cannot choose many strings whose hashes collide and so make
+ * searches in the table slow. The address of the hash table is a sufficient seed. */
 static inline uint64_t he_text_hash(uint64_t seed, const char *text, size_t length)
 {
     uint64_t h = seed * 0x9E3779B97F4A7C15;

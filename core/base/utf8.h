@@ -10,8 +10,8 @@
  * there. `length` is above 0. */
 size_t he_utf8_character(const char *bytes, size_t length);
 bool he_is_utf8(const char *bytes, size_t length);
-/* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on, to `out`. `size` is its
- * size with the NUL, at least 16; a name that does not fit is cut between two characters. */
+/* Makes a numbered name: writes NAME for number 1, else NAME_2 and so on, to `out`. `size` is the
+ * size of `out`, at least 16; a name that does not fit is cut between two characters. */
 void he_name_number(const char *name, unsigned number, char *out, size_t size);
 
 #endif

@@ -1,19 +1,20 @@
 /* watch.h - progress and cancellation of long work.
  *
- * The caller that starts long work owns a watch and lends it: he_limits.watch while a soup is
- * filled and built, he_mesh_watch for all work on a mesh. Every few thousand elements the work
- * reports its progress to the watch, and the watch answers whether to go on. Cancelled work fails
- * with HE_CANCELLED like any other failure: outputs as they were, memory freed. A commit cannot
- * fail, so it reports its progress but cannot be cancelled.
+ * A watch receives the progress of long work and can cancel it. The caller that starts the work
+ * owns the watch and lends it: in he_limits.watch while a polygon soup is filled and built, by
+ * he_mesh_watch for all work on a mesh. Every few thousand elements the work reports its progress
+ * to the watch, and the watch answers whether to go on. Cancelled work fails with HE_CANCELLED like
+ * any other failure: outputs are as they were, memory is freed. The commit of an edit cannot fail,
+ * so it reports its progress but cannot be cancelled.
  *
  *     0                                                             1   the whole
  *     |---- span: building ----------------|---- span: summary ----|   he_watch_span, by the caller
  *     |- pairing -|- linking -|- checking -|- components -|- area -|   he_watch_phase, by the work
  *
- * A caller that wants one number for several calls gives each call a span. Without spans every call
- * would count from 0 to 1, and as reported progress never decreases, it would stand still after the
- * first call. A phase outside any span covers the whole. Functions take NULL for a watch and then
- * do nothing.
+ * A caller that wants one progress for several calls gives each call a span. Without spans every
+ * call would count from 0 to 1, and as reported progress never decreases, it would stay at 1 after
+ * the first call. If no span was begun, the span is the whole. Functions take NULL for a watch and
+ * then do nothing.
  *
  * A watch also lends the threads of its owner (exec.h). A watch that lends threads only has no
  * `tell`: progress is not reported, and the work cannot be cancelled. */
@@ -33,15 +34,15 @@ typedef struct he_watch {
     void *context;
     const struct he_exec *exec; /* threads for the work (exec.h), or NULL */
     const char *phase;
-    double span_from, span_to; /* the span, as fractions of the whole */
-    double from, to;           /* the phase, as fractions of the whole */
+    double span_from, span_to; /* begin and end of the span, as fractions of the whole work */
+    double from, to;           /* begin and end of the phase, as fractions of the whole work */
     double done;
     bool cancelled;
 } he_watch;
 
 void he_watch_init(he_watch *watch, bool (*tell)(void *context, const char *phase, double done),
                    void *context);
-/* Begins a span: the work that follows, until the next span, ends at fraction `to` of the whole. */
+/* Begins a span: the work until the next span begins ends at fraction `to` of the whole work. */
 void he_watch_span(he_watch *watch, double to);
 /* Begins the next phase, which ends at fraction `to` of its span.
  * Returns HE_CANCELLED if the watch cancelled the work. */
@@ -57,8 +58,8 @@ HE_NODISCARD static inline he_status he_watch_at(he_watch *watch, uint64_t i, ui
 {
     return watch == NULL || i % HE_WATCH_STRIDE != 0 ? HE_OK : he_watch_step(watch, i, count, err);
 }
-/* Reports like he_watch_step, for work that cannot stop here, such as a commit: if the watch asks
- * to stop, that is ignored. */
+/* Reports like he_watch_step, but for work that cannot stop at this point, such as a commit: it
+ * goes on even if the watch cancels it. */
 void he_watch_tell(he_watch *watch, uint64_t i, uint64_t count);
 static inline void he_watch_note(he_watch *watch, uint64_t i, uint64_t count)
 {

@@ -1,14 +1,14 @@
-/* word_hash.h - the hash of a word, for the tables of ids (query/idmap.h, delta.c,
+/* word_hash.h - the hash of a 64-bit word, for hash tables of ids (query/idmap.h, delta.c,
  * edit/merge/merge_plan.c). */
 #ifndef HE_BASE_WORD_HASH_H
 #define HE_BASE_WORD_HASH_H
 
 #include <stdint.h>
 
-/* Hashes a word by Knuth's multiplicative method (TAOCP 6.4): products with 2^64 / phi, with the
- * seed added in between. A client who chooses the words does not know the seed, so it cannot choose
- * words that all fall into the same slots. The address of the table is a sufficient seed. Callers
- * take the high bits, which are mixed best. */
+/* Hashes a word by Knuth's multiplicative method (TAOCP 6.4): it is multiplied twice by 2^64 / phi,
+ * and the seed is added in between. A client that chooses the words does not know the seed, so it
+ * cannot choose words that all fall into the same slots. The address of the hash table is a
+ * sufficient seed. Callers take the high bits, which are mixed best. */
 static inline uint64_t he_word_hash(uint64_t seed, uint64_t word)
 {
     const uint64_t phi = UINT64_C(0x9E3779B97F4A7C15);

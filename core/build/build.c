@@ -37,7 +37,8 @@ he_status he_report_fail(const he_report *report, he_error *err)
                    (unsigned long long)(report->total - 1));
 }
 
-/* Makes a half-edge column from a corner column of the soup. */
+/* Makes a half-edge column from a corner column of the soup; halfedge[c] is the half-edge of
+ * corner c. */
 static he_status build_corners(const he_column *from, size_t halfedges, const uint32_t *halfedge,
                                size_t corners, he_column **out, he_error *err)
 {
@@ -53,8 +54,8 @@ static he_status build_corners(const he_column *from, size_t halfedges, const ui
     return HE_OK;
 }
 
-/* Makes the attributes of the mesh. Columns whose rows keep their numbers are moved if the soup may
- * be emptied (`take`). Moving cannot fail, so it comes last. */
+/* Makes the attributes of the mesh. If the soup may be emptied (`take`), all columns but those of
+ * corners, whose rows get other numbers, are moved. Moving cannot fail, so it comes last. */
 static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedge, he_content *k,
                                he_error *err)
 {
@@ -92,8 +93,8 @@ static he_status build_columns(he_soup *soup, bool take, const uint32_t *halfedg
     return HE_OK;
 }
 
-/* Makes the vertices. If the soup may be emptied (`take`), the positions are moved, because they
- * are the largest part of it. */
+/* Makes the vertices. If the soup may be emptied (`take`), their positions are moved instead of
+ * copied, because they are the largest part of the soup. */
 static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_error *err)
 {
     size_t count = soup->vertex_count;
@@ -126,7 +127,7 @@ static he_status build_vertices(he_soup *soup, bool take, he_content *k, he_erro
     return HE_OK;
 }
 
-/* Gives the positions that build_vertices took back to the soup. */
+/* Moves the positions back to the soup if build_vertices had moved them to the mesh. */
 static void return_positions(he_soup *soup, he_content *k)
 {
     if (soup->positions == NULL && k->position != NULL) {
@@ -139,8 +140,8 @@ static void return_positions(he_soup *soup, he_content *k)
 static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
                              he_content *k, he_error *err)
 {
-    /* Memory that has been written to is reused, because the system clears each fresh page on first
-     * use. */
+    /* The spare array becomes `next`, because its memory has been written to before: the system
+     * clears each fresh page on first use. */
     k->next = turns->spare;
     turns->spare = NULL;
     he_status status = he_content_reserve_edges(k, turns->edges, err);
@@ -156,7 +157,8 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
     return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
 }
 
-/* Finds all defects: invalid faces first, then edges and fans. */
+/* Finds the turn of each corner (turn.h). If the soup has defects, finds all of them instead:
+ * invalid faces first, then edges and fans. */
 static he_status find_turns(const he_soup *soup, he_corners *corners, he_turns *turns,
                             he_report *report, uint64_t *total, he_error *err)
 {

@@ -12,7 +12,7 @@
 #include "mesh/material.h"
 #include "mesh/mesh.h"
 
-/* Limits on a soup; 0 means the structure's own maximum. */
+/* Limits on a soup; 0 means that only the limits of every mesh apply. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
     uint64_t bytes;  /* memory of the soup */
@@ -23,16 +23,16 @@ typedef struct he_soup {
     he_limits limits;
     he_vec3 *positions;
     size_t vertex_count, vertex_capacity;
-    uint32_t *corners; /* vertex of each corner, faces one after another */
+    uint32_t *corners; /* vertex of each corner; the corners of a face are consecutive */
     size_t corner_count, corner_capacity;
-    uint32_t *starts; /* first corner of each face; the open face, if any, is the last */
+    uint32_t *starts; /* first corner of each face; the last face may still be getting corners */
     size_t face_count, face_capacity;
     /* The attributes of the soup. HE_VERTEX columns have a row for each vertex, HE_FACE columns for
      * each face, HE_HALFEDGE columns for each corner, HE_MESH_KIND columns have one row. Shorter
      * columns are filled up with their default. */
     he_column **columns;
     size_t column_count, column_capacity;
-    he_materials materials; /* become the mesh's, even if no face uses them */
+    he_materials materials; /* the mesh gets all of them, even those that no face uses */
 } he_soup;
 
 void he_soup_init(he_soup *soup, const he_limits *limits);
@@ -42,8 +42,8 @@ void he_soup_clear(he_soup *soup);
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_NOT_FINITE if a coordinate is not finite. */
 HE_NODISCARD he_status he_soup_add_vertex(he_soup *soup, he_vec3 position, he_error *err);
-/* These two functions begin a face and add its corners one by one. The values of corners are not
- * checked here, because a corner may name a vertex that is added later. */
+/* he_soup_begin_face begins a face, he_soup_add_corner adds a corner to the last face. The vertex
+ * of a corner is not checked here, because a corner may name a vertex that is added later. */
 HE_NODISCARD he_status he_soup_begin_face(he_soup *soup, he_error *err);
 HE_NODISCARD he_status he_soup_add_corner(he_soup *soup, uint32_t vertex, he_error *err);
 HE_NODISCARD he_status he_soup_add_face(he_soup *soup, const uint32_t *vertices, size_t count,
@@ -57,9 +57,11 @@ HE_NODISCARD he_status he_soup_column(he_soup *soup, const he_column_schema *sch
 /* Adds a column; the soup must have none of its domain and name. On success the soup owns it. */
 HE_NODISCARD he_status he_soup_take_column(he_soup *soup, he_column *takes, he_error *err);
 
-/* One thing in a soup that a half-edge mesh cannot represent. `reason` is HE_TOO_FEW_CORNERS,
- * HE_BAD_INDEX, HE_REPEATED_CORNER (face, vertex), HE_NONMANIFOLD_EDGE, HE_ORIENTATION (face, and
- * the edge as vertex and other) or HE_CLOSED_FAN (vertex). */
+/* One thing in a soup that a half-edge mesh cannot represent. `reason` is one of:
+ *     HE_TOO_FEW_CORNERS                     a face is at fault
+ *     HE_BAD_INDEX, HE_REPEATED_CORNER       a face and the vertex that its corner names
+ *     HE_NONMANIFOLD_EDGE, HE_ORIENTATION    a face and its edge from `vertex` to `other`
+ *     HE_CLOSED_FAN                          a vertex */
 typedef struct he_defect {
     he_status reason;
     he_kind kind; /* kind of the element at fault: HE_FACE or HE_VERTEX */
@@ -71,13 +73,14 @@ typedef struct he_defect {
 enum { HE_REPORT_DEFECTS = 100 };
 
 typedef struct he_report {
-    he_defect defects[HE_REPORT_DEFECTS]; /* the first defects, by kind of test, then by id */
-    uint64_t total;
+    he_defect defects[HE_REPORT_DEFECTS]; /* the first ones: of faces, then edges, then vertices */
+    uint64_t total;                       /* number of all defects */
 } he_report;
 
 /* Writes one sentence that describes the defect for people. */
 void he_defect_text(const he_defect *defect, char *text, size_t size);
-/* Fails with the first defect of a report, which must have one. */
+/* Returns the reason of the first defect of a report, which must have one, and describes that
+ * defect in `err`. */
 he_status he_report_fail(const he_report *report, he_error *err);
 
 /* Counts the defects that he_build would find in a soup; 0 means that it would make a mesh.
@@ -85,10 +88,10 @@ he_status he_report_fail(const he_report *report, he_error *err);
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
-/* Makes a mesh, which the caller owns. A soup with defects fails with the reason and element of the
- * first; `report` (may be NULL) gets all of them. The soup is only read, unless `flags` has
- * HE_BUILD_TAKE: then columns and positions are moved instead of copied, and the soup is cleared on
- * success.
+/* Makes a mesh, which the caller owns. If the soup has defects, the call fails with the reason and
+ * element of the first one, and `report` (which may be NULL) gets the first HE_REPORT_DEFECTS. The
+ * soup is only read, unless `flags` has HE_BUILD_TAKE: then columns and positions are moved instead
+ * of copied, and the soup is cleared on success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
  * Returns HE_CANCELLED if the watch cancelled the work. */

@@ -13,14 +13,14 @@ typedef struct he_corners {
 } he_corners;
 
 typedef struct he_corner {
-    uint32_t face, next, prev; /* its face, and the corners after and before it in that face */
+    uint32_t face, next, prev; /* the corner's face, and the corners after and before it there */
 } he_corner;
 
 HE_NODISCARD he_status he_corners_init(const he_soup *soup, he_corners *out, he_error *err);
 void he_corners_clear(he_corners *corners);
 
-/* Finds a corner. `degree` must equal all->degree. Callers that have a loop for each degree pass a
- * constant, so that the division is by a constant. */
+/* Finds the face and the neighbours of corner c. `degree` must equal all->degree. Callers have one
+ * loop for each degree and pass it as a constant, because a division by a constant is fast. */
 static inline he_corner he_corner_find(const he_corners *all, uint32_t c, uint32_t degree)
 {
     uint32_t face = degree != 0 ? c / degree : all->face_of[c];

@@ -18,11 +18,11 @@ static bool holds_default(const he_column *column, size_t row)
 typedef struct joining {
     he_soup *soup;
     const uint32_t *into, *from;
-    bool *has_corners; /* for each vertex: does a corner use it? */
+    bool *has_corners; /* for each vertex, true if a corner uses it */
 } joining;
 
-/* Returns true if vertex v, which has corners, has another value than the vertex it is joined to.
- * If the rule is that new elements get the default, a default counts as no value. */
+/* Returns true if vertex v has corners, and another value than the vertex to which it is joined. In
+ * an attribute whose rule is HE_DEFAULT the default counts as no value. */
 static bool differs(const joining *j, const he_column *column, uint32_t v)
 {
     const unsigned char *value = he_column_value(column, v);
@@ -50,8 +50,8 @@ static he_column *find_column(const he_soup *soup, he_kind domain, const char *n
     return NULL;
 }
 
-/* Returns true if the corners of all vertices that are joined have the values of those vertices
- * already. */
+/* Returns true if the corner attribute `corners` already holds the values that would be lost: those
+ * of `column` at vertices joined to a vertex with another value. */
 static bool is_kept(const joining *j, const he_column *corners, const he_column *column)
 {
     const he_soup *soup = j->soup;
@@ -64,7 +64,7 @@ static bool is_kept(const joining *j, const he_column *corners, const he_column 
     return kept;
 }
 
-/* Adds a column of corners, in place of the vertex attribute unless that one stays, too. */
+/* Adds the corner column `takes` to the soup. It replaces the vertex column unless `stays`. */
 static he_status put_column(he_soup *soup, he_column *column, he_column *takes, bool stays,
                             he_error *err)
 {
@@ -105,7 +105,8 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     return status;
 }
 
-/* Returns true if a vertex without corners has a value. Then the vertex attribute stays, too. */
+/* Returns true if a vertex without corners has a value other than the default, so that the vertex
+ * attribute must stay beside the one of corners. */
 static bool is_needed(const joining *j, const he_column *column)
 {
     size_t v = 0;

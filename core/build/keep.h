@@ -1,16 +1,17 @@
 /* keep.h - joins vertices of a soup without losing their attributes: values that differ move to the
  * corners.
  *
- * edit/piece/keep.h does this for meshes; it has the drawing and the rules: where a vertex with
- * corners joins one with another value of an attribute, the attribute becomes one of corners. */
+ * If a vertex that has corners is joined to one with another value of an attribute, the attribute
+ * becomes an attribute of corners, so that neither value is lost. edit/piece/keep.h does this for
+ * meshes; it has a drawing and the rules. */
 #ifndef HE_BUILD_KEEP_H
 #define HE_BUILD_KEEP_H
 
 #include "build/build.h"
 
 /* Moves values of vertices to corners before vertices are joined: each vertex v will be joined to
- * vertex from[into[v]]; a v that equals this vertex stays. The caller must do this before it
- * changes the corners. `moved` counts the values that differ.
+ * vertex from[into[v]], which may be v itself. The caller must do this before it changes the
+ * corners. *moved is set to the number of values that differ from those of the vertex joined to.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */

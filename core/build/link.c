@@ -3,17 +3,17 @@
 #include "base/exec.h"
 #include "build/pair.h"
 
-/* The state of the passes over corners, edges and vertices. Each pass writes rows in order and
- * reads at random: where ids are in no spatial order, a random read costs a third of a random
- * write. Until half-edge h gets its links, next[h] is the corner that h leaves. */
+/* The state of the passes over corners, edges and vertices that make the links. Each pass writes
+ * rows in order and reads at random: where ids are in no spatial order, a random read costs a third
+ * of a random write. Until half-edge h gets its links, next[h] is the corner that h leaves. */
 typedef struct linking {
     const he_soup *soup;
     const he_corners *corners;
     he_content *c;
-    uint32_t *turn;  /* turn of each corner; from the second pass on, its half-edge */
+    uint32_t *turn;  /* turn of each corner (turn.h); once edges are numbered, its half-edge */
     uint32_t *first; /* first corner of each vertex */
     uint32_t lanes;
-    uint32_t edges[HE_MOST_LANES]; /* for each lane, the number of its first edge */
+    uint32_t edges[HE_MOST_LANES]; /* number of the first edge of each lane (exec.h) */
 } linking;
 
 /* --- numbers of edges ------------------------------------------------------------------------- */
@@ -160,7 +160,8 @@ static he_status link_faces(void *context, uint32_t part, size_t from, size_t to
 
 /* --- holes ------------------------------------------------------------------------------------ */
 
-/* Lists the boundary half-edges, which are `count`. */
+/* Lists the `count` boundary half-edges. All are odd, because half-edge 2e has the face in which
+ * edge e first appeared. */
 static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
 {
     for (uint32_t h = 1; count > 0; h += 2) {
@@ -171,8 +172,8 @@ static void list_holes(const he_content *k, uint32_t count, uint32_t *holes)
     }
 }
 
-/* Stores boundary half-edges as halfedge(v) of their origins, and chains by prev the ones that
- * leave one vertex. */
+/* Stores boundary half-edges as halfedge(v) of their origins. If several leave one vertex, they
+ * become a list that begins at halfedge(v) and goes on by prev. */
 static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -182,9 +183,10 @@ static void chain_holes(he_content *k, uint32_t count, const uint32_t *holes)
     }
 }
 
-/* Links the fans of a bow-tie, whose outgoing boundary half-edges are chained by prev from `head`:
- * each fan is followed, counter-clockwise, by the next one of the chain. Turning clockwise inside a
- * fan from its outgoing boundary half-edge leads to its incoming one. */
+/* Links the fans of a bow-tie (a vertex with several fans). Its outgoing boundary half-edges form a
+ * list that begins at `head` and goes on by prev; each fan is followed, counter-clockwise, by the
+ * fan of the next half-edge in the list. Swinging clockwise inside a fan from its outgoing boundary
+ * half-edge leads to its incoming one. */
 static void link_bowtie(he_content *k, uint32_t head)
 {
     uint32_t out = head;

@@ -1,5 +1,5 @@
-/* link.h - makes the links of a mesh from the turns of a soup's corners (turn.h): the second half
- * of he_build. */
+/* link.h - makes the links of a mesh from the turn of each corner of a soup, which is the next
+ * corner around its vertex (turn.h). This is the second half of he_build. */
 #ifndef HE_BUILD_LINK_H
 #define HE_BUILD_LINK_H
 
@@ -7,8 +7,8 @@
 #include "mesh/layout.h"
 
 /* Issues the edges and faces of the soup, for which `c` has room, and writes their links and those
- * of the vertices, which exist already. Edges are numbered as build.h says. turns->turn becomes the
- * half-edge of each corner; turns->first is read.
+ * of the vertices, which exist already. Edges are numbered as build.h says. Afterwards turns->turn
+ * holds the half-edge of each corner instead of its turn.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_build_links(const he_corners *corners, he_turns *turns, he_content *c,

@@ -32,7 +32,7 @@ static he_status move_rows(he_column *column, const uint32_t *to, size_t rows, h
     return HE_OK;
 }
 
-/* Computes where each face begins and where each corner goes. */
+/* Computes the first corner of each face in the new order, and the new index of each corner. */
 static void place(const he_soup *soup, const uint32_t *number, uint32_t *starts, uint32_t *to)
 {
     size_t faces = soup->face_count;

@@ -55,7 +55,7 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
             he_report_add(report, total, face_defect(HE_TOO_FEW_CORNERS, f, HE_NONE, HE_NONE));
         }
         if (count == 0) {
-            continue; /* there may be no corners at all */
+            continue; /* the array of corners may be NULL */
         }
         const uint32_t *corners = soup->corners + soup->starts[f];
         while (k < count && corners[k] < soup->vertex_count) {
@@ -80,16 +80,17 @@ he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *
     return status;
 }
 
-/* A corner, sorted under the smaller vertex of its edge. The top bit of `far`, which is the larger
- * vertex, says that the corner's half-edge runs from the larger vertex to the smaller. */
+/* A corner in the list of the smaller vertex of its edge, which is the edge to the next corner of
+ * its face. `far` is the larger vertex; its top bit is set if the corner's half-edge runs from the
+ * larger vertex to the smaller one. */
 typedef struct filed {
     uint32_t far, corner;
 } filed;
 
 #define DOWNWARD 0x80000000u
 
-/* Sorts all corners by the smaller end of their edge (bucket sort): starts[v] to starts[v + 1] are
- * the entries of vertex v. */
+/* Sorts all corners by the smaller end of their edge (bucket sort): the entries of vertex v begin
+ * at starts[v] and end before starts[v + 1]. */
 static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entries, he_error *err)
 {
     const size_t faces = soup->face_count;
@@ -124,14 +125,14 @@ static he_status file_corners(const he_soup *soup, uint32_t *starts, filed *entr
 
 typedef struct pairing {
     const he_soup *soup;
-    uint32_t *mate; /* if NULL, edges are numbered instead */
-    uint32_t *edge; /* number of each corner's edge */
+    uint32_t *mate; /* the other corner along each corner's edge; NULL to number edges instead */
+    uint32_t *edge; /* number of each corner's edge, if edges are numbered */
     size_t edges;
     he_report *report;
     uint64_t *total;
 } pairing;
 
-/* Begins a new edge with entry `a`, which is the first corner along it. */
+/* Begins a new edge, along which entry `a` is the first corner. */
 static void begin_edge(pairing *p, const filed *a)
 {
     if (p->mate == NULL) {
@@ -140,7 +141,8 @@ static void begin_edge(pairing *p, const filed *a)
     p->edges++;
 }
 
-/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge. */
+/* Pairs entry `b` with the earlier entry `a`, which is the first corner along the same edge, or
+ * gives it the number of that edge. */
 static void pair_up(pairing *p, uint32_t low, const filed *a, const filed *b)
 {
     uint32_t far = b->far & ~DOWNWARD;
@@ -180,9 +182,10 @@ static void pair_small(pairing *p, uint32_t low, const filed *entries, uint32_t 
     }
 }
 
-/* Pairs the entries of a vertex of high degree; those of vertex v are from starts[v] to
- * starts[v + 1]. For every far vertex, `first` remembers the first entry that named it. Values left
- * by other vertices do not point to entries of this one, so the array needs no clearing. */
+/* Pairs the entries of a vertex of high degree; the entries of vertex v begin at starts[v] and end
+ * before starts[v + 1]. `first` remembers for every far vertex the first entry that named it.
+ * Values left by other vertices do not point to entries of this one, so the array needs no
+ * clearing. */
 static void pair_large(pairing *p, uint32_t low, const filed *entries, const uint32_t *starts,
                        uint32_t *first)
 {
@@ -203,7 +206,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Visits all corners of each edge, in the order of the soup. */
+/* Pairs or numbers the corners along each edge. It takes them in the order of the soup. */
 static he_status visit_edges(pairing *p, he_error *err)
 {
     const he_soup *soup = p->soup;
@@ -228,8 +231,8 @@ static he_status visit_edges(pairing *p, he_error *err)
         if (status != HE_OK) {
             goto out;
         }
-        /* The words to be written are prefetched, because they lie far apart where ids are in no
-         * spatial order. */
+        /* The words of `written` are prefetched, because they lie far apart if the ids of vertices
+         * are in no spatial order. */
         for (uint32_t i = begin; i < end && soup->corner_count - i > AHEAD; i++) {
             __builtin_prefetch(&written[entries[i + AHEAD].corner], 1);
         }

@@ -1,5 +1,5 @@
-/* pair.h - finds faces and edges of a soup that a mesh cannot represent, and pairs the corners
- * along one edge. he_build refuses by these, and repairs start from them. */
+/* pair.h - finds the faces and edges of a soup that a mesh cannot represent, and numbers the edges.
+ * he_build refuses a soup with such faces or edges; repairs begin by finding them. */
 #ifndef HE_BUILD_PAIR_H
 #define HE_BUILD_PAIR_H
 
@@ -13,22 +13,22 @@ void he_report_add(he_report *report, uint64_t *total, he_defect defect);
 HE_NODISCARD he_status he_soup_check_faces(const he_soup *soup, he_report *report, uint64_t *total,
                                            he_error *err);
 
-/* Returns the first corner of a face that repeats an earlier one, or `count` if none does. For a
- * face of more than HE_SMALL_FACE corners the caller passes `stamp`, with one word a vertex, and a
- * `mark` that it uses for no other face: so no face costs more than its corners. For smaller ones
- * `stamp` may be NULL. */
+/* Returns the index of the first corner of a face that repeats an earlier one, or `count` if none
+ * does. A face of more than HE_SMALL_FACE corners needs `stamp`, an array of one word for each
+ * vertex, and a `mark` that the caller uses for no other face; the search then takes time linear in
+ * the corners. If the face is smaller, `stamp` may be NULL. */
 enum { HE_SMALL_FACE = 16 };
 uint32_t he_soup_find_repeat(const uint32_t *corners, uint32_t count, uint32_t *stamp,
                              uint32_t mark);
 
-/* Counts in *total the edges with three faces, or with two in one direction. All faces must have
- * passed he_soup_check_faces. */
+/* Adds to *total the number of faces beyond the second along an edge, and of edges along which two
+ * faces run in the same direction. All faces must have passed he_soup_check_faces. */
 HE_NODISCARD he_status he_soup_check_edges(const he_soup *soup, he_report *report, uint64_t *total,
                                            he_error *err);
 
-/* Numbers the edges: edge[c] becomes the number of the edge from corner c to the next of its face,
- * whatever its direction and however many faces share it. `edge` has a word for each corner; all
- * faces must have passed he_soup_check_faces. */
+/* Numbers the edges: edge[c] becomes the number of the edge from corner c to the next corner of its
+ * face. Corners along an edge get the same number, whatever their direction and however many they
+ * are. `edge` has a word for each corner; all faces must have passed he_soup_check_faces. */
 HE_NODISCARD he_status he_soup_number_edges(const he_soup *soup, uint32_t *edge, size_t *edges,
                                             he_error *err);
 

@@ -42,7 +42,7 @@ typedef struct rows {
     const char *name; /* for messages */
 } rows;
 
-/* Makes room for one more row. */
+/* Makes room for one more row of an array. */
 static he_status grow(const he_soup *soup, rows *r, he_error *err)
 {
     uint64_t allowed = r->limit != 0 && r->limit < r->most ? r->limit : r->most;

@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* Flags for what a part of the parallel work has found. */
+/* Flags for what one part of the parallel work has found. */
 enum { LARGE_FACE = 1, BAD_FACE = 2, BAD_EDGE = 4, CLOSED_FAN = 8, LARGE_VERTEX = 16 };
 
 enum { SMALL_VERTEX = 24 };
@@ -15,14 +15,15 @@ typedef struct turning {
     const he_soup *soup;
     const he_corners *corners;
     uint32_t lanes;
-    /* One row for each lane (a part of the parallel work), with one word for each vertex: first how
-     * many corners the lane has there, then where its next one goes. */
+    /* A table with a row for each lane (a part of the parallel work, exec.h) and a column for each
+     * vertex: at first the number of the lane's corners at the vertex, later the index in `filed`
+     * where the next of these corners goes. */
     uint32_t *places;
     uint32_t *filed; /* the corners, sorted by vertex */
     uint32_t *turn, *first;
-    unsigned char *found; /* the flags above, for each part */
-    size_t *matched;      /* corners with a turn, for each part */
-    unsigned all;         /* flags that any part has found */
+    unsigned char *found; /* the flags that each part of the work has found */
+    size_t *matched;      /* number of corners that have a turn, in each part of the work */
+    unsigned all;         /* the flags that any part has found */
 } turning;
 
 /* --- faces ------------------------------------------------------------------------------------ */
@@ -83,8 +84,8 @@ static he_status count_corners(void *context, uint32_t lane, size_t from, size_t
     return HE_OK;
 }
 
-/* Turns the counts of corners into places: vertex by vertex, and at one vertex lane by lane, which
- * is the order of the soup. */
+/* Turns the counts of corners in `places` into indices of `filed`: corners are sorted by vertex,
+ * and at one vertex by lane, which is the order of the soup. */
 static void place_corners(turning *t)
 {
     const size_t vertices = t->soup->vertex_count;
@@ -112,8 +113,8 @@ static he_status file_corners(void *context, uint32_t lane, size_t from, size_t 
 
 /* --- vertices --------------------------------------------------------------------------------- */
 
-/* Returns where the corners of vertex v begin. Sorting has moved each place on to where the next
- * lane, or the next vertex, begins. */
+/* Returns the index in `filed` at which the corners of vertex v begin. It is kept under the vertex
+ * before v, because sorting has advanced each entry of `places` to the end of its corners. */
 static uint32_t begin_of(const turning *t, size_t v)
 {
     return v == 0 ? 0 : t->places[(t->lanes - 1) * t->soup->vertex_count + v - 1];
@@ -128,7 +129,7 @@ static uint32_t end_of(const turning *t, size_t v)
  * corner to its turn (the next corner counter-clockwise), or is `count` if it has none. */
 static bool all_open(const uint32_t *follow, uint32_t count)
 {
-    uint32_t entered = 0, met = 0; /* a bit for each corner; a number of corners */
+    uint32_t entered = 0, met = 0; /* a bit for each corner that is a turn; corners reached */
     for (uint32_t i = 0; i < count; i++) {
         entered |= follow[i] < count ? 1u << follow[i] : 0;
     }
@@ -151,12 +152,12 @@ static bool leads_twice(const uint32_t *to, uint32_t count)
     return twice != 0;
 }
 
-/* A vector of four words, in a register of the processor. It is an extension of GCC and Clang for
- * every machine. */
+/* A vector of four words in one register: an extension of GCC and Clang that works on every
+ * processor. */
 typedef uint32_t four __attribute__((vector_size(16)));
 
-/* Sets follow[i] to the last k for which to[k] equals from[i], or to `count`. All are arrays of
- * SMALL_VERTEX words. */
+/* Sets follow[i] to the last k for which to[k] equals from[i], or to `count` if there is none. All
+ * three arrays have SMALL_VERTEX words. */
 static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint32_t *follow)
 {
     for (uint32_t begin = 0; begin < count; begin += 8) {
@@ -172,15 +173,15 @@ static void match(const uint32_t *from, const uint32_t *to, uint32_t count, uint
     }
 }
 
-/* The vertices before and behind each corner of a vertex, in their faces. */
+/* The vertices before and behind each corner of a vertex, in the face of that corner. */
 typedef struct neighbours {
     uint32_t before[SMALL_VERTEX], behind[SMALL_VERTEX];
 } neighbours;
 
-/* Finds the turns around a vertex of few corners. If they form one ring, nothing is wrong; only
- * otherwise is the reason searched. No branch depends on the ids, which may have no pattern. Two
- * faces that run along an edge in one direction show as two corners that leave one vertex for one
- * other. */
+/* Finds the turns around a vertex of few corners, and what is wrong there. If the turns form one
+ * ring, nothing is wrong; only otherwise is the reason searched. No branch depends on the ids,
+ * which may have no pattern. If two faces run along an edge in the same direction, two corners of
+ * this vertex lead to the same other vertex. */
 static unsigned turn_few(const turning *t, const uint32_t *filed, uint32_t count,
                          const neighbours *beside, size_t *matched)
 {
@@ -216,17 +217,17 @@ static inline void find_beside(const turning *t, const uint32_t *filed, uint32_t
     }
 }
 
-/* The turns of a vertex of high degree. `leads` remembers, for every vertex, which entry leaves
- * towards it, `follows` which entry is next around the vertex; `entered` has a bit for each entry.
- * Values left by other vertices do not point to entries of this one, so the arrays need no
- * clearing. */
+/* The turns of a vertex of high degree, whose corners are its entries in `filed`. `leads` remembers
+ * for every vertex which entry leads to it, `follows` for each entry which one is next around the
+ * vertex; `entered` has a bit for each entry that follows another. Values left by other vertices do
+ * not point to entries of this one, so the arrays need no clearing. */
 typedef struct hub_turns {
     uint32_t *leads, *follows;
     uint64_t *entered;
 } hub_turns;
 
-/* Returns the number of corners of the fan from entry `from` on, but no more than `most`: a fan
- * that is not valid may run in a circle that misses its beginning. */
+/* Returns the number of corners of the fan that begins with entry `from`. It stops counting above
+ * `most`, because an invalid fan may run in a circle that never returns to its beginning. */
 static uint32_t fan_length(const hub_turns *hub, uint32_t from, uint32_t end, uint32_t most)
 {
     uint32_t k = from, met = 0;
@@ -265,7 +266,7 @@ static unsigned turn_many(turning *t, uint32_t begin, uint32_t end, const hub_tu
         t->turn[t->filed[i]] = found ? t->filed[k] : HE_NONE;
         open += !found;
         if (found && he_bits_get(hub->entered, k)) {
-            return BAD_EDGE; /* two faces come from one vertex */
+            return BAD_EDGE; /* two faces run along this edge in the same direction */
         }
         if (found) {
             he_bits_set(hub->entered, k);
@@ -291,8 +292,8 @@ static inline void turn_range(turning *t, uint32_t part, size_t from, size_t to,
     uint32_t begin = begin_of(t, from), end;
     for (size_t v = from; v < to; v++, begin = end) {
         end = end_of(t, v);
-        /* The words that are read and written are prefetched, because they lie far apart where ids
-         * are in no spatial order. */
+        /* Words of `corners` and `turn` are prefetched, because they lie far apart if the ids of
+         * vertices are in no spatial order. */
         for (uint32_t i = begin; i < end && last - i > AHEAD; i++) {
             __builtin_prefetch(&corners[filed[i + AHEAD]]);
             __builtin_prefetch(&t->turn[filed[i + AHEAD]], 1);
@@ -334,9 +335,10 @@ static he_status no_memory(const he_soup *soup, he_error *err)
     return he_fail_plain(err, HE_NO_MEMORY, "no memory to pair %zu corners", soup->corner_count);
 }
 
-/* Visits the vertices again. Those of many corners are visited now, because they share two arrays.
- * With `report` all are visited, to report which have a closed fan beside another. Vertices at the
- * ends of invalid edges are skipped, because their fans are not defined. */
+/* Visits vertices a second time, on one thread: those with many corners, because they share the
+ * arrays of hub_turns; with `all` every vertex, to report which have a closed fan beside another
+ * fan. Vertices at the ends of invalid edges are not reported, because their fans are not defined.
+ */
 static he_status turn_again(turning *t, bool all, he_report *report, uint64_t *total, he_error *err)
 {
     const he_soup *soup = t->soup;
@@ -465,8 +467,8 @@ he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *repo
         for (size_t i = 0; i < he_ranges(soup->vertex_count); i++) {
             matched += t.matched[i];
         }
-        /* An edge with two faces was counted at both its ends, so half of the count is
-         * subtracted. */
+        /* An edge with two faces has two corners, both with a turn, so half of the turns are
+         * subtracted from the corners. */
         *out = (he_turns){t.turn, t.first, t.filed, soup->corner_count - matched / 2};
         t.turn = t.first = t.filed = NULL;
     }

@@ -7,28 +7,27 @@
  *
  *                 o
  *            turn(c) \   face of c        the edge from prev(c) to c runs back along turn(c), so
- *                     \                   the mate of a corner is the turn of the next one
- *          ------------ v -----> c
+ *                     \                   the mate of a corner (the one whose half-edge is the
+ *          ------------ v -----> c        twin) is the turn of the next corner of its face
  *
- * With the corners sorted by vertex all this is found vertex by vertex, in a few words that lie
- * together: which edges have two faces, that none has three or has two in one direction, and that
- * the turns around a vertex reach all its corners. */
+ * Once the corners are sorted by vertex, one vertex after another is checked, in a few words that
+ * lie together in memory: which of its edges have two faces, that no edge has three faces or two in
+ * the same direction, and that the turns around the vertex reach all its corners. */
 #ifndef HE_BUILD_TURN_H
 #define HE_BUILD_TURN_H
 
 #include "build/corner.h"
 
 typedef struct he_turns {
-    uint32_t *turn;  /* turn of each corner, HE_NONE at a boundary */
+    uint32_t *turn;  /* the next corner around the vertex of each corner; HE_NONE at a boundary */
     uint32_t *first; /* first corner of each vertex, HE_NONE if it has none */
-    uint32_t *
-        spare; /* as many words as there are corners, which the caller may use for something else */
+    uint32_t *spare; /* a word for each corner, memory that the caller may use for anything */
     size_t edges;
 } he_turns;
 
-/* Finds the turns. On success the caller owns the arrays. If the soup has defects, `report` and
- * *total get them and `out` is as it was. If some faces are not valid, only those are reported:
- * rest.h checks the others.
+/* Finds the next corner around the vertex of each corner. The caller owns the arrays on success. If
+ * the soup has defects, they are added to `report` and counted in *total, and `out` is as it was.
+ * If some faces are not valid, only these faces are reported: rest.h checks the others.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_soup_turn(const he_corners *corners, he_turns *out, he_report *report,

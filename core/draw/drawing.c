@@ -9,16 +9,17 @@
 
 /* --- the frame --- */
 
-/* Returns an exponent with which half of the longest side of the box is at most 2^exponent. */
+/* Returns the least exponent for which `half`, half of the longest side of a box, is at most
+ * 2^exponent. */
 static int exponent_of(double half)
 {
     int exponent = 0;
     double part = frexp(half, &exponent);
-    return part == 0.5 ? exponent - 1 : exponent; /* a power of two is its own bound */
+    return part == 0.5 ? exponent - 1 : exponent; /* `half` may itself be a power of two */
 }
 
-/* Rounds a number to the nearest multiple of 2^exponent. A number so large that it is such a
- * multiple already is not scaled, because that could overflow. */
+/* Rounds a number to the nearest multiple of 2^exponent. A number so large that it must be such a
+ * multiple already is returned as it is, because scaling it could overflow. */
 static double snapped(double x, int exponent)
 {
     int own = 0;
@@ -26,8 +27,8 @@ static double snapped(double x, int exponent)
     return own > exponent + 52 ? x : ldexp(rint(ldexp(x, -exponent)), exponent);
 }
 
-/* The frame contains isolated vertices whose distance from its middle is up to this many times that
- * of the surface. */
+/* The frame contains the isolated vertices whose distance from the centre of the surface's box is
+ * at most this many times half of the box's longest side. */
 static const double FAR = 4096;
 
 static void include(he_box *box, he_vec3 p)
@@ -36,7 +37,7 @@ static void include(he_box *box, he_vec3 p)
     box->max = (he_vec3){fmax(box->max.x, p.x), fmax(box->max.y, p.y), fmax(box->max.z, p.z)};
 }
 
-/* Returns the point half-way between two points. Halves are taken first, since the sum or
+/* Returns half of the vector from one point to another. Both points are halved first, because the
  * difference of two large doubles may be infinite. */
 static he_vec3 half_way(he_vec3 from, he_vec3 to)
 {
@@ -63,9 +64,9 @@ static bool find_box(const he_mesh *m, he_box *out)
     return true;
 }
 
-/* Returns the frame of a mesh. With half the box at most 2^e and the origin at most 2^(e - 3) from
- * its centre on each axis, positions scaled by 2^-(e + 1) are within 9/16 on each axis and so
- * within the unit ball. */
+/* Returns the frame of a mesh. On each axis half of the box is at most 2^e, and the origin at most
+ * 2^(e - 3) from its centre; so positions scaled by 2^-(e + 1) are within 9/16 on each axis, and
+ * therefore within the unit ball. */
 he_frame he_frame_of(const he_mesh *m)
 {
     he_box box;
@@ -97,8 +98,8 @@ static he_vec3 place(const he_drawing *d, uint32_t halfedge)
 
 /* --- faces that are fans --- */
 
-/* A triangle in a plane has no area if its doubled area, relative to its squared sides, is below
- * this. flat.c has an equal limit, so that both agree on which triangles are degenerate. */
+/* A triangle counts as degenerate if its doubled area is at most this fraction of the sum of its
+ * squared sides. flat.c has an equal limit, so that both files agree on which ones are. */
 static const double THIN = 1e-12;
 
 /* Returns true if the triangle of the origin, u and v turns counter-clockwise as seen from
@@ -110,7 +111,8 @@ static bool turns(he_vec3 u, he_vec3 v, he_vec3 normal, double length)
     return he_vec3_dot(he_vec3_cross(u, v), normal) > THIN * sides * length;
 }
 
-/* Returns the Newell normal of the loop, and its number of corners. */
+/* Returns the Newell normal of the loop of half-edge `first`, and sets *degree to the loop's number
+ * of corners. */
 static he_vec3 normal_of(const he_drawing *d, uint32_t first, uint32_t *degree)
 {
     he_vec3 base = place(d, first), normal = {0, 0, 0}, u = {0, 0, 0};
@@ -156,7 +158,7 @@ static uint32_t apex_of_quad(const he_drawing *d, uint32_t first)
     int bad[2] = {0, 0};
     for (int i = 0; i < 4; i++) {
         int k = (i + 1) % 4, l = (i + 2) % 4;
-        /* The triangles of corners 1 and 3 are those that the diagonal from corner 0 makes. */
+        /* The diagonal from corner 0 makes the triangles whose middle corners are 1 and 3. */
         bad[k % 2 == 0] += !turns(he_vec3_sub(p[k], p[i]), he_vec3_sub(p[l], p[i]), normal, length);
     }
     if (bad[0] != bad[1]) {
@@ -213,14 +215,15 @@ void he_drawing_clear(he_drawing *drawing)
     *drawing = (he_drawing){.mesh = NULL};
 }
 
-/* Cuts the face unless it is a fan, and subtracts the cost from `*most`. */
+/* Triangulates the face unless it can be drawn as a fan, and subtracts the steps that this takes
+ * from *most. */
 static he_status prepare(he_drawing *d, uint32_t face, uint64_t *most, he_error *err)
 {
     const uint32_t *next = d->mesh->c.next;
     uint32_t first = d->mesh->c.face_halfedge[face], degree;
     uint32_t fourth = next[next[next[first]]];
     if (fourth == first || next[fourth] == first) {
-        return HE_OK; /* triangles and quadrilaterals always are fans */
+        return HE_OK; /* triangles and quadrilaterals are always drawn as fans */
     }
     he_vec3 normal = normal_of(d, first, &degree);
     if (is_fan(d, first, normal)) {
@@ -301,8 +304,8 @@ void he_drawing_vertex(const he_drawing *d, uint32_t id, float out[HE_DRAWN_ROW]
     out[3] = halfedge == HE_NONE ? HE_DRAWN_ISOLATED : HE_DRAWN_USED;
 }
 
-/* Returns the first of the rows of triangles into which a face was cut. Returns NULL if the face is
- * drawn as a fan. */
+/* Returns the first of the triangles into which a face was cut, or NULL if the face is drawn as a
+ * fan. */
 static const uint32_t *find_cut(const he_drawing *d, uint32_t face)
 {
     const uint32_t mask = ((uint32_t)1 << HE_DRAWN_SIDES) - 1;

@@ -1,7 +1,8 @@
 /* drawing.h - a mesh as two arrays for a renderer.
  *
  * VERTICES, one row for each id ever issued, so that a vertex's index is its id: x, y, z, state.
- * The state is HE_DRAWN_USED, HE_DRAWN_ISOLATED, or HE_DRAWN_DEAD in a row that is otherwise zero.
+ * The state is HE_DRAWN_USED, HE_DRAWN_ISOLATED, or HE_DRAWN_DEAD for a deleted vertex, whose row
+ * is otherwise zero.
  *
  * TRIANGLES, degree - 2 for each live face: three vertices and a word
  *
@@ -12,10 +13,10 @@
  *
  * A side whose bit is clear is a diagonal. Sides that are edges run as the face does.
  *
- * A vertex's row depends on that vertex and the frame. A face's triangles depend on the face, the
- * order of its corners from the stored half-edge, their positions unless it is a triangle, and the
- * frame. So an edit changes the rows of what it touches and no others. The caller that keeps the
- * array decides where the triangles are in it: see slots.h.
+ * A vertex's row depends on that vertex and the frame (he_frame). A face's triangles depend on the
+ * face, the order of its corners from the stored half-edge, their positions unless it is a
+ * triangle, and the frame. So an edit changes only the rows of elements that it touches. The caller
+ * that keeps the array of triangles decides where in it they are: see slots.h.
  *
  * A face whose corners are all visible from its first one is drawn as the fan of that corner; a
  * quadrilateral is cut along the diagonal that flips no triangle, or the shorter one if neither
@@ -25,14 +26,17 @@
 
 #include "mesh/mesh.h"
 
-/* A frame is the transformation of positions before they become floats: (p - origin) * scale is
- * within the unit ball for every vertex that has edges, and for isolated ones whose distance from
- * the middle of the box around those is at most 4,096 times half of its longest side. Isolated
- * vertices farther away would leave the floats no digits for the rest: their rows have the point
- * where the line to them leaves the ball. If no vertex has edges the ball contains all. The scale
- * is a power of two and the origin a multiple of an eighth of its inverse: an edit that hardly
- * changes the box leaves the frame alone, and with it the rows of vertices that did not move. A box
- * below 2^-1021, or 2^-900 of its largest coordinate, is drawn smaller than the ball. */
+/* A frame transforms positions before they become floats: (p - origin) * scale is within the unit
+ * ball for every vertex that has edges. The ball also contains an isolated vertex, unless its
+ * distance from the centre of the bounding box of the vertices with edges is more than 4,096 times
+ * half of the box's longest side: in a larger frame the floats would have too few digits for the
+ * rest of the mesh, so such a vertex is drawn at the point where the line to it leaves the ball. If
+ * no vertex has edges, the ball contains all vertices.
+ *
+ * The scale is a power of two, and the origin a multiple of an eighth of its inverse: so an edit
+ * that hardly changes the box does not change the frame, nor the rows of vertices that did not
+ * move. A box whose longest side is below 2^-1021, or below 2^-900 of its largest coordinate, is
+ * drawn smaller than the ball. */
 typedef struct he_frame {
     he_vec3 origin;
     double scale;
@@ -42,27 +46,27 @@ he_frame he_frame_of(const he_mesh *m);
 
 enum { HE_DRAWN_DEAD = 0, HE_DRAWN_USED = 1, HE_DRAWN_ISOLATED = 2 };
 enum {
-    HE_DRAWN_SIDES = 29,
-    HE_DRAWN_ROW = 4
-}; /* shift of the bits; words of a row, in both arrays */
+    HE_DRAWN_SIDES = 29, /* the first of the three bits that mark sides as edges */
+    HE_DRAWN_ROW = 4     /* words of a row, in both arrays */
+};
 
 typedef struct he_drawing {
     const he_mesh *mesh;
     he_frame frame;
-    uint32_t *cut; /* rows of the faces that are no fan, in the order of faces */
+    uint32_t *cut; /* triangles of the faces that are not drawn as fans, in the order of faces */
     size_t cut_rows;
     size_t cut_capacity;
 } he_drawing;
 
 /* Prepares to draw all faces. Borrows the mesh, which must not change while it is drawn; `frame`
- * must keep its vertices with edges in the ball. he_drawing_clear frees.
+ * must keep its vertices with edges within the unit ball. he_drawing_clear frees the drawing.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face does not fit into its 29 bits. */
 HE_NODISCARD he_status he_drawing_init(he_drawing *drawing, const he_mesh *m, const he_frame *frame,
                                        he_error *err);
 /* Prepares like he_drawing_init, but to draw only some live faces, which must be in rising order.
- * Returns HE_LIMIT if those that are no fan would take more than `most` steps: for each of their
- * corners one for each corner of the face, HE_EXACT_CORNERS at most. */
+ * Returns HE_LIMIT if the faces that are not drawn as fans would take more than `most` steps. A
+ * face of n corners takes n * n steps, or n * HE_EXACT_CORNERS if that is less. */
 HE_NODISCARD he_status he_drawing_init_faces(he_drawing *drawing, const he_mesh *m,
                                              const he_frame *frame, const uint32_t *faces,
                                              size_t count, uint64_t most, he_error *err);
@@ -73,15 +77,15 @@ void he_drawing_vertex(const he_drawing *drawing, uint32_t id, float out[HE_DRAW
 
 /* The position of a walk over the triangles of a face. {0} is after the last one. */
 typedef struct he_drawing_walk {
-    uint32_t face, left; /* the face, and triangles left */
+    uint32_t face, left; /* the face, and how many of its triangles are left */
     uint32_t apex, at; /* half-edges: the one that leaves the fan's apex, and the outer side of the
                           next triangle */
-    const uint32_t *cut; /* the next row if the face is no fan, else NULL */
+    const uint32_t *cut; /* the next triangle if the face is not drawn as a fan, else NULL */
 } he_drawing_walk;
 
-/* Walk over the triangles of a face that was prepared; their order is always the same. Neither
- * function can fail, because memory was allocated in init. `next` returns false after the last
- * triangle. */
+/* Begins a walk over the triangles of a face that was prepared, always in the same order. The walk
+ * cannot fail, because he_drawing_init has allocated its memory. he_drawing_next writes the next
+ * triangle; it returns false after the last one. */
 void he_drawing_begin(const he_drawing *drawing, uint32_t face, he_drawing_walk *walk);
 bool he_drawing_next(const he_drawing *drawing, he_drawing_walk *walk, uint32_t out[HE_DRAWN_ROW]);
 

@@ -8,11 +8,12 @@
 
 /* --- freed runs of slots ---
  *
- * The word of a freed run's first slot leads to the next run of its chain; a run in the chain of
- * long runs has its length in the second word. All these words have the bit HE_SLOT_DEAD. */
+ * Freed runs form linked lists, which begin in he_slots.bin. The word in he_slots.owner of a run's
+ * first slot is the first slot of the next run in the list; a run in the list of long runs has its
+ * length in its second word. All these words also have the bit HE_SLOT_DEAD. */
 
 enum { LONG_RUN = HE_SLOT_BINS, TRIES = 8 };
-static const uint32_t LAST = HE_SLOT_DEAD - 1; /* ends a chain */
+static const uint32_t LAST = HE_SLOT_DEAD - 1; /* marks the end of a linked list */
 
 static uint32_t bin_of(uint32_t length)
 {
@@ -33,7 +34,7 @@ static void put_run(he_slots *s, uint32_t slot, uint32_t length)
     s->filled |= (uint64_t)1 << bin;
 }
 
-/* Takes a run out of its chain, in which `*link` leads to it. */
+/* Removes from its list the run to which `*link` leads, and returns its first slot. */
 static uint32_t unlink_run(he_slots *s, uint32_t bin, uint32_t *link)
 {
     uint32_t slot = *link & ~HE_SLOT_DEAD;
@@ -44,7 +45,8 @@ static uint32_t unlink_run(he_slots *s, uint32_t bin, uint32_t *link)
     return slot;
 }
 
-/* Finds a freed run with at least `length` slots; LAST if there is none. */
+/* Takes a freed run with at least `length` slots out of its list and sets *found to its length.
+ * Returns LAST if no such run is found; of the long runs only the first TRIES are looked at. */
 static uint32_t find_run(he_slots *s, uint32_t length, uint32_t *found)
 {
     uint64_t bins = length < LONG_RUN ? s->filled >> length << length : 0;
@@ -208,7 +210,8 @@ static void forget_front(he_ids *list, size_t count)
     }
 }
 
-/* Drops the oldest remembered steps, and more than needed, so that this is not done each time. */
+/* Forgets the oldest steps if `more` changes would be too many. It forgets more steps than it must,
+ * so that it has nothing to do the next times. */
 static void forget_steps(he_slots *s, size_t more)
 {
     size_t most = rows_of(s) / 2 + HE_SLOT_CHANGES, gone = 0;
@@ -314,8 +317,8 @@ static he_status touch_face(he_touched *t, uint32_t face, he_error *err)
     return face == HE_NONE || face == HE_DEAD ? HE_OK : he_ids_add(&t->faces, face, err);
 }
 
-/* If the face of a half-edge changed within the deltas, a record names both faces; for any other
- * record of the half-edge its present face is enough. */
+/* Adds the elements whose rows a record may change. A half-edge that changed its face has a record
+ * that names both faces, so any other record of a half-edge adds only the present face. */
 static he_status touch(he_touched *t, const he_mesh *m, const he_record *r, he_error *err)
 {
     he_status status = HE_OK;
@@ -391,8 +394,8 @@ static bool is_triangle(const he_mesh *m, uint32_t face)
     return m->c.next[m->c.next[m->c.next[first]]] == first;
 }
 
-/* Adds the faces around moved vertices to those touched, except triangles, because other faces may
- * be cut differently now. */
+/* Adds the moved vertices and the faces around them to those touched. Triangles are left out, as
+ * only larger faces may be cut in another way after a move. */
 static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *err)
 {
     he_status status = he_ids_sort(&t->moved, err);
@@ -416,7 +419,8 @@ static he_status spread(const he_mesh *m, he_touched *t, budget *b, he_error *er
     return status;
 }
 
-/* Checks that the frame still contains every vertex that is new or moved, and that it fits well. */
+/* Checks that the frame still contains every vertex that is new or moved, and, if more than half of
+ * the vertices moved, that the mesh would not get another frame now. */
 static he_status check_frame(const he_slots *s, const he_mesh *m, const he_touched *t,
                              he_error *err)
 {
@@ -436,7 +440,8 @@ static he_status check_frame(const he_slots *s, const he_mesh *m, const he_touch
     return HE_OK;
 }
 
-/* The old and new lengths of the runs of touched faces, two numbers each, and their sums. */
+/* The lengths of the touched faces' runs of slots: `length` has two numbers for each face, before
+ * and after the update; `before` and `after` are the sums. */
 typedef struct runs {
     uint32_t *length;
     uint64_t before, after;

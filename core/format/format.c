@@ -108,7 +108,8 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c + ('a' - 'A')) : c;
 }
 
-/* Returns true if `word` equals `text` up to the parameters of `text`, if it has any. */
+/* Returns true if `text`, without the parameters that may follow a media type, is `word`. Letter
+ * case does not matter. */
 static bool same_word(const char *word, const char *text)
 {
     while (*word != '\0' && lower(*text) == *word) {
@@ -209,7 +210,7 @@ struct he_reader {
     const he_reading *reading;
     void *state;
     he_import import;
-    he_error failure; /* HE_OK until a call has failed */
+    he_error failure; /* error of the first call that failed; status HE_OK until then */
 };
 
 he_status he_reader_new(const he_format *format, const he_limits *limits, he_reader **out,

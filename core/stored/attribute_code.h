@@ -1,5 +1,5 @@
-/* attribute_code.h - the stored form (stored.h) of an attribute's head and labels, and of a
- * material. Only core/stored uses it. */
+/* attribute_code.h - the stored form (stored.h) of an attribute's head (its type, name and default)
+ * and labels, and of a material. Only core/stored uses it. */
 #ifndef HE_STORED_ATTRIBUTE_CODE_H
 #define HE_STORED_ATTRIBUTE_CODE_H
 
@@ -7,21 +7,21 @@
 #include "mesh/material.h"
 #include "stored/bytes.h"
 
-/* The number of bytes of a material before its name: nine numbers, its sides, and the length of the
- * name. */
+/* Bytes of a stored material before its name: HE_MATERIAL_FIXED for nine numbers and a flag, and up
+ * to HE_MATERIAL_HEAD with the length of the name. */
 enum { HE_MATERIAL_FIXED = 9 * 8 + 1, HE_MATERIAL_HEAD = HE_MATERIAL_FIXED + 2 };
 enum { HE_HEAD_ROOM = 5 + HE_COLUMN_NAME + HE_COLUMN_ROW_BYTES };
 
 size_t he_head_bytes(const he_column *column);
 unsigned char *he_head_put(unsigned char *to, const he_column *column);
-size_t he_labels_bytes(const he_labels *labels); /* NULL has no labels */
+size_t he_labels_bytes(const he_labels *labels); /* NULL means no labels */
 unsigned char *he_labels_put(unsigned char *to, const he_labels *labels);
 size_t he_varint_bytes(uint64_t value);
 size_t he_material_code_bytes(const he_material *material);
 /* Writes all of a material except the characters of its name, which follow. */
 unsigned char *he_material_put_head(unsigned char *to, const he_material *material);
 
-/* Reads the head of a column and makes it, without rows.
+/* Reads the head of an attribute and makes its column, without rows.
  * Returns HE_CORRUPT if the bytes are not valid.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_head_take(he_cursor *c, he_column **out, he_error *err);

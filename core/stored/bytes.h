@@ -1,5 +1,5 @@
-/* bytes.h - numbers as bytes, for core/stored and the frames of core/journal. Writing advances a
- * pointer; reading advances a cursor that never passes its end. */
+/* bytes.h - writes numbers as bytes and reads them, for core/stored and core/journal. Writing
+ * advances a pointer; reading advances a cursor that never passes its end. */
 #ifndef HE_STORED_BYTES_H
 #define HE_STORED_BYTES_H
 
@@ -45,8 +45,8 @@ static inline uint64_t he_difference(uint32_t value, uint32_t from)
 {
     return value >= from ? 2 * (uint64_t)(value - from) : 2 * (uint64_t)(from - value) - 1;
 }
-/* Codes a link (an id of an element) of the element in row `row` as a number, which takes at most
- * HE_LINK_BYTES as a varint. */
+/* Codes a link (an id, HE_NONE or HE_DEAD) as a number, which takes at most HE_LINK_BYTES as a
+ * varint. An id is coded as its difference to `row`. */
 static inline uint64_t he_link_code(uint32_t link, uint32_t row)
 {
     return link == HE_NONE ? 0 : link == HE_DEAD ? 1 : 2 + he_difference(link, row);
@@ -60,7 +60,7 @@ static inline he_cursor he_cursor_over(const unsigned char *bytes, size_t size)
 {
     return (he_cursor){bytes, bytes, bytes + size};
 }
-/* Returns HE_CORRUPT, naming the byte at the cursor. */
+/* Returns HE_CORRUPT, with an error that names the byte at the cursor. */
 static inline he_status he_refuse_at(const he_cursor *c, he_error *err, const char *what)
 {
     return he_fail_at(err, HE_CORRUPT, HE_PLACE_BYTE, (uint64_t)(c->at - c->begin), "%s", what);

@@ -1,5 +1,5 @@
-/* content_code.h - the constants of a coded content (stored.h) and of its arrays. Only core/stored
- * uses it. */
+/* content_code.h - the constants of a stored content (a whole mesh, stored.h), and the list of its
+ * arrays. Only core/stored uses it. */
 #ifndef HE_STORED_CONTENT_CODE_H
 #define HE_STORED_CONTENT_CODE_H
 
@@ -8,27 +8,29 @@
 #define HE_CONTENT_MAGIC UINT32_C(0x67646568) /* "hedg" */
 
 enum {
-    HE_CONTENT_START = 4 + 4 + 8,                  /* magic, version, bytes of the header */
-    HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4, /* the last word is zero */
-    HE_CONTENT_SLOT = 1 + 8,                       /* kind and length of a slot */
-    HE_CONTENT_ARRAYS = 7,                         /* arrays before the rows of attributes */
-    HE_PART_HEAD = 1 + 4                           /* coding and length of a part */
+    HE_CONTENT_START = 4 + 4 + 8,                  /* bytes of magic, version and header length */
+    HE_CONTENT_HEADER = HE_CONTENT_START + 10 * 4, /* with ten words of counts, the last one zero */
+    HE_CONTENT_SLOT = 1 + 8,                       /* bytes of the kind and length of a slot */
+    HE_CONTENT_ARRAYS = 7,                         /* number of arrays before the attributes' */
+    HE_PART_HEAD = 1 + 4                           /* bytes of the coding and length of a part */
 };
 
 enum { HE_SLOT_EMPTY = 0, HE_SLOT_ATTRIBUTE = 1, HE_SLOT_MATERIAL = 2 };
 
-/* The base of the differences in HE_CODING_LINKS. HE_LINKS_BY_ROW: the row of the link, for links
- * from half-edge to half-edge, which are near each other along a face. HE_LINKS_BY_LAST: the link
- * before it in the array; the row if there is none in the part. */
+/* The number from which HE_CODING_LINKS takes the difference of a link. HE_LINKS_BY_ROW: the row in
+ * which the link is stored, because consecutive half-edges of a face mostly have near ids.
+ * HE_LINKS_BY_LAST: the link before it in the array, or its row if the part has no link before it.
+ */
 typedef enum he_links { HE_NO_LINKS, HE_LINKS_BY_ROW, HE_LINKS_BY_LAST } he_links;
 
-/* One of the arrays of a content, in their stored order; it has a row for each issued element. */
+/* One of the arrays of a content: it has a row for each issued element of one kind. */
 typedef struct he_content_array {
     unsigned char *bytes;
     size_t size;
     he_links links;
 } he_content_array;
 
+/* Returns array i of a content, in the order in which the arrays are stored. */
 static inline he_content_array he_content_array_at(he_content *c, size_t i)
 {
     size_t v = c->vertices.issued, h = 2 * (size_t)c->edges.issued, f = c->faces.issued;

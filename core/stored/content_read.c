@@ -1,25 +1,27 @@
-/* content_read.c - reads a content part by part: he_stored_reader of stored.h. Bytes go directly to
- * their place: to the header first, and when that is complete to the arrays that it announces. */
+/* content_read.c - reads a stored content part by part: he_stored_reader of stored.h. Bytes are
+ * copied into a buffer until the header is complete, and from then on directly into the arrays of
+ * the mesh, whose sizes the header declares. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
 struct he_stored_reader {
-    uint64_t most, total; /* bytes of the content: the most allowed; the real number, once the
-                             header is read */
-    uint64_t at;          /* bytes read */
+    uint64_t most, total; /* bytes that the content may have; bytes that it has, UINT64_MAX until
+                             the header is read */
+    uint64_t at;          /* bytes of the content read so far */
     unsigned char *header;
-    size_t header_size, header_room; /* bytes of the header so far, and the room for it */
-    uint64_t header_wanted;
+    size_t header_size, header_room; /* bytes of the header read so far; size of its buffer */
+    uint64_t header_wanted;          /* length of the header as far as it is known */
     he_content c;
-    size_t array;      /* the array being filled; after the arrays of links come the slots */
-    unsigned char *to; /* where its next bytes go */
-    size_t left;
+    size_t array;      /* number of the next array to fill: after HE_CONTENT_ARRAYS fixed ones come
+                          those of the attributes */
+    unsigned char *to; /* where the next bytes of the present array go */
+    size_t left;       /* bytes of the present array that are not read yet */
     he_links links;
-    uint32_t row;  /* row of the next link */
-    uint32_t last; /* the link before that, if has_last */
-    bool has_last; /* the part has a link before that */
+    uint32_t row;  /* row of the next link to read */
+    uint32_t last; /* the id in the last link read, if has_last */
+    bool has_last; /* an id was read before in this part and array */
 };
 
 he_status he_stored_reader_new(uint64_t most, he_stored_reader **out, he_error *err)
@@ -73,7 +75,8 @@ static he_status read_start(he_stored_reader *r, he_error *err)
     return HE_OK;
 }
 
-/* Reads one slot of an attribute; memory for its rows is allocated when all slots are known. */
+/* Reads one attribute of the header. Memory for its rows is allocated later, once all attributes
+ * are known. */
 static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size_t *rows,
                            he_error *err)
 {
@@ -122,8 +125,8 @@ static he_status read_slot(he_cursor *c, he_labels *names, he_column **out, size
     return HE_OK;
 }
 
-/* Reads the slots of attributes. Sets the number of rows of each column, without memory for them,
- * and adds up their bytes. */
+/* Reads the slots of attributes. Sets the number of rows of each column without allocating them,
+ * and adds the bytes that they will take to *bytes. */
 static he_status read_slots(he_stored_reader *r, he_cursor *c, uint32_t slots, uint64_t *bytes,
                             he_error *err)
 {
@@ -210,7 +213,7 @@ static bool read_rows(he_cursor *c, he_content *content, uint32_t *slots, uint32
            he_take_u32(c, materials) && he_take_u32(c, &zero) && zero == 0;
 }
 
-/* Allocates all arrays, when their sizes have been checked. */
+/* Allocates all arrays. Their sizes must have been checked before. */
 static he_status make_room(he_content *c, he_error *err)
 {
     he_rows rows[3] = {c->vertices, c->edges, c->faces};
@@ -237,7 +240,7 @@ static he_status make_room(he_content *c, he_error *err)
     return status;
 }
 
-/* Goes on to the next array that has bytes; to none at the end. */
+/* Makes the next array that is not empty the present one. After the last array `left` becomes 0. */
 static void next_array(he_stored_reader *r)
 {
     r->left = 0;
@@ -294,7 +297,7 @@ static he_status read_header(he_stored_reader *r, he_error *err)
     return status;
 }
 
-/* Reads more of the header; *taken gets the number of bytes that belonged to it. */
+/* Reads more of the header. Sets *taken to the number of bytes that belonged to the header. */
 static he_status take_header(he_stored_reader *r, const unsigned char *bytes, size_t size,
                              size_t *taken, he_error *err)
 {

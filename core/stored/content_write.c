@@ -1,11 +1,12 @@
-/* content_write.c - writes a mesh as a content: he_stored_writer of stored.h. The bytes are made
- * piece by piece (a head, a label, an array) and cut into parts regardless of pieces. */
+/* content_write.c - writes a mesh as a stored content: he_stored_writer of stored.h. The bytes are
+ * made piece by piece (a head, a label, an array) and cut into parts, which need not end where a
+ * piece ends. */
 #include "mesh/layout.h"
 #include "stored/attribute_code.h"
 #include "stored/content_code.h"
 #include "stored/stored.h"
 
-/* The kind of the piece that is being written. */
+/* The kinds of pieces. `stage` of the writer is the kind of the next one. */
 enum stage {
     HEADER,
     SLOT,
@@ -16,7 +17,7 @@ enum stage {
     MATERIAL,
     MATERIAL_NAME,
     PADDING,
-    ARRAYS, /* one stage for each array */
+    ARRAYS, /* the first of HE_CONTENT_ARRAYS stages, one for each array */
     COLUMNS = ARRAYS + HE_CONTENT_ARRAYS,
     DONE
 };
@@ -26,7 +27,7 @@ static const he_column *slot_of(const he_stored_writer *w)
     return w->mesh->c.columns[w->slot];
 }
 
-/* Returns the number of bytes of a slot after its kind and length. */
+/* Returns the number of bytes of an attribute's slot after its kind and length. */
 static uint64_t slot_bytes(const he_column *column)
 {
     return column == NULL ? 0
@@ -212,7 +213,8 @@ static void make_column(he_stored_writer *w)
     w->slot++;
 }
 
-/* Goes on to the next piece that is not empty. Returns false after the last. */
+/* Makes the next piece that is not empty if the present one has been written. Returns false after
+ * the last piece. */
 static bool has_piece(he_stored_writer *w)
 {
     while (w->left == 0 && w->stage != DONE) {
@@ -256,7 +258,7 @@ static bool has_piece(he_stored_writer *w)
     return w->left > 0;
 }
 
-/* Writes `bytes` bytes of links from the present piece, each link as a varint. */
+/* Writes the links in the next `bytes` bytes of the present piece, each as a varint. */
 static unsigned char *put_links(he_stored_writer *w, size_t bytes, unsigned char *to)
 {
     for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {
@@ -320,7 +322,7 @@ size_t he_stored_content_bound(const he_mesh *mesh)
 {
     uint64_t bytes = all_bytes(mesh), last = bytes % HE_STORED_PART;
     last += last / sizeof(uint32_t) *
-            (HE_LINK_BYTES - sizeof(uint32_t)); /* as if all of it were links */
+            (HE_LINK_BYTES - sizeof(uint32_t)); /* as if all words of the last part were links */
     last = last > HE_STORED_PART ? HE_STORED_PART : last;
     return (size_t)(bytes / HE_STORED_PART * (HE_PART_HEAD + HE_STORED_PART) + HE_PART_HEAD + last);
 }

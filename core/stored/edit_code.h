@@ -1,5 +1,5 @@
-/* edit_code.h - the constants of a coded edit (stored.h). Only core/stored uses it. A number never
- * changes its meaning. */
+/* edit_code.h - the constants of a stored edit (stored.h). Only core/stored uses it. No number may
+ * change its meaning, because stored edits contain it. */
 #ifndef HE_STORED_EDIT_CODE_H
 #define HE_STORED_EDIT_CODE_H
 
@@ -27,11 +27,12 @@ typedef enum he_object {
     HE_OBJECT_MATERIAL = 4
 } he_object;
 
-/* The kind of element for each number in a coded lineage record. */
+/* The kind of element that each number stands for in a stored lineage record (delta.h). */
 static const he_kind he_code_kinds[] = {HE_VERTEX, HE_HALFEDGE, HE_EDGE, HE_FACE};
 enum { HE_CODE_KINDS = sizeof he_code_kinds / sizeof *he_code_kinds };
 
-/* The most bytes that the parts of an edit take, and the fewest that a change takes. */
+/* Sizes in bytes: HE_CHANGE_LEAST is the fewest that a change takes, the others are the most that
+ * the head of an edit, a change, the head of an object and a slot number take. */
 enum {
     HE_EDIT_HEAD = 1 + 10,
     HE_CHANGE_ROOM = 20,

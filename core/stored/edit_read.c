@@ -1,4 +1,4 @@
-/* edit_read.c - reads a coded edit into a delta and applies that to a mesh. */
+/* edit_read.c - reads a stored edit into a delta and applies the delta to a mesh. */
 #include "mesh/content.h"
 #include "stored/attribute_code.h"
 #include "stored/edit_code.h"
@@ -17,18 +17,18 @@ static const he_col columns[] = {
     [HE_CODE_ATTRIBUTE] = HE_COL_ATTRIBUTE,
 };
 
-/* The most slots that a record can name: its column has 24 bits. */
+/* The number of attribute slots that a record can name: its `column` has 24 bits. */
 enum { MOST_SLOTS = (1 << 24) - HE_COL_ATTRIBUTE };
 
 typedef struct edit_reader {
     he_cursor c;
-    uint64_t changes; /* not read yet */
-    he_code code;
-    uint64_t run;  /* changes left in the run */
-    uint32_t slot; /* slot of a run of attributes */
-    uint32_t last[HE_CODE_COUNT];
-    he_object kind;   /* kind of an object */
-    he_cursor object; /* its bytes */
+    uint64_t changes;             /* changes that are not read yet */
+    he_code code;                 /* code of the present run of changes to one column */
+    uint64_t run;                 /* changes of the present run that are not read yet */
+    uint32_t slot;                /* slot of the attribute that the present run changes */
+    uint32_t last[HE_CODE_COUNT]; /* row of the last change with each code */
+    he_object kind;               /* kind of the present object */
+    he_cursor object;             /* bytes of the present object */
 } edit_reader;
 
 static he_status begin(edit_reader *r, const unsigned char *bytes, size_t size, he_error *err)
@@ -174,7 +174,7 @@ static he_status take_slot(he_cursor *c, uint32_t *slot, he_error *err)
     return HE_OK;
 }
 
-/* Reads the values of all rows, up to the end of the bytes. */
+/* Reads the values of all rows of a column, up to the end of the bytes. */
 static he_status take_rows(he_cursor *c, he_column *column, he_error *err)
 {
     uint64_t rows;
@@ -219,8 +219,9 @@ static bool same_head(const he_column *a, const he_column *b)
            memcmp(a->fallback, b->fallback, a->row_bytes) == 0;
 }
 
-/* Reads an attribute that was dropped. The mesh has that column, unless the edit itself added it:
- * `named` has a bit for each slot of the mesh that the edit has named so far. */
+/* Reads the record of an attribute that was dropped. Checks that the mesh has this attribute,
+ * unless the edit itself added or dropped one in its slot before: the slots of the mesh where it
+ * did have their bits set in `named`. */
 static he_status take_dropped(he_cursor *c, const he_mesh *mesh, const uint64_t *named,
                               uint32_t *slot, he_error *err)
 {
@@ -267,8 +268,8 @@ static he_status take_replaced(he_cursor *c, he_record *out, he_content **conten
     return HE_OK;
 }
 
-/* Reads the record of a material. The material that was there before is identified by its mark,
- * which the record keeps in the field that records of words use for their second value. */
+/* Reads the record of a material put in a slot. The material that was there before is identified by
+ * its mark (material.h), which the record keeps in `after`. */
 static he_status take_put_material(he_cursor *c, he_record *out, uint32_t *slot, he_material **row,
                                    he_error *err)
 {
@@ -361,7 +362,8 @@ static he_status take_changes(edit_reader *r, const he_mesh *mesh, he_delta *del
     return status;
 }
 
-/* Returns true if an added attribute has no more rows than its domain will have. */
+/* Returns true if an added attribute has no more rows than there are elements of its domain after
+ * the edit. */
 static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
 {
     switch (column->domain) {
@@ -378,8 +380,8 @@ static bool fits(const he_column *column, const uint32_t issued[HE_KIND_COUNT])
     return column->rows <= 1;
 }
 
-/* Checks the high-water marks after the edit. They only rise, by the rows that the edit writes; a
- * replaced content brings its own. */
+/* Checks the high-water marks after the edit, `issued`. Each may only rise, by no more than the
+ * number of changes, unless the edit replaces the content: then they are those of the new one. */
 static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
                              const uint32_t issued[HE_KIND_COUNT], he_error *err)
 {
@@ -406,7 +408,7 @@ static he_status check_marks(const he_delta *delta, const he_mesh *mesh,
     return HE_OK;
 }
 
-/* Finds the byte at which a change begins, in an edit that was read without an error. */
+/* Returns the byte at which a change begins in a stored edit that was read without an error. */
 static uint64_t place_of(const unsigned char *bytes, size_t size, size_t change)
 {
     edit_reader r;

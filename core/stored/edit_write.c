@@ -38,8 +38,8 @@ static he_code code_of(const he_record *r)
     return HE_CODE_ATTRIBUTE;
 }
 
-/* Returns true if a record of the delta replaces the content. Sets *renumbers if ids change their
- * meaning. */
+/* Returns true if a record of the delta replaces the whole content. Sets *renumbers to true if ids
+ * then mean other elements than before. */
 static bool replaces(const he_delta *delta, bool *renumbers)
 {
     bool found = false;
@@ -53,8 +53,8 @@ static bool replaces(const he_delta *delta, bool *renumbers)
     return found;
 }
 
-/* Finds the next record after i that adds or drops a column in that slot; the end if there is
- * none. */
+/* Finds the next record after record i that adds or drops a column in the slot of record i. Returns
+ * delta->count if there is none. */
 static size_t next_of_slot(const he_delta *delta, size_t i)
 {
     uint32_t slot = delta->records[i].row;
@@ -67,7 +67,8 @@ static size_t next_of_slot(const he_delta *delta, size_t i)
     return k;
 }
 
-/* Finds the column that record i added: in the mesh, or in the record that dropped it again. */
+/* Returns the column that record i added. It is in the mesh, unless record `next` of this delta
+ * dropped it again: then that record has it. */
 static const he_column *added_column(const he_delta *delta, size_t i, size_t next,
                                      const he_mesh *after)
 {
@@ -75,8 +76,8 @@ static const he_column *added_column(const he_delta *delta, size_t i, size_t nex
                                 : delta->objects[delta->records[next].before];
 }
 
-/* Finds the material that record i put in its slot: in the mesh, or in the record that replaced it.
- * Returns NULL if record i removed one. */
+/* Returns the material that record i put in its slot. It is in the mesh, unless a later record
+ * replaced it: then that record has it. Returns NULL if record i emptied the slot. */
 static const he_material *put_material(const he_delta *delta, size_t i, const he_mesh *after)
 {
     uint32_t slot = delta->records[i].row;
@@ -131,7 +132,8 @@ static unsigned char *begin_object(unsigned char *to, he_object kind)
     return he_put_u64(to, 0);
 }
 
-/* Writes the length of an object, which is known only at its end, before the object. */
+/* Ends an object that was written from `from` to `to`: writes its length into the 8 bytes before
+ * it, which begin_object left free. */
 static unsigned char *end_object(unsigned char *from, unsigned char *to)
 {
     (void)he_put_u64(from - 8, (uint64_t)(to - from));
@@ -158,8 +160,8 @@ static unsigned char *put_material_change(unsigned char *to, const he_delta *del
     return end_object(from, to);
 }
 
-/* Writes an added column with the values it had when it was added: later writes in this delta
- * follow as changes, so they are undone here. */
+/* Writes an added column with the values it had when it was added. Later writes to it in this delta
+ * are stored as changes of their own, so they are taken back here. */
 static unsigned char *put_added(unsigned char *to, const he_delta *delta, size_t i,
                                 const he_mesh *after)
 {

@@ -10,16 +10,16 @@
  * EDIT
  *     1 byte       the version
  *     varint       how many changes
- *     runs         of changes to one column, in the order in which they were made:
+ *     runs         each a sequence of changes to one column, in the order in which they were made:
  *       varint     16 * (changes - 1) + code, 0 to 10 as in edit_code.h
- *       varint     with the code of attributes: the slot
- *       changes    each: its row, as a signed difference to the row before under that code; then
- *                  by code
+ *       varint     only with the code of attributes: the slot
+ *       changes    each: its row, as a signed difference to the row of the last change with that
+ *                  code; then by code
  *           links      before, after: 0 is HE_NONE, 1 HE_DEAD, else 2 + the signed difference to
  *                      the row
  *           values     which word of the row, 1 byte; before, after: 4 bytes each
  *           lineage    the kind of element, 1 byte; the other element, as a difference to the row
- *     objects      a run of one: kind (1 byte), length (8 bytes), and
+ *     objects      a run of one change, with code 10: kind (1 byte), length (8 bytes), and
  *                  1  an attribute that was added: its slot, its head, labels, rows
  *                  2  an attribute that was dropped: its slot and its head
  *                  3  a replaced content: 1 byte, 1 if ids changed their meaning, and the content
@@ -27,17 +27,18 @@
  *                     there (4 bytes, 0 for none; material.h), the new one, or nothing
  *
  * If a delta replaced the content, only the content after it is coded: the delta read back is one
- * replacement. The high-water marks after an edit are not part of it; they are stored beside it.
+ * replacement. The high-water marks after an edit (how many ids of each kind were ever issued) are
+ * not part of it; they are stored beside it.
  *
- * CONTENT: a header and the arrays, as one run of bytes, cut into PARTS of HE_STORED_PART bytes
- * (the last may be shorter), each of which is coded by itself.
+ * CONTENT: a header and the arrays, as one sequence of bytes, cut into PARTS of HE_STORED_PART
+ * bytes (the last may be shorter), each of which is coded by itself.
  *     4            "hedg"
  *     4            the version
- *     8            bytes of the header, these included: a multiple of 8
+ *     8            length of the header from its first byte: a multiple of 8
  *     3 x 4        vertices, edges, faces issued
  *     3 x 4        vertices, edges, faces alive
  *     4            boundary half-edges
- *     4, 4, 4      slots of attributes, slots of materials, 0
+ *     4, 4, 4      how many slots of attributes, how many slots of materials, 0
  *     attributes, each:
  *       1, 8         kind: 0 no attribute, 1 an attribute; length of what follows
  *       head         domain, type, rule, components: 1 byte each; name: length (1 byte), UTF-8;
@@ -55,10 +56,10 @@
  *                  then the rows of each attribute
  *
  * Codings of parts: in HE_CODING_PLAIN a part is those bytes; in HE_CODING_LINKS each link in it is
- * a varint as in an edit and all else plain. Links of next and prev are differences to their row;
- * all other links are differences to the last one before them, in the array and in the part, that
- * is neither HE_NONE nor HE_DEAD, or to their row if there is none. HE_CODING_PACKED is added to
- * either by a layer above that compresses parts (core/journal/part_packing.h); that layer
+ * a varint as in an edit and all else is plain. Links of next and prev are differences to their
+ * row; all other links are differences to the last one before them, in the array and in the part,
+ * that is neither HE_NONE nor HE_DEAD, or to their row if there is none. HE_CODING_PACKED is added
+ * to either by a layer above that compresses parts (core/journal/part_packing.h); that layer
  * decompresses them and removes the flag before they are read here.
  *
  * A reader trusts no byte. It refuses invalid bytes with HE_CORRUPT and the offset (in a content,
@@ -80,9 +81,9 @@ size_t he_stored_edit_bound(const he_delta *delta, const he_mesh *after);
 /* Writes the edit to `to`, which must have room for he_stored_edit_bound bytes, and returns the
  * number of bytes written. Allocates nothing. */
 size_t he_stored_edit_write(const he_delta *delta, const he_mesh *after, unsigned char *to);
-/* Applies a coded edit to a mesh in the state it was made on; `issued` are the high-water marks
- * after it, indexed by kind. *out, which the caller frees, is the delta as if the edit had been
- * made on this mesh. On failure the mesh is as it was.
+/* Applies a stored edit to a mesh in the state on which it was made; `issued` are the high-water
+ * marks after it, indexed by kind. *out, which the caller frees, is the delta that the edit would
+ * have recorded on this mesh. On failure the mesh is as it was.
  * Returns HE_CORRUPT with the byte if the bytes are not valid, or the mesh is not in that state.
  * Returns HE_UNSUPPORTED if a newer release wrote the bytes.
  * Returns HE_NO_MEMORY if memory is out. */
@@ -96,20 +97,21 @@ enum { HE_STORED_PART = 1 << 16, HE_STORED_PART_ROOM = HE_STORED_PART + 8 };
 
 enum { HE_CODING_PLAIN = 0, HE_CODING_LINKS = 1, HE_CODING_PACKED = 2 };
 
-/* The position of a writer in a mesh. It owns no memory, so the caller may drop it at any time. The
- * mesh must not change meanwhile. */
+/* The state of a writer between two parts. It owns no memory, so the caller may drop it at any
+ * time. The mesh must not change meanwhile. The bytes are made in pieces, such as the head of an
+ * attribute or an array, of which one part may contain several or a section. */
 typedef struct he_stored_writer {
     const he_mesh *mesh;
-    unsigned stage;
-    size_t slot, label;
-    uint64_t header;           /* bytes of the header */
-    uint64_t done;             /* bytes before the present piece */
-    const unsigned char *from; /* what is left of the present piece */
-    size_t left;
+    unsigned stage;            /* kind of the next piece */
+    size_t slot, label;        /* attribute or material, and label, of the next piece */
+    uint64_t header;           /* length of the header in bytes */
+    uint64_t done;             /* bytes of all pieces made so far */
+    const unsigned char *from; /* the bytes of the present piece that are not written yet */
+    size_t left;               /* how many of these there are */
     int links;     /* how links of the present piece are coded: he_links of content_code.h */
-    uint32_t row;  /* row of the next link */
-    uint32_t last; /* the link before that, if has_last */
-    bool has_last; /* the part has a link before that */
+    uint32_t row;  /* row of the next link to write */
+    uint32_t last; /* the id in the last link written, if has_last */
+    bool has_last; /* an id was written before in this part and array */
     unsigned char scratch[256];
 } he_stored_writer;
 
@@ -134,11 +136,11 @@ void he_stored_reader_free(he_stored_reader *reader);
 HE_NODISCARD he_status he_stored_reader_part(he_stored_reader *reader, unsigned coding,
                                              const unsigned char *bytes, size_t size,
                                              he_error *err);
-/* Makes the mesh, which the caller owns. It must be called after the last part was read.
+/* Makes the mesh, which the caller owns, after the last part was read.
  * Returns HE_CORRUPT if parts are missing. */
 HE_NODISCARD he_status he_stored_reader_end(he_stored_reader *reader, he_mesh **out, he_error *err);
 
-/* --- contents as one block: the parts, each after its coding (1 byte) and length (4 bytes) --- */
+/* --- contents as one block: before each part stand its coding (1 byte) and length (4 bytes) --- */
 
 size_t he_stored_content_bound(const he_mesh *mesh);
 /* Writes a content and returns the number of bytes written. Allocates nothing. */

@@ -188,8 +188,8 @@ static size_t count_meshes(const he_glb_parts *g)
     return count == 0 ? 1 : count;
 }
 
-/* Returns the name of a node. A node has the name of the faces' object, and a mesh that of their
- * group; if one of them has no name, both have the other's. */
+/* Returns the name of a node. A node gets the name of its faces' object, and its mesh the name of
+ * their group; if one of these names is empty, both get the other one. */
 static const char *name_of_node(const he_glb_parts *g, const he_glb_group *group)
 {
     const char *object = he_glb_name(&g->groups, group, HE_GLB_OBJECT);
@@ -217,8 +217,8 @@ static void put_nodes(text *t, const he_glb_parts *g)
     put_text(t, mesh > 0 ? "]" : "{\"mesh\":0}]");
 }
 
-/* Writes one mesh with one primitive, if all faces are in one group. The extras that describe all
- * faces belong to this primitive then. */
+/* Writes one mesh with one primitive, for a file whose faces are all in one group. The primitive
+ * then has the extras that describe all faces. */
 static void put_one_mesh(text *t, const he_glb_parts *g)
 {
     put_text(t, ",\"meshes\":[{");
@@ -281,8 +281,8 @@ static void put_color(text *t, const char *name, const double *numbers, size_t c
     put_text(t, "]");
 }
 
-/* Returns the smallest power of two that no component of the emission exceeds. Dividing by it is
- * exact, so the factors in the file are exact. */
+/* Returns the smallest power of two, from 1 on, that no component of the emission exceeds. Dividing
+ * by a power of two is exact, so the factors in the file are exact. */
 static double strength_of(const he_look *look)
 {
     double strength = 1;
@@ -336,8 +336,8 @@ static void put_materials(text *t, const he_glb_parts *g, bool *strong)
     put_text(t, any ? "]" : "");
 }
 
-/* Writes the names of the materials, so that a reader notices if another program has changed
- * them. */
+/* Writes the names of all materials to the extras, so that a reader notices if another program has
+ * changed the materials. */
 static void put_names(text *t, const he_glb_parts *g)
 {
     const he_materials *table = he_mesh_materials(g->mesh);
@@ -398,7 +398,8 @@ static void put_box(text *t, const he_mesh *m)
     put_text(t, "]");
 }
 
-/* Writes for each group an accessor of its range of the triangles. */
+/* Writes an accessor for each group of faces, whose elements are the group's range of the
+ * triangles. */
 static void put_group_accessors(text *t, const he_glb_parts *g)
 {
     size_t triangles;

@@ -39,7 +39,7 @@ typedef struct finding {
     const he_mesh *mesh;
     he_glb_groups *groups;
     uint32_t *of;    /* group of each face */
-    uint32_t *slots; /* a group + 1, or 0 */
+    uint32_t *slots; /* hash table: number of a group + 1, or 0 in a free slot */
 } finding;
 
 enum { SLOTS = 4 * HE_GLB_PRIMITIVES };
@@ -100,8 +100,9 @@ static bool find_groups(finding *f)
 /* --- their order --- */
 
 typedef struct placed {
-    uint32_t object, mesh, group; /* first group with the same object; first with the same object
-                                     and group; the group itself */
+    /* The first group of faces with the same object, the first one with the same object and group,
+     * and the group of faces itself. */
+    uint32_t object, mesh, group;
 } placed;
 
 static int compare(const void *left, const void *right)
@@ -116,8 +117,8 @@ static int compare(const void *left, const void *right)
     return a->group < b->group ? -1 : a->group > b->group;
 }
 
-/* Sorts the groups so that those of one object and group follow each other, in the order of their
- * first faces. Sets rank[i] to the new number of group i. */
+/* Sorts the groups of faces so that those with the same object and group follow each other, in the
+ * order of their first faces. Sets rank[i] to the new number of group i. */
 static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
 {
     placed *places = he_mem_array(NULL, g->count, sizeof *places);
@@ -154,8 +155,8 @@ static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
     return HE_OK;
 }
 
-/* Sorts the faces by groups, and finds where in the list of cut triangles those of each face
- * are. */
+/* Sorts the faces by groups, and finds where the triangles of each face begin in
+ * he_cuts.corners. */
 static he_status order_faces(finding *f, const uint32_t *rank, he_error *err)
 {
     const he_mesh *m = f->mesh;

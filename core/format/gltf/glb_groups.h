@@ -21,16 +21,16 @@ typedef struct he_glb_group {
     /* The labels that the group's faces have in the attributes object, group and material; 0 for an
      * attribute by which the faces are not separated. */
     uint32_t label[HE_GLB_NAMES];
-    uint64_t first, triangles; /* in the order of the file */
+    uint64_t first, triangles; /* index of its first triangle in the file; number of triangles */
 } he_glb_group;
 
 /* {0} is empty. */
 typedef struct he_glb_groups {
-    const he_column *names[HE_GLB_NAMES]; /* face attributes with labels; NULL: not separated */
+    const he_column *names[HE_GLB_NAMES]; /* attributes by which faces are separated, or NULL */
     he_glb_group *list;
     size_t count;
     uint32_t *order;   /* live faces in the order of the file, NULL if that is the order of ids */
-    size_t *cut;       /* for each face, where its triangles begin in the corners of cuts */
+    size_t *cut;       /* index in he_cuts.corners at which the triangles of each face begin */
     he_ids only_names; /* labels of materials that have no row in the table */
 } he_glb_groups;
 

@@ -44,7 +44,7 @@ static uint64_t corner_count(const he_mesh *m)
 
 static bool all_below(const he_column *column, double end)
 {
-    for (size_t row = 0; row <= column->rows; row++) { /* the last one is the default */
+    for (size_t row = 0; row <= column->rows; row++) { /* the row after the last is the default */
         for (uint32_t i = 0; i < column->components; i++) {
             if (he_export_number(column, row, i) >= end) {
                 return false;
@@ -64,8 +64,8 @@ static bool is_numbered(const he_column *column, const he_gltf_semantic *s, unsi
            column->components <= s->most;
 }
 
-/* Returns the glTF component type with which a column is written under a semantic; 0 if it cannot
- * be. */
+/* Returns the glTF component type in which a column is written under a semantic; 0 if it cannot be
+ * written so. */
 static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf_semantic *s)
 {
     uint64_t lost;
@@ -79,8 +79,8 @@ static unsigned type_of(const he_mesh *m, const he_column *column, const he_gltf
     return bytes ? HE_GLTF_UINT8 : HE_GLTF_FLOAT;
 }
 
-/* Returns the component type with which a column is written as the attribute of this number of a
- * semantic; 0 if it cannot be. */
+/* Returns the component type in which a column is written as the attribute of this number of a
+ * semantic, such as TEXCOORD_1; 0 if it cannot be written so. */
 static unsigned type_as(const he_mesh *m, const he_column *column, const he_gltf_semantic *s,
                         unsigned number)
 {
@@ -165,7 +165,7 @@ static bool find_semantic(const he_mesh *m, const unsigned counts[HE_GLTF_SEMANT
     return true;
 }
 
-/* Returns true if each row of a part will be read back with equal bits. */
+/* Returns true if the values of all vertices will be read back with equal bits. */
 static bool comes_back(const he_mesh *m, const he_glb_part *part)
 {
     const he_column *column = part->column;
@@ -225,8 +225,8 @@ static bool is_shown(const he_glb_parts *g, const he_column *column)
     return i < g->count;
 }
 
-/* Returns true if meshes, primitives and materials of the file represent the column, which is an
- * attribute of faces, completely. */
+/* Returns true if the column is one of the attributes of faces by which the meshes, primitives and
+ * materials of the file are separated, so that other programs see it. */
 static bool is_told_apart(const he_glb_parts *g, const he_column *column)
 {
     size_t i = 0;
@@ -249,7 +249,7 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                          .count = rows_of(g->mesh, column->domain) * words,
                          .stride = 4});
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
-        return; /* other programs see it too */
+        return; /* other programs see the attribute too, so there is no warning */
     }
     he_notes_add(notes, &(he_warning){.code = "in_extras",
                                       .text = "stored so that only hedge reads it back: attribute",
@@ -257,8 +257,8 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
                                       .length = (size_t)length});
 }
 
-/* Adds the attributes that all programs read; then, after the triangles, those that only hedge
- * reads. */
+/* Adds the attributes that all programs read. Those that only hedge reads follow the triangles, see
+ * add_rest. */
 static void add_values(he_glb_parts *g, he_notes *notes)
 {
     const he_mesh *m = g->mesh;
@@ -309,8 +309,8 @@ static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
     }
 }
 
-/* Puts the positions first. Each of these parts has an element for each vertex and each copy of a
- * vertex. */
+/* Puts the part of positions before the parts of attributes. Each of these parts has an element for
+ * each vertex and each copy of a vertex. */
 static void place_values(he_glb_parts *g, const he_column **used)
 {
     const he_mesh *m = g->mesh;
@@ -336,8 +336,8 @@ static void place_values(he_glb_parts *g, const he_column **used)
     }
 }
 
-/* Returns true if corners have attributes. Their values are in the order of corners, and a
- * compressed triangle may begin at another corner. */
+/* Returns true if corners have attributes. Then the corners of faces must be stored if triangles
+ * are compressed, because a compressed triangle may begin at another of its corners. */
 static bool has_corner_values(const he_mesh *m)
 {
     for (size_t i = 0; i < he_mesh_columns(m); i++) {

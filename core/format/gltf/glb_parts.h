@@ -17,39 +17,39 @@ typedef enum he_glb_content {
     HE_GLB_POSITIONS, /* three floats a vertex */
     HE_GLB_VALUES,    /* an attribute of vertices or corners in a type of glTF */
     HE_GLB_TRIANGLES,
-    HE_GLB_COPIES,  /* for each copy the vertex of which it is one (splits.h) */
+    HE_GLB_COPIES,  /* number of the original of each copied vertex (splits.h) */
     HE_GLB_DEGREES, /* degrees of faces */
     HE_GLB_CORNERS, /* vertices of the corners of faces */
-    HE_GLB_ORDER,   /* for faces in the order of the file: the number of each in the order of ids */
-    HE_GLB_WORDS    /* an attribute as it is in memory, a bool as a word */
+    HE_GLB_ORDER,   /* number of each face in the order of ids; faces are in the file's order */
+    HE_GLB_WORDS    /* an attribute as it is in memory, but each bool takes a word */
 } he_glb_content;
 
 typedef struct he_glb_part {
     he_glb_content content;
     const he_column *column;           /* for values and words */
-    char semantic[HE_COLUMN_NAME + 2]; /* for positions and values */
-    unsigned type;                     /* the componentType */
+    char semantic[HE_COLUMN_NAME + 2]; /* glTF name of positions and values, else "" */
+    unsigned type;                     /* the componentType of the accessor */
     uint32_t components;               /* components of an element of the accessor */
     bool normalized;
-    he_gltf_role role; /* for values; HE_GLTF_SEMANTICS if none */
+    he_gltf_role role; /* role of values, HE_GLTF_SEMANTICS if they have none */
     uint64_t count;    /* elements of the accessor */
     uint32_t stride;   /* bytes from one element to the next */
     uint64_t offset;   /* offset in the buffer, a multiple of 4 */
     uint64_t packed_at,
-        packed; /* offset of its stream in the file's buffer, and bytes of the stream */
+        packed; /* offset and length of the compressed stream in the file's buffer */
 } he_glb_part;
 
 /* {0} is empty. */
 typedef struct he_glb_parts {
     const he_mesh *mesh;
-    uint32_t *numbers; /* numbers of vertices, NULL if they are the ids */
-    he_splits splits;  /* for corners whose values differ at one vertex */
+    uint32_t *numbers; /* number of each vertex in the file, NULL if it is the id */
+    he_splits splits;  /* copies of vertices whose corners have different values */
     he_cuts cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;
     size_t count, capacity;
     uint64_t bytes; /* bytes of the buffer, a multiple of 4 */
-    bool packs;     /* with compression, the streams are here; their bytes are a multiple of 4 */
+    bool packs;     /* parts are compressed; `streams` has them, each padded to a multiple of 4 */
     unsigned char *streams;
     size_t streams_length, streams_capacity;
     char *json;
@@ -66,15 +66,15 @@ void he_glb_parts_clear(he_glb_parts *parts);
 /* Returns the bytes of a part without its padding to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);
 
-/* Returns the layout of the stream into which a part is compressed. Indices are passed as uint32_t,
- * see he_meshopt_encode. */
+/* Returns the layout of the stream into which a part is compressed. */
 he_meshopt_stream he_glb_part_stream(const he_glb_part *part);
-/* Compresses a part; `bytes` are its elements. Parts must be compressed in their order.
+/* Compresses a part; `bytes` are its elements, indices of triangles as uint32_t (see
+ * he_meshopt_encode). Parts must be compressed in their order.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_glb_pack(he_glb_parts *parts, he_glb_part *part, const void *bytes,
                                    he_error *err);
 
-/* Writes the JSON, when all parts are complete.
+/* Writes the JSON. All parts must be complete.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_LIMIT if the length of the file does not fit into 32 bits, as a GLB requires. */
 HE_NODISCARD he_status he_glb_describe(he_glb_parts *parts, he_error *err);

@@ -7,43 +7,44 @@
  *
  * A length that is no multiple of 4 is noted; the next chunk may then follow directly, or aligned.
  *
- * READING. Everything comes from the bytes themselves: a buffer is the BIN chunk, a data: URI in
- * base64 or a file that came with this one (io/beside.h). Images are noted; nothing is ever opened.
+ * READING. A buffer is the BIN chunk, a data: URI in base64 or a file that came with this one
+ * (io/beside.h). Images are noted and ignored; no file is ever opened.
  *
- * Each node of the scene that has a mesh adds it, transformed by the product of the matrices above
- * it, so a mesh of several nodes is added several times. Each primitive adds all its vertices, in
- * the order of the file, then its triangles, strip or fan; one without indices uses the vertices in
- * order. Vertices that share a position stay separate. If a node mirrors, triangles are reversed,
- * so that they still face outward, with a note. A rotation whose quaternion has another length than
- * 1 is normalised, with a note. Points and lines are noted and ignored, as are skins, animations
- * and morph targets.
+ * Each node of the scene that has a mesh adds the mesh, transformed by the product of the matrices
+ * of the node and its ancestors, so a mesh of several nodes is added several times. Each primitive
+ * adds all its vertices, in the order of the file, then its triangles, strip or fan; one without
+ * indices uses the vertices in order. Vertices that share a position stay separate. If the
+ * transformation of a node mirrors, triangles are reversed so that they still face outward, which
+ * is noted. A rotation whose quaternion has another length than 1 is normalised, which is noted.
+ * Points and lines are noted and ignored, as are skins, animations and morph targets.
  *
  * Attributes of vertices are those of gltf_attribute.h; of faces, "object" is the name of the node,
  * else of the mesh, and "material" that of the material. Materials are rows of the table
  * (gltf_material.h). Files written by hedge have polygons, and everything else that glTF cannot
- * represent, in extras (gltf_private.h).
+ * represent, in `extras`, a member for data of applications (gltf_private.h).
  *
  * Reading refuses other versions; extensions that are required and change geometry, except
  * KHR_mesh_quantization and EXT_meshopt_compression, which it reads; references beyond a list, view
  * or buffer; numbers outside their range; directions that are no floats, without
  * KHR_mesh_quantization; nodes that are reached twice or are inside themselves; and scenes that
- * make more than gltf_asset.h allows. Errors name the byte, and the path in the JSON.
+ * take more memory than gltf_asset.h allows. Errors name the byte, and the path in the JSON.
  *
- * WRITING. A mesh for each object and group of faces, in it a primitive for each material, all of
- * them with all vertices, in the order of ids, as floats, and each with its triangles
- * (glb_groups.h). Materials are rows of the table and names that are not in it. normal, tangent,
- * uv, color, joints and weights of vertices and other attributes of floats are glTF attributes as
- * they are read. Attributes of corners from that list are written too, and take precedence over
- * those of vertices with one name: if corners of a vertex differ, copies of it follow all vertices
- * (splits.h). All other attributes, and those of faces and corners, are in extras, unless glTF
- * preserves them exactly. So are polygons, and which vertices are copies. Numbers of semantics have
- * no gaps and joints have weights; an attribute that would break this has a name of its own, such
- * as _uv1 without uv. Other programs ignore extras; hedge reads back everything except the last
- * digits of positions, and attributes of edges and of the mesh.
+ * WRITING. There is a mesh for each object and group of faces, and in it a primitive for each
+ * material. All primitives share all vertices, which are floats in the order of ids; each has its
+ * own triangles (glb_groups.h). The materials are the rows of the table and the names that have no
+ * row. normal, tangent, uv, color, joints and weights of vertices, and other attributes of floats,
+ * are glTF attributes of the names under which they are read. Attributes of corners with one of
+ * these six names are written too, and take precedence over attributes of vertices with that name:
+ * if corners of a vertex differ, copies of it follow all vertices (splits.h). All other attributes,
+ * and those of faces and corners, are in extras, unless glTF preserves them exactly. So are
+ * polygons, and which vertices are copies. Numbers of semantics have no gaps and joints have
+ * weights; an attribute that would break this has a name of its own, such as _uv1 without uv. Other
+ * programs ignore extras; hedge reads back everything except the last digits of positions, and
+ * attributes of edges and of the mesh.
  *
- * The encoding "meshopt" is compressed by EXT_meshopt_compression, whose streams are in memory as a
- * whole. No number is rounded, but a triangle may begin at another of its corners, unless corners
- * have values. */
+ * The encoding "meshopt" is compressed by EXT_meshopt_compression; all compressed data is in memory
+ * before the first byte is written. No number is rounded, but a triangle may begin at another of
+ * its corners, unless the mesh has attributes of corners. */
 #ifndef HE_FORMAT_GLTF_GLTF_H
 #define HE_FORMAT_GLTF_GLTF_H
 

@@ -67,7 +67,7 @@ static size_t element_bytes(const he_gltf_accessor *a)
     return rows * ((rows * bytes + 3) / 4 * 4);
 }
 
-/* The range of elements in a buffer that an object with bufferView and byteOffset refers to. */
+/* The elements in a buffer to which a JSON object with bufferView and byteOffset refers. */
 typedef struct span {
     const unsigned char *bytes;
     size_t stride;
@@ -96,8 +96,8 @@ typedef struct layout {
     size_t alignment; /* bytes of a number in it */
 } layout;
 
-/* Finds the range of the elements of an object. 64 bits are enough without overflow: all
- * numbers are below 2^53 + 1, and a stride is below 2^8. */
+/* Finds the bytes of the elements to which a JSON object refers. Nothing overflows 64 bits: all
+ * numbers are at most 2^53, and a stride is below 2^8. */
 static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span *out,
                           he_error *err)
 {
@@ -150,8 +150,8 @@ static he_status get_span(he_gltf *asset, uint32_t object, layout elements, span
     return HE_OK;
 }
 
-/* Checks the indices of the elements that a sparse accessor changes. They must rise, so that a walk
- * over the elements reaches each in its turn. */
+/* Checks the indices of the elements that a sparse accessor replaces. They must rise, because a
+ * walk over the elements meets them in rising order. */
 static he_status check_changed(he_gltf *asset, const he_gltf_accessor *a, uint32_t sparse,
                                he_error *err)
 {

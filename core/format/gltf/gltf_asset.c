@@ -16,8 +16,8 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
                                                     .at = he_json_place(&asset->json, place)});
 }
 
-/* Reports progress. The amount of work is not known before; few files take less than a step for
- * each 16 bytes. */
+/* Reports progress. How much work there is in all is not known, so the fraction only approaches 1:
+ * it is one half after a step for each 16 bytes of the file. Few files take fewer steps. */
 he_status he_gltf_tell(he_gltf *asset, he_error *err)
 {
     asset->told = asset->steps;
@@ -184,8 +184,8 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     return HE_OK;
 }
 
-/* Marks the files of images as used, so that there is no second warning that nothing refers to
- * them. */
+/* Warns about images, which a mesh cannot store. Their files are marked as used, so that there is
+ * no second warning that nothing refers to them. */
 static void note_images(he_gltf *asset)
 {
     const he_json *json = &asset->json;
@@ -203,7 +203,7 @@ static void note_images(he_gltf *asset)
     }
 }
 
-/* Adds warnings about everything in the asset that a mesh cannot store. */
+/* Warns about animations and skins, which a mesh cannot store. */
 static void note_rest(he_gltf *asset)
 {
     static const struct {

@@ -1,15 +1,14 @@
 /* gltf_asset.h - the parts of a glTF asset from which geometry is read: its JSON, its buffers, and
  * accessors, each checked when it is used.
  *
- * The memory that an asset may take is bounded by its size, because nodes share meshes and
- * primitives share accessors: HE_GLTF_ROOM bytes and HE_GLTF_FACTOR times its own, counted as in
- * the soup, before anything is made. So a list of instances that takes much memory but few bytes is
- * refused early.
+ * The soup made from an asset may take at most HE_GLTF_ROOM bytes plus HE_GLTF_FACTOR times the
+ * size of the asset. There is a bound because nodes share meshes and primitives share accessors: a
+ * few bytes could ask for many copies of a mesh. Memory is counted before it is allocated.
  *
- * A buffer view with EXT_meshopt_compression is decompressed when it is first used. All of them
- * together may decompress to HE_GLTF_ROOM bytes and HE_GLTF_UNPACKED times the asset's own, and the
- * decompressed bytes count twice for the bound above: meshes decompress to 2 to 12 times their
- * size, zeros to 64 times. */
+ * A buffer view with EXT_meshopt_compression is decompressed when it is first used. All such views
+ * together may decompress to at most HE_GLTF_ROOM bytes plus HE_GLTF_UNPACKED times the size of the
+ * asset (meshes decompress to 2 to 12 times their size, zeros to 64 times). Twice the decompressed
+ * bytes are added to the bound on the soup. */
 #ifndef HE_FORMAT_GLTF_GLTF_ASSET_H
 #define HE_FORMAT_GLTF_GLTF_ASSET_H
 
@@ -26,25 +25,25 @@
 enum { HE_GLTF_ELEMENT = 64 }; /* bytes of the largest element: sixteen floats */
 
 typedef struct he_gltf_buffer {
-    const unsigned char *bytes; /* NULL: a fallback buffer that did not come */
-    unsigned char *own;         /* owned: decoded from a data: URI, or decompressed */
+    const unsigned char *bytes; /* NULL if it is a fallback buffer whose file did not come */
+    unsigned char *own;         /* the memory to free, if the bytes were decoded or decompressed */
     uint64_t length;
-    uint64_t start; /* for a part, its offset in its buffer */
-    uint64_t place; /* place of its first byte in the input, or HE_GLTF_NOWHERE */
+    uint64_t start; /* offset in the asset's buffer, if this is a part of one */
+    uint64_t place; /* offset of its first byte in the input, or HE_GLTF_NOWHERE */
 } he_gltf_buffer;
 
 typedef struct he_gltf {
     he_import *into;
     he_json json;
-    he_ids accessors, views, nodes, meshes, materials; /* their values in the JSON */
+    he_ids accessors, views, nodes, meshes, materials; /* JSON values of the objects, by index */
     he_gltf_buffer *buffers;
     size_t buffer_count;
-    he_gltf_buffer *unpacked; /* for each view, NULL before the first is decompressed */
+    he_gltf_buffer *unpacked; /* one for each view; NULL before the first view is decompressed */
     bool quantized;           /* KHR_mesh_quantization is used */
-    uint64_t room;            /* bytes that may still be made, */
-    uint64_t unpack_room;     /* and decompressed */
+    uint64_t room;            /* bytes of memory that the soup may still take */
+    uint64_t unpack_room;     /* bytes to which views may still decompress */
     uint64_t size;            /* bytes of the input */
-    uint64_t steps, told;     /* steps of work; steps when the watch was last stepped */
+    uint64_t steps, told;     /* steps of work; steps when progress was last reported */
 } he_gltf;
 
 /* The BIN chunk of a GLB file; `bytes` is NULL if the file has none. */
@@ -88,8 +87,8 @@ HE_NODISCARD he_status he_gltf_buffer_part(he_gltf *asset, uint32_t object, he_g
                                            he_error *err);
 /* Lists the objects in an array that is a member of the root of the JSON. */
 HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *list, he_error *err);
-/* Adds a warning about the value at `place`. Its subject is the string value `subject`; HE_NONE is
- * no subject. */
+/* Adds a warning about the JSON value `place`. Its subject is the JSON string `subject`, unless
+ * that is HE_NONE. */
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 
@@ -142,18 +141,18 @@ size_t he_gltf_type_bytes(he_gltf_type type);
 
 /* An accessor: elements of numbers, which were checked to be inside their buffers. */
 typedef struct he_gltf_accessor {
-    uint32_t value; /* its value in the JSON */
+    uint32_t value; /* the accessor's object in the JSON */
     he_gltf_type type;
     bool normalized;
     bool matrix;
     uint32_t components;
     uint64_t count;
-    const unsigned char *bytes; /* NULL: zeros */
+    const unsigned char *bytes; /* NULL if all elements are zero */
     size_t stride;
-    uint64_t place;   /* place of the first element in the input, or HE_GLTF_NOWHERE */
-    uint64_t changed; /* elements of a sparse accessor that differ from `bytes` */
+    uint64_t place;   /* offset of the first element in the input, or HE_GLTF_NOWHERE */
+    uint64_t changed; /* number of elements that a sparse accessor replaces */
     const unsigned char *changed_index, *changed_value;
-    he_gltf_type changed_type; /* type of their indices, which rise */
+    he_gltf_type changed_type; /* type of the indices of replaced elements, which rise */
 } he_gltf_accessor;
 
 /* Returns the value of the extension EXT_meshopt_compression in a view or buffer, HE_NONE if it has
@@ -166,7 +165,7 @@ uint32_t he_gltf_meshopt(const he_gltf *asset, uint32_t object);
 HE_NODISCARD he_status he_gltf_accessor_get(he_gltf *asset, uint32_t value, he_gltf_accessor *out,
                                             he_error *err);
 
-/* A walk over the elements. */
+/* The position of a walk over the elements of an accessor. */
 typedef struct he_gltf_walk {
     const he_gltf_accessor *accessor;
     uint64_t next, changed;

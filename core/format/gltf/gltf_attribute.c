@@ -53,7 +53,8 @@ static bool read_number(const char *p, unsigned *number)
     return p > begin && *p == '\0' && (*begin != '0' || p == begin + 1);
 }
 
-/* Finds the name of the mesh's attribute for a semantic of glTF. Returns false if there is none. */
+/* Finds the name that an attribute with this semantic of glTF gets in the mesh. Returns false if it
+ * gets none. */
 static bool name_attribute(const char *semantic, char name[HE_COLUMN_NAME],
                            const he_gltf_semantic **known)
 {
@@ -97,9 +98,8 @@ static he_type column_type(const he_gltf_accessor *a, const he_gltf_semantic *kn
 
 /* --- directions --- */
 
-/* Transforms a normal or tangent by the transformation of its node. Normals are transformed by its
- * cofactors, which are its inverse transpose up to a factor; tangents by the transformation
- * itself. */
+/* Transforms a normal or tangent by the matrix of its node. Tangents are multiplied by the matrix
+ * itself, normals by its cofactors, which are its inverse transpose up to a factor. */
 static void turn(const he_gltf_primitive *p, bool normal, double *v)
 {
     const double(*m)[4] = p->frame->row;

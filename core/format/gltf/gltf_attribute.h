@@ -1,14 +1,15 @@
 /* gltf_attribute.h - reads the attributes of a primitive as attributes of vertices.
  *
- *     NORMAL, TANGENT      normal, tangent, rotated as their node is
+ *     NORMAL, TANGENT      normal, tangent, transformed by the node
  *     TEXCOORD_0, _1 ...   uv, uv1 ...: v runs down in glTF and up in a mesh, so that it is 1 - v
  *     COLOR_0, _1 ...      color, color1 ...: fractions, also from normalized integers
  *     JOINTS_0, _1 ...     joints, joints1 ...
  *     WEIGHTS_0, _1 ...    weights, weights1 ...
  *     _ANY                 ANY
  *
- * Floats stay float, normalized integers become it, others are int32 or uint32. Only uv is double,
- * in which 1 - v of a float is exact, so that it is written back as it was. */
+ * Floats stay float, normalized integers become float, and other integers become int32 or uint32.
+ * Only uv is double: for a float v, 1 - v is exact in double, so that v is written back as it
+ * was. */
 #ifndef HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 #define HE_FORMAT_GLTF_GLTF_ATTRIBUTE_H
 
@@ -16,18 +17,18 @@
 
 /* A primitive that is being read. */
 typedef struct he_gltf_primitive {
-    uint32_t value, attributes; /* their values in the JSON */
+    uint32_t value, attributes; /* JSON values of the primitive and of its attributes */
     const he_gltf_frame *frame;
     bool still;  /* the frame is the identity */
-    bool mirror; /* the frame mirrors */
+    bool mirror; /* the frame turns right-handed axes into left-handed ones */
     bool indexed;
     uint64_t mode;
     he_gltf_accessor positions, indices;
-    uint64_t faces;    /* triangles */
-    uint64_t vertices; /* vertices of the soup: the first are those of positions, the others are
-                          copies of them */
-    he_gltf_accessor copies; /* the vertex of each copy, if there are any */
-    bool private;            /* the extras are valid so far */
+    uint64_t faces;    /* number of triangles */
+    uint64_t vertices; /* vertices that the soup gets: the first ones of the positions; the other
+                          positions are those of copies */
+    he_gltf_accessor copies; /* the vertex of which each copy is one, if there are copies */
+    bool private;            /* the extras are valid as far as they were read */
     bool exact;              /* attributes read from extras take precedence */
     bool polygons;           /* polygons from extras replace the triangles */
     uint32_t first_vertex, first_face, first_corner; /* first rows in the soup */
@@ -42,8 +43,8 @@ static inline uint32_t he_gltf_vertex(const he_gltf_primitive *p, uint32_t index
                : he_gltf_whole(HE_GLTF_UINT32,
                                p->copies.bytes + (index - p->vertices) * p->copies.stride);
 }
-/* Returns the place of element i in the input; if its bytes are not in the input itself, the place
- * of the JSON value `value`. */
+/* Returns the offset of element i in the input. If the bytes of the element are not in the input
+ * itself, returns the offset of the JSON value `value`. */
 uint64_t he_gltf_element_place(const he_gltf *asset, const he_gltf_accessor *a, uint32_t value,
                                uint64_t i);
 HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he_gltf_primitive *p,
@@ -52,18 +53,18 @@ HE_NODISCARD he_status he_gltf_add_attributes(he_gltf_surface *surface, const he
 void he_gltf_note_attributes(he_gltf_surface *surface);
 
 he_column *he_gltf_find_column(const he_soup *soup, he_kind domain, const char *name);
-/* Extends a column so that it has `end` rows. The rows before `begin`, which is the first row to be
- * written, get defaults.
+/* Extends a column so that it has `end` rows; new rows get the default. Errors name the JSON value
+ * `value`.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_gltf_extend(he_gltf_surface *surface, uint32_t value, he_column *column,
                                       size_t end, he_error *err);
 
 typedef enum he_gltf_role {
-    HE_GLTF_NORMAL, /* rotated by nodes */
+    HE_GLTF_NORMAL, /* transformed by the node, as tangents are */
     HE_GLTF_TANGENT,
-    HE_GLTF_UV,    /* its second component is 1 - v */
-    HE_GLTF_COLOR, /* bytes if they represent all of it */
+    HE_GLTF_UV,    /* the second component v of glTF is 1 - v in a mesh */
+    HE_GLTF_COLOR, /* written as bytes if bytes represent all values exactly */
     HE_GLTF_JOINTS,
     HE_GLTF_WEIGHTS,
     HE_GLTF_SEMANTICS
@@ -76,7 +77,7 @@ typedef struct he_gltf_semantic {
     uint32_t least, most; /* components */
     bool numbered;        /* TEXCOORD_1 is uv1 */
     he_gltf_role role;
-    he_gltf_role partner; /* the role that must accompany it, itself if none */
+    he_gltf_role partner; /* the role without which it is not written; its own role if none */
 } he_gltf_semantic;
 extern const he_gltf_semantic he_gltf_semantics[HE_GLTF_SEMANTICS];
 

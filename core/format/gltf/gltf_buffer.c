@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-/* The number of base64 characters between two steps of the watch; a multiple of four. */
+/* The number of base64 characters after which progress is reported; a multiple of four. */
 enum { PIECE = 1 << 16 };
 
-/* Decodes `length` characters of base64 to `to`, whose bytes were allocated for them. */
+/* Decodes `length` characters of base64 to to->own, which has room for them. */
 static he_status decode(he_gltf *asset, uint32_t uri, const char *text, size_t length,
                         he_gltf_buffer *to, he_error *err)
 {
@@ -109,16 +109,16 @@ static he_status read_uri(he_gltf *asset, he_gltf_buffer *buffer, uint32_t uri, 
     return status;
 }
 
-/* Returns true if the buffer is only a fallback for readers without the compression extension. Then
- * its file may be missing. */
+/* Returns true if the buffer is only a fallback for readers that do not know the compression
+ * extension. The file of such a buffer may be missing. */
 static bool is_fallback(const he_gltf *asset, uint32_t value)
 {
     uint32_t flag = he_json_find(&asset->json, he_gltf_meshopt(asset, value), "fallback");
     return he_json_type(&asset->json, flag) == 't';
 }
 
-/* Handles a fallback buffer whose file did not come: that is allowed if all its views are
- * compressed. */
+/* Finds the bytes of a fallback buffer. They may be missing, because they are not used if all views
+ * of the buffer are compressed. */
 static he_status find_fallback(he_gltf *asset, size_t i, uint32_t value, he_error *err)
 {
     uint32_t uri = he_json_find(&asset->json, value, "uri");

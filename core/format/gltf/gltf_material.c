@@ -16,7 +16,8 @@ static void note(he_gltf *asset, uint32_t value, const char *code, const char *t
 
 /* --- names --- */
 
-/* Adds a material's name, changed if an earlier material has it. */
+/* Adds the name of material i to `names`, with a number if an earlier material has the same name.
+ */
 static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[HE_GLTF_NAME],
                           he_error *err)
 {
@@ -35,7 +36,7 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
                  "renamed with a number, because another has the same name: material", own);
         }
         number = number > FEW && number <= i ? (unsigned)i + 1
-                                             : number; /* so the next one is mostly free */
+                                             : number; /* a larger number is mostly free */
         he_material_number_name(own, number, name);
     }
     return he_labels_add(names, name, strlen(name), &index, err);
@@ -45,7 +46,7 @@ static he_status add_name(he_gltf *asset, size_t i, he_labels *names, char name[
 
 typedef struct reading {
     he_gltf *asset;
-    bool odd; /* a number was not valid */
+    bool odd; /* some number of the material was not valid */
 } reading;
 
 static void read_number(reading *r, uint32_t object, const char *name, double *out)
@@ -140,7 +141,7 @@ static he_status add_row(he_gltf *asset, uint32_t value, const char *name, he_er
     he_material *row = NULL;
     uint32_t own = he_json_find(json, he_json_find(json, value, "extras"), "hedge");
     if (he_json_is(json, own, "name")) {
-        return HE_OK; /* written by hedge: only its name was known */
+        return HE_OK; /* hedge wrote this material, of which it knew only the name */
     }
     if (table->count == HE_MATERIALS) {
         note(asset, value, "material_limit", "left out: materials beyond 4096", "");

@@ -61,8 +61,9 @@ typedef struct polygons {
     he_gltf_accessor degrees, corners;
 } polygons;
 
-/* Checks that the degree - 2 triangles of each polygon lie at its corners, and that its corners
- * differ. `marks` has a word for each vertex. Fails if the watch cancelled the work. */
+/* Sets *fits to true if the triangles of each polygon, which are its degree - 2, have their corners
+ * among those of the polygon, and no polygon has a vertex twice. `marks` has a word for each
+ * vertex, 0 at first. Fails only if the watch cancelled the work. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -176,7 +177,7 @@ typedef struct description {
     he_rule rule;
     uint64_t components;
     uint64_t rows;
-    size_t first; /* first row in the soup */
+    size_t first; /* the column's first row that the values go to */
     uint32_t labels;
     he_gltf_accessor words;
 } description;
@@ -218,8 +219,8 @@ static he_status describe(he_gltf_surface *s, uint32_t object, description *d, b
     return status;
 }
 
-/* Reads the labels of a column. Each must be unique, because a repeated label would shift the
- * indices of all after it. */
+/* Reads the labels of a column. *fits becomes false if a label occurs twice, because a repeated
+ * label would shift the indices of all labels after it. */
 static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, bool *fits,
                              he_error *err)
 {
@@ -260,8 +261,8 @@ static he_status read_labels(he_gltf *asset, uint32_t list, he_labels **out, boo
     return HE_OK;
 }
 
-/* Writes one component of a value from its words. Returns false if the words are no value of the
- * type. */
+/* Reads one component of a value, from one or two words, and writes it to `at`. Returns false if
+ * the words are no value of the type. */
 static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
 {
     uint32_t word = next_word(walk);
@@ -291,8 +292,8 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
     return true;
 }
 
-/* Checks that every word is a value of the type, and the index of a label if the column has labels.
- * Fails if the watch cancelled the work. */
+/* Sets *fits to true if all words are values of the type and, in a column with labels, indices of
+ * labels. Fails only if the watch cancelled the work. */
 static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
                               he_error *err)
 {
@@ -354,7 +355,8 @@ static he_status renumber(he_column *column, size_t first, const he_labels *labe
     return status;
 }
 
-/* Lists the faces whose names come from the extras and not from nodes and materials. */
+/* If the column has the names of faces, notes that these faces have their names from the extras,
+ * and not from nodes or materials. */
 static he_status keep_names(he_gltf_surface *s, const description *d, he_error *err)
 {
     he_ids *named = strcmp(d->name, "object") == 0     ? &s->own_objects
@@ -449,7 +451,8 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Checks that each copy is at the position of its vertex. Fails if the watch cancelled the work. */
+/* Sets *fits to false if a copy is not at the position of its vertex. Fails only if the watch
+ * cancelled the work. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

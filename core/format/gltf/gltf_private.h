@@ -7,17 +7,22 @@
  *         "columns": [{"domain": "face", "name": "material", "type": "uint32", "components": 1,
  *                      "rule": "copy", "accessor": 5, "labels": ["", "steel"]}, ...]}}
  *
- * Numbers such as 3 name accessors of UNSIGNED_INT SCALAR. `copies` names, for each of the last
- * vertices, the one that it is a copy of, made because corners have different values (io/splits.h);
- * the mesh does not have these copies, and no index here names them. `degrees` has one number a
- * polygon, in their order; `corners` their vertices. The triangles for other programs are those of
- * the polygons, in their order. A column's accessor has the words of its rows as they are in memory
- * (a bool is a word), little-endian: of vertices, of faces, or of halfedges: the corners in the
- * order of `corners`.
+ * Numbers such as 3 are indices of accessors of UNSIGNED_INT SCALAR.
  *
- * All of it is checked, because a program that changed the file may have kept the extras. Copies at
+ * The last vertices of the primitive may be copies of others, made because corners have different
+ * values (io/splits.h). For each copy the accessor `copies` has the vertex of which it is one. The
+ * mesh does not have the copies, and no index in these extras refers to them.
+ *
+ * `degrees` has the degree of each polygon, `corners` the vertices of their corners. The triangles
+ * for other programs are those into which the polygons were cut, in the order of the polygons.
+ *
+ * A column's accessor has the values of an attribute as they are in memory, little-endian (but a
+ * bool takes a word): rows of the vertices, of the faces, or, with the domain "halfedge", of the
+ * corners in the order of `corners`.
+ *
+ * All extras are checked, because a program that changed the file may have kept them. Copies at
  * other positions than their vertices, polygons that do not match the triangles and columns of a
- * wrong number of rows are ignored with a note, and so are all extras if the node transforms the
+ * wrong number of rows are ignored with a warning, and so are all extras if the node transforms the
  * mesh. */
 #ifndef HE_FORMAT_GLTF_GLTF_PRIVATE_H
 #define HE_FORMAT_GLTF_GLTF_PRIVATE_H
@@ -25,9 +30,9 @@
 #include "format/gltf/gltf_attribute.h"
 
 bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive);
-/* Finds which vertices of a primitive are copies, from its extras. Must be called before the
- * vertices are added. p->private says whether the extras are valid so far. Fails only for lack of
- * memory, a limit or cancellation. */
+/* Finds in the extras of a primitive which of its vertices are copies. Must be called before the
+ * vertices are added. p->private says whether the extras are valid as far as they were read. Fails
+ * only for lack of memory, a limit or cancellation. */
 HE_NODISCARD he_status he_gltf_open_private(he_gltf_surface *surface, he_gltf_primitive *p,
                                             he_error *err);
 /* Adds the attributes and the polygons from the extras, in place of the triangles. Must be called

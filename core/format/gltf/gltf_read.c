@@ -17,20 +17,21 @@ typedef struct block {
 
 typedef struct glb {
     he_import *into;
-    unsigned char head[HEADER]; /* an incomplete header */
+    unsigned char head[HEADER]; /* the first bytes of an incomplete header of file or chunk */
     size_t head_length;
     uint64_t offset; /* offset of the next byte */
     uint64_t length; /* length of the file, as its header says */
-    uint64_t left;   /* bytes of the chunk still to come */
-    size_t chunks;   /* chunks that have begun */
+    uint64_t left;   /* bytes of the present chunk still to come */
+    size_t chunks;   /* number of chunks that have begun */
     /* The number of bytes of padding that may follow a chunk whose length is no multiple of 4. */
     size_t padding;
     bool begun, has_bin;
     block json, bin;
-    block *chunk; /* where its bytes are stored; NULL: nowhere */
+    block *chunk; /* where the bytes of the present chunk are stored; NULL if they are ignored */
 } glb;
 
-/* Appends bytes to a block. `most` is the largest size that it will have. */
+/* Appends bytes to a block. `most` is the largest size that the block will ever have, `limit` the
+ * largest that it may have (0 for no limit). */
 static he_status keep(block *b, const void *bytes, size_t n, uint64_t most, uint64_t limit,
                       he_error *err)
 {
@@ -109,8 +110,8 @@ static he_status take_header(glb *g, he_error *err)
 }
 
 /* Skips padding. After a chunk whose length is no multiple of 4, the next chunk follows directly,
- * or after padding. Returns true if the bytes that were read as the header of a chunk begin with
- * such padding; it is then skipped, and the rest of the header is still to come. */
+ * or after padding. If the bytes that were read as the header of a chunk begin with padding, it is
+ * removed from them and the function returns true: the rest of the header is still to come. */
 static bool skip_padding(glb *g)
 {
     size_t n = g->padding;
@@ -312,8 +313,8 @@ static he_status gltf_open(he_import *into, void **state, he_error *err)
 
 const he_reading he_gltf_reading = {gltf_open, gltf_feed, gltf_finish, gltf_close, true};
 
-/* Recognises a JSON object with a member "asset", which is near the beginning of nearly all
- * files. */
+/* Returns true if the bytes begin with a JSON object that has a member "asset", which is near the
+ * beginning of nearly all glTF files. */
 bool he_gltf_sniff(const char *bytes, size_t n)
 {
     static const char member[] = "\"asset\"";

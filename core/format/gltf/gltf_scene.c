@@ -9,14 +9,14 @@
 /* A node whose children are being visited. */
 typedef struct level {
     he_gltf_frame frame;
-    uint32_t children, child; /* array of children in the JSON; the next child, or HE_NONE */
+    uint32_t children, child; /* JSON array of the node's children; the next child, or HE_NONE */
 } level;
 
 typedef struct scene {
     he_gltf *asset;
     he_gltf_surface surface;
-    uint64_t *visited, *used; /* nodes visited; meshes used */
-    uint64_t instances;       /* uses of meshes beyond the first */
+    uint64_t *visited, *used; /* bits for the nodes visited, and for the meshes used */
+    uint64_t instances;       /* how often a mesh was used that had been used before */
     level *levels;
     size_t depth, capacity;
 } scene;
@@ -67,7 +67,8 @@ static he_status get_numbers(const he_json *json, uint32_t node, numbers *n, he_
  * rounding. */
 static const double UNIT = 1e-4;
 
-/* Normalises a quaternion, because one of another length than 1 would scale, too. */
+/* Normalises the quaternion of a rotation, because one of another length than 1 would also scale.
+ */
 static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error *err)
 {
     const he_json *json = &asset->json;
@@ -94,7 +95,7 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     return HE_OK;
 }
 
-/* Returns T * R * S. */
+/* Returns the product of a translation t, the rotation of a unit quaternion q, and a scaling s. */
 static he_gltf_frame compose(const double *t, const double *q, const double *s)
 {
     double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -198,7 +199,8 @@ static he_status push(scene *s, const he_gltf_frame *frame, uint32_t children, u
     return HE_OK;
 }
 
-/* Visits node `index`; `value` is the JSON number that refers to it, for errors. */
+/* Visits node `index`: adds its mesh, and pushes its children. `value` is the JSON number that
+ * refers to the node, which errors name. */
 static he_status visit(scene *s, uint64_t index, uint32_t value, const he_gltf_frame *parent,
                        he_error *err)
 {
@@ -244,7 +246,7 @@ static he_status visit_named(scene *s, uint32_t value, const he_gltf_frame *pare
     return status == HE_OK ? visit(s, index, value, parent, err) : status;
 }
 
-/* Visits everything below the nodes that were visited so far. */
+/* Visits all descendants of the nodes that were visited so far. */
 static he_status visit_rest(scene *s, he_error *err)
 {
     he_status status = HE_OK;
@@ -333,8 +335,8 @@ static he_status find_parents(he_gltf *asset, parent *parents, he_error *err)
     return status;
 }
 
-/* Reports a cycle of nodes. A node that is below no root has a parent, and so has that parent:
- * following them leads round a cycle. */
+/* Refuses a cycle of nodes. A node that no root leads to has a parent, and so has each of its
+ * ancestors: going from parent to parent must therefore end in a cycle. */
 static he_status refuse_cycle(const scene *s, const parent *parents, uint32_t node, he_error *err)
 {
     for (size_t i = 0; i < s->asset->nodes.count; i++) {

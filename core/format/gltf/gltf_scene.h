@@ -6,10 +6,10 @@
 
 enum { HE_GLTF_DEPTH = 1 << 16 }; /* most levels of nodes inside nodes */
 
-/* Fills the import with meshes: those of the scene that the asset's member `scene` names, else of
- * the first scene, else of all nodes that are no children, else all meshes. The mesh of a node
- * comes before those of its children, in the order of the file. Returns the errors of
- * he_gltf_add_mesh, too.
+/* Fills the import with meshes: those of the scene that the asset's member `scene` names; without
+ * this member those of the first scene; without scenes those of all nodes that are no children of
+ * others; without nodes all meshes. The mesh of a node comes before those of its children, which
+ * are in the order of the file. Returns the errors of he_gltf_add_mesh, too.
  * Returns HE_BAD_VALUE if a node is reached twice or is inside itself.
  * Returns HE_BAD_INDEX if a reference is to nothing that exists.
  * Returns HE_LIMIT if a limit would be exceeded.

@@ -34,8 +34,8 @@ static he_status get_mode(const he_gltf *asset, uint32_t primitive, uint64_t *mo
     return value == HE_NONE ? HE_OK : he_json_whole(&asset->json, value, POINTS, FAN, mode, err);
 }
 
-/* Gets an accessor that must have all its data. A primitive whose data exists only in compressed
- * form looks like one without data, which gets its own message. */
+/* Gets an accessor of a primitive. If its data exists only with Draco compression, the accessor has
+ * no bytes; that is refused with a message of its own. */
 static he_status get_whole(he_gltf *asset, uint32_t primitive, uint32_t value,
                            he_gltf_accessor *out, he_error *err)
 {
@@ -117,8 +117,8 @@ static he_status located(he_status status, uint64_t at, he_error *err)
 
 /* --- vertices and faces --- */
 
-/* Charges the memory of the soup to the asset's limit, and that of a place for each element whose
- * distance from the one before differs. */
+/* Charges the memory that a primitive takes to the asset's limit: that of the soup, and that of
+ * he_places, in which an element takes memory if its distance from the one before is unusual. */
 static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     he_import *into = s->asset->into;
@@ -196,8 +196,8 @@ static he_status bad_index(const he_gltf_surface *s, const he_gltf_primitive *p,
     return status;
 }
 
-/* Finds the corners of triangle i of a strip or fan that is being read: `held` has the first
- * corner, and the last ones. */
+/* Finds the corners of triangle i of a strip or fan. `held` has the first corner that was read and
+ * the last three. */
 static void corners_of(uint64_t mode, uint64_t i, const uint32_t held[4], uint32_t corners[3])
 {
     bool odd = i % 2 == 1;
@@ -214,7 +214,7 @@ static he_status add_faces(he_gltf_surface *s, const he_gltf_primitive *p, he_er
     he_gltf_walk walk = {.accessor = &p->indices};
     const he_gltf_accessor *source = p->indexed ? &p->indices : &p->positions;
     uint64_t count = source->count, faces = 0;
-    uint32_t held[4] = {0}, corners[3]; /* the first one and the last three */
+    uint32_t held[4] = {0}, corners[3]; /* `held`: the first corner read, and the last three */
     he_status status = HE_OK;
     for (uint64_t i = 0; i < count && status == HE_OK; i++) {
         uint32_t index = (uint32_t)i;
@@ -387,8 +387,8 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
     return status;
 }
 
-/* Sets the names of faces. Names from extras, which some faces have, take precedence over those
- * from nodes and materials. */
+/* Makes the face attribute `name`, which is "object" or "material". Names from extras, which some
+ * faces have, take precedence over those from nodes and materials. */
 static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const he_ids *own,
                               const char *name, he_error *err)
 {

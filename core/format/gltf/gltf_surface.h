@@ -7,8 +7,8 @@
 
 enum { HE_GLTF_ATTRIBUTES = 256 };
 
-/* The transformation of a node: the first coordinate of point p becomes the product of row 0 with
- * p, plus the last number of row 0, and so on. */
+/* The transformation of a node, as the first three rows of a 4 x 4 matrix: coordinate i of point p
+ * becomes row[i][0] * p.x + row[i][1] * p.y + row[i][2] * p.z + row[i][3]. */
 typedef struct he_gltf_frame {
     double row[3][4];
 } he_gltf_frame;
@@ -19,18 +19,18 @@ extern const he_gltf_frame he_gltf_no_frame; /* the identity, bit by bit */
  * ...} is empty; the names are borrowed. */
 typedef struct he_gltf_surface {
     he_gltf *asset;
-    he_labels *names; /* names of materials, in their order */
+    he_labels *names; /* names of the asset's materials, by their index */
     he_spans object, material;
     he_ids own_objects,
-        own_materials; /* pairs of faces from, to, whose names were read from extras */
-    uint64_t given[HE_GLTF_ATTRIBUTES]; /* rows with a value, for each column of the soup */
-    uint64_t mirrored;                  /* faces that were reversed */
-    bool begun;                         /* the distance of places is known */
+        own_materials; /* pairs: ranges of faces, from and to, whose names came from extras */
+    uint64_t given[HE_GLTF_ATTRIBUTES]; /* number of rows with a value in each column of the soup */
+    uint64_t mirrored;                  /* number of faces that were reversed */
+    bool begun;                         /* the import's he_places are initialised */
 } he_gltf_surface;
 
 void he_gltf_surface_clear(he_gltf_surface *surface);
-/* Adds all primitives of a glTF mesh (a value of the JSON). `name` is the name of the object,
- * HE_NONE if it has none. After a failure the soup contains some of them. */
+/* Adds all primitives of a glTF mesh. `mesh` is its JSON value, `name` the JSON string with the
+ * name of the object, or HE_NONE. After a failure the soup contains some of the primitives. */
 HE_NODISCARD he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t name,
                                         const he_gltf_frame *frame, he_error *err);
 /* Adds one primitive of a glTF mesh, with the parameters of he_gltf_add_mesh. */

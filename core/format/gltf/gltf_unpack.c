@@ -62,7 +62,7 @@ typedef struct choice {
     int absent; /* the word that a missing member stands for; -1 if it must not be missing */
 } choice;
 
-/* Finds which of the words the member is. */
+/* Reads a member that must be one of some words. *out becomes the index of the word. */
 static he_status find_word(const he_gltf *asset, uint32_t object, const choice *c, int *out,
                            he_error *err)
 {
@@ -115,8 +115,8 @@ static he_status read_stream(const he_gltf *asset, uint32_t object, he_meshopt_s
                          : he_json_fail(&asset->json, object, err, HE_BAD_VALUE, "%s", wrong);
 }
 
-/* Checks whether the bytes can be a stream of this layout. If not, no memory is allocated for its
- * elements. */
+/* Refuses bytes that cannot be a stream of this layout, before memory for its elements is
+ * allocated. */
 static he_status check_stream(const he_gltf *asset, uint32_t object,
                               const he_meshopt_stream *stream, const he_gltf_buffer *packed,
                               he_error *err)
@@ -166,7 +166,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     if (status != HE_OK) {
         return status;
     }
-    /* below 2^32 and 2^9 */
+    /* The product does not overflow: its factors are below 2^32 and 2^9. */
     uint64_t bytes = stream.count * stream.stride;
     if (length > bytes) {
         return he_json_fail(json, view, err, HE_BAD_VALUE,
@@ -197,7 +197,7 @@ static he_status unpack(he_gltf *asset, uint32_t view, uint32_t object, he_gltf_
     return he_gltf_tell(asset, err);
 }
 
-/* Returns the index of a view in the list of views, whose values rise. */
+/* Returns the index of a view (a JSON value) in the list of views, which is in rising order. */
 static size_t number_of(const he_ids *views, uint32_t view)
 {
     size_t from = 0, to = views->count;

@@ -42,7 +42,7 @@ static bool is_member(const he_json *json, uint32_t object, const char *name, ui
     return value == HE_NONE || he_json_whole(json, value, 0, HE_JSON_WHOLE, out, NULL) == HE_OK;
 }
 
-/* An accessor of indices. */
+/* Where an accessor of indices has its elements. */
 typedef struct indices {
     uint64_t view, offset, type, count;
 } indices;
@@ -60,7 +60,7 @@ static bool read_indices(const he_gltf *asset, uint32_t primitive, indices *out)
            is_member(json, accessor, "count", &out->count);
 }
 
-/* Returns true if both objects have the same names in the same order, with equal numbers. */
+/* Returns true if two JSON objects have the same names in the same order, with equal numbers. */
 static bool same_attributes(const he_json *json, uint32_t a, uint32_t b)
 {
     uint32_t i = he_json_first(json, a), k = he_json_first(json, b);
@@ -83,7 +83,7 @@ typedef struct checking {
     he_gltf *asset;
     uint32_t whole; /* the primitive of all faces */
     indices all;
-    uint64_t offset; /* offset of the next triangles */
+    uint64_t offset; /* byteOffset that the triangles of the next primitive must have */
 } checking;
 
 static bool fits_primitive(checking *s, uint32_t primitive)
@@ -146,8 +146,8 @@ static bool same_names(const he_gltf_surface *surface, uint32_t list)
     return item == HE_NONE && i == count;
 }
 
-/* Checks whether the scene is as hedge wrote it. Each test is charged for the values of the JSON
- * that it visits. */
+/* Checks whether the scene is as hedge wrote it. The JSON values that are visited are charged to
+ * the asset's limit. */
 static he_status check_scene(he_gltf_surface *surface, uint32_t value, uint32_t private, bool *fits,
                              he_error *err)
 {
@@ -198,7 +198,7 @@ he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scene, bool *whol
 
 /* --- the order of faces --- */
 
-/* Reads the order of faces, and checks that each number below the count occurs once. */
+/* Reads the order of faces. Sets *fits to false unless each number below the count occurs once. */
 static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t *order, bool *fits,
                             he_error *err)
 {
@@ -221,7 +221,8 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
     return status;
 }
 
-/* Sorts the places of faces in the input into the given order. */
+/* Sorts the positions of faces in the input into the order of the faces: face i becomes face
+ * order[i]. */
 static he_status order_places(he_places *places, const uint32_t *order, size_t count, he_error *err)
 {
     he_places made;

@@ -15,8 +15,8 @@ enum { ELEMENT_ROOM = 128 };
 
 typedef struct glb_writer {
     he_glb_parts g;
-    uint32_t *at;    /* if vertices are split: for each vertex its number in the present face */
-    uint32_t *ranks; /* ranks of faces among the live ones, NULL if they are the ids */
+    uint32_t *at;    /* if vertices are split, the number that each has in the present face */
+    uint32_t *ranks; /* number of each face among the live faces, NULL if it is the id */
     stage stage;
     size_t json;       /* the next byte of the JSON */
     size_t part;       /* the part being written */
@@ -24,7 +24,7 @@ typedef struct glb_writer {
     uint32_t halfedge; /* the next corner of the face, or HE_NONE */
     size_t copy;       /* the next copy */
     he_cut_walk walk;
-    uint64_t written; /* bytes of the part written */
+    uint64_t written; /* bytes of the present part, or of all streams, written so far */
 } glb_writer;
 
 static void glb_close(void *state)
@@ -97,10 +97,10 @@ static uint32_t number_of(const glb_writer *w, uint32_t vertex)
     return w->g.numbers != NULL ? w->g.numbers[vertex] : vertex;
 }
 
-/* --- walks over the elements of a part, which return HE_NONE after the last --- */
+/* --- walks over the elements of a part, which return HE_NONE after the last one --- */
 
-/* Walks over the copies of vertices, which follow the vertices; returns for each the half-edge
- * whose corner it stands for. */
+/* Returns the half-edge whose corner the next copy of a vertex stands for, or HE_NONE after the
+ * last copy. */
 static uint32_t next_copy(glb_writer *w)
 {
     return w->copy < w->g.splits.copies.count ? w->g.splits.copies.ids[w->copy++] : HE_NONE;
@@ -147,7 +147,7 @@ static uint32_t next_row(glb_writer *w, he_kind domain)
     return domain == HE_VERTEX ? next_vertex(w) : domain == HE_FACE ? next_face(w) : next_corner(w);
 }
 
-/* Finds the numbers that vertices have in a face, if vertices are split. */
+/* Sets the numbers that the vertices of a face have in it, because some may be copies. */
 static void enter_face(const glb_writer *w, uint32_t face)
 {
     const he_content *c = &w->g.mesh->c;
@@ -189,8 +189,9 @@ static char *put_position(const glb_writer *w, uint32_t vertex, char *p)
     return p;
 }
 
-/* Writes a part's value for the next vertex, or the next copy of a vertex; nothing after the last.
- * A copy has the values of the corner it stands for. */
+/* Writes a part's value for the next vertex, and after the last vertex for the next copy of a
+ * vertex; after the last copy it writes nothing. A copy has the values of the corner it stands
+ * for. */
 static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_content *c = &w->g.mesh->c;
@@ -210,7 +211,7 @@ static char *put_vertex(glb_writer *w, const he_glb_part *part, char *p)
     return put_value(part, part->column->domain == HE_HALFEDGE ? h : id, p);
 }
 
-/* Writes the next element of a part; nothing after the last. */
+/* Writes the next element of a part. After the last element it writes nothing. */
 static char *put_element(glb_writer *w, const he_glb_part *part, char *p)
 {
     const he_mesh *m = w->g.mesh;
@@ -249,7 +250,7 @@ static void begin_part(glb_writer *w)
     w->written = 0;
 }
 
-/* Collects all elements of a part for compression; indices are stored as 32-bit words for that. */
+/* Collects all elements of a part and compresses them. The codec takes indices as 32-bit words. */
 static he_status pack_part(glb_writer *w, he_glb_part *part, he_error *err)
 {
     he_glb_part plain = *part;

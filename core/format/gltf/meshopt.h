@@ -27,7 +27,7 @@ typedef enum he_meshopt_filter {
     HE_MESHOPT_FILTERS
 } he_meshopt_filter;
 
-/* The names that the extension has for the modes and filters of streams. */
+/* The names of the modes and filters in the JSON of the extension. */
 extern const char *const he_meshopt_modes[HE_MESHOPT_MODES];
 extern const char *const he_meshopt_filters[HE_MESHOPT_FILTERS];
 
@@ -46,10 +46,8 @@ uint64_t he_meshopt_least(const he_meshopt_stream *stream);
 /* Returns the version of the codec that a stream states; -1 if the bytes are no stream of this
  * mode. */
 int he_meshopt_version(const he_meshopt_stream *stream, const unsigned char *bytes, size_t length);
-enum {
-    HE_MESHOPT_ATTRIBUTES_VERSION = 0,
-    HE_MESHOPT_INDEX_VERSION = 1
-}; /* the latest versions that are read */
+/* The latest versions of the codecs that are read. */
+enum { HE_MESHOPT_ATTRIBUTES_VERSION = 0, HE_MESHOPT_INDEX_VERSION = 1 };
 
 /* Decodes a stream to `to`, which must have room for all elements. Returns false if the bytes are
  * no such stream. Whether decoded indices are in range is not checked. */

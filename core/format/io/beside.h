@@ -1,10 +1,10 @@
 /* beside.h - files that came together with the file that is read: the buffers of a glTF asset, the
  * material library of an OBJ file.
  *
- * A reader looks them up by the names in its file; nothing is ever opened. A name finds the file
- * with exactly that name. If there is none, folders are ignored, since browsers and curl send names
- * without them: then it finds the file with the same last part after a slash or backslash, unless
- * several have it. */
+ * A reader looks them up by the names in its file; no file is ever opened. A name finds the file
+ * with exactly that name. If there is none, folders are ignored, because browsers and curl send
+ * names without them: the name then finds the file with the same last part after a slash or
+ * backslash, unless several files have it. */
 #ifndef HE_FORMAT_IO_BESIDE_H
 #define HE_FORMAT_IO_BESIDE_H
 

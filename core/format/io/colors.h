@@ -1,13 +1,13 @@
 /* colors.h - colours: in a mesh three or four numbers from 0 to 1, in files also bytes.
  *
  * A mesh's colours are its attributes "color" (from glTF also color1 and so on) of float or double;
- * 1 is full, and a byte k means k / 255. So bytes are written back as they were read.
+ * 1 is full intensity, and a byte k means k / 255. So bytes are written back as they were read.
  *
- * READING of text formats: three or four numbers, on some elements. They count from 0 to 255 if the
- * format distinguishes integers from fractions and all of them were integers; or, with a note, if
- * all numbers but alphas are whole and one is above 1. Numbers above 255 are then full. The
- * attribute is of double, and has four components if any colour is not opaque; those without an
- * alpha are opaque. Elements without a colour get zeros. */
+ * READING. In a text format a colour is three or four numbers, and some elements may have none. The
+ * numbers count from 0 to 255 if the format distinguishes integers from fractions and all of them
+ * are integers; or, with a warning, if all numbers but alphas are whole and one is above 1. Numbers
+ * above 255 then mean full intensity. The attribute has doubles, in four components if any colour
+ * is not opaque; a colour without an alpha is opaque. Elements without a colour get zeros. */
 #ifndef HE_FORMAT_IO_COLORS_H
 #define HE_FORMAT_IO_COLORS_H
 
@@ -17,11 +17,11 @@
 /* {0} is empty. */
 typedef struct he_colors {
     double (*rows)[4];
-    size_t count, capacity; /* rows; elements beyond have no colour */
-    size_t given;
-    bool fractions; /* the format has no integers, or some number was not one */
-    bool broken;    /* a number other than an alpha has a fraction */
-    double highest; /* highest of all numbers but alphas */
+    size_t count, capacity; /* number of rows, one for each element up to the last with a colour */
+    size_t given;           /* number of elements that have a colour */
+    bool fractions;         /* the format has no integers, or some number was not an integer */
+    bool broken;            /* a number other than an alpha is not whole */
+    double highest;         /* highest of all numbers other than alphas */
 } he_colors;
 
 void he_colors_clear(he_colors *colors);
@@ -41,8 +41,8 @@ const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_notes *n
 uint32_t he_color_byte(double component);
 /* Returns true if the component equals its nearest byte, to the precision of a float. */
 bool he_color_is_byte(double component);
-/* Returns true if bytes can represent all colours exactly. `lost` gets the number of rows that they
- * cannot represent. */
+/* Returns true if bytes can represent all colours exactly. Sets *lost to the number of colours that
+ * they cannot represent. */
 bool he_colors_are_bytes(const he_mesh *mesh, const he_column *column, uint64_t *lost);
 
 #endif

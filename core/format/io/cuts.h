@@ -10,9 +10,9 @@
 /* {0} is empty. */
 typedef struct he_cuts {
     const he_mesh *mesh;
-    he_ids corners;            /* three vertices for each triangle of faces that are no triangles */
-    uint64_t polygons, turned; /* faces that were cut; faces with flipped triangles */
-    uint64_t steps;            /* steps of cutting them */
+    he_ids corners;            /* three vertices for each triangle into which a polygon was cut */
+    uint64_t polygons, turned; /* number of faces that were cut; of those with flipped triangles */
+    uint64_t steps;            /* steps of work that cutting took */
 } he_cuts;
 
 /* Cuts all faces. The mesh is borrowed and must not change until the cuts are cleared. `watch` may
@@ -28,9 +28,9 @@ uint64_t he_cuts_count(const he_cuts *cuts);
 /* A walk over all triangles, face by face. It begins with {0}. */
 typedef struct he_cut_walk {
     uint32_t face; /* the next face, or the one being visited */
-    uint32_t left; /* its triangles still to come */
-    bool is_cut;   /* it is no triangle */
-    size_t corner; /* next corner of cuts */
+    uint32_t left; /* triangles of the face being visited that are still to come */
+    bool is_cut;   /* the face being visited was cut, because it is no triangle */
+    size_t corner; /* index of the next vertex in he_cuts.corners */
 } he_cut_walk;
 
 /* Gets the three vertices of the next triangle of the walk. Returns false after the last one. */

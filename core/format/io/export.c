@@ -169,8 +169,8 @@ char *he_export_row(const he_column *column, size_t row, char *to)
     return to;
 }
 
-/* Hashes bytes onto h. The seed is secret, so a client cannot choose many values whose hashes are
- * close together. */
+/* Continues the hash h with more bytes. The first h, the seed, is not known to clients, so they
+ * cannot choose many values whose hashes collide. */
 static uint64_t hash(uint64_t h, const void *bytes, size_t length)
 {
     const unsigned char *p = bytes;
@@ -191,7 +191,7 @@ typedef struct table {
     const he_column *const *columns;
     size_t count;
     bool apart;
-    uint32_t *slots; /* a number + 1, or 0 */
+    uint32_t *slots; /* number of a distinct value + 1, or 0 in a free slot */
     size_t mask;
 } table;
 

@@ -59,8 +59,7 @@ void he_export_note_materials(const he_mesh *mesh, he_notes *notes);
 /* Returns one component of an attribute's value as a double; 0 in place of a value that is not
  * finite. */
 double he_export_number(const he_column *column, size_t row, uint32_t component);
-/* These three functions write to `to` without a NUL and return the end. This one writes a text of
- * any length. */
+/* Copies a text of any length to `to`, without its NUL, and returns the end of the copy. */
 char *he_export_text(const char *text, char *to);
 /* Writes one component of an attribute's value, at most HE_NUMBER_TEXT bytes, and returns the
  * end. */
@@ -68,11 +67,11 @@ char *he_export_value(const he_column *column, size_t row, uint32_t component, c
 /* Writes a blank and a value for each component of a row, and returns the end. */
 char *he_export_row(const he_column *column, size_t row, char *to);
 
-/* The distinct values of all corners, compared bit by bit and numbered in the order of faces, so
- * that each is written to a file only once. */
+/* The distinct values of attributes at all corners, compared bit by bit and numbered in the order
+ * of faces, so that each is written to a file only once. */
 typedef struct he_distinct {
-    uint32_t *number; /* number of the value of each half-edge that has a face */
-    he_ids first;     /* for each number, a half-edge that has it */
+    uint32_t *number; /* number of the value at each half-edge that has a face */
+    he_ids first;     /* the first half-edge with each value, by the value's number */
 } he_distinct;
 
 /* Finds the distinct combinations of values in the `count` columns. With `apart`, the values of

@@ -38,9 +38,9 @@ typedef struct he_import {
     he_soup soup;
     he_notes notes;
     he_places vertices, faces;
-    double edges;        /* number of edges that the file announces, */
-    uint64_t edges_line; /* and the line where it does; 0: it does not */
-    he_beside *beside;   /* while reading: the files that came with it; may be NULL */
+    double edges;        /* number of edges that the file declares, if edges_line is not 0 */
+    uint64_t edges_line; /* line that declares the number of edges, 0 if none does */
+    he_beside *beside;   /* the files that came with the one being read; NULL if there are none */
 } he_import;
 
 void he_import_clear(he_import *import);
@@ -55,7 +55,7 @@ typedef struct he_reading {
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
     he_status (*finish)(void *state, he_error *err);
     void (*close)(void *state);
-    bool at_end; /* feed only stores the bytes: finish parses them, and steps the soup's watch */
+    bool at_end; /* feed only stores the bytes; finish parses them and steps the soup's watch */
 } he_reading;
 
 /* The functions of a format's writer. `step` writes the next bytes at `*p` and advances it; at
@@ -67,18 +67,18 @@ typedef struct he_writing {
                       void **state, he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
-    bool cuts; /* polygons are cut into triangles (cuts.h), for which long_faces.h may be filled
-                  before */
+    bool cuts; /* the writer cuts polygons into triangles (cuts.h), so the caller may fill the
+                  mesh's cache of long faces (long_faces.h) before */
 } he_writing;
 
 typedef struct he_format {
     const char *name;
     const char *doc;
     const char *const
-        *media_types; /* NULL ends each of these lists; exports are labelled with the first */
+        *media_types; /* NULL ends this list and the next ones; exports get the first media type */
     const char *const *extensions;
     const char *const *encodings; /* encodings of the writer, the default first */
-    const char *const *carries; /* what is preserved: "polygons", or an attribute as "face color" */
+    const char *const *carries;   /* what files preserve: "polygons", attributes as "face color" */
     /* Returns true if these could be the first bytes of a file in this format. */
     bool (*sniff)(const char *bytes, size_t n);
     const he_reading *reading; /* NULL: the format cannot be read */
@@ -88,13 +88,15 @@ typedef struct he_format {
 /* Returns the i-th format of the table; NULL after the last. Files of unknown format are tried in
  * this order. */
 const he_format *he_format_at(size_t i);
-/* Find a format by its name, media type or file extension; NULL if there is none. A media type may
- * be followed by parameters. Letter case does not matter, and an extension has no dot. */
+/* These functions find a format by its name, media type, file extension or first bytes, and return
+ * NULL if there is none. A media type may be followed by parameters. Letter case does not matter,
+ * except in a name; an extension has no dot. */
 const he_format *he_format_find(const char *name);
 const he_format *he_format_of_media_type(const char *type);
 const he_format *he_format_of_extension(const char *extension);
 const he_format *he_format_sniff(const void *bytes, size_t n);
-/* Returns the index of an encoding in the format's list of encodings, -1 if it is not there. */
+/* Returns the index of an encoding in the format's list of encodings, or -1 if the list does not
+ * have it. */
 int he_format_encoding(const he_format *format, const char *encoding);
 
 typedef struct he_reader he_reader;
@@ -117,8 +119,8 @@ HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size
  * stay as long as the reader. For each file that the input does not name, a warning `ignored_file`
  * is added. `beside` may be NULL. */
 void he_reader_beside(he_reader *reader, he_beside *beside);
-/* Returns true if he_reader_finish takes about as long as feeding the bytes. It should then have a
- * watch. */
+/* Returns true if he_reader_finish takes about as long as feeding the bytes. The caller should then
+ * set a watch with he_reader_watch. */
 bool he_reader_reads_at_end(const he_reader *reader);
 void he_reader_watch(he_reader *reader, he_watch *watch);
 /* Ends the input and gets the import, which the caller clears; after this the reader can only be
@@ -129,7 +131,7 @@ HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_er
 typedef struct he_writer he_writer;
 
 /* Makes a writer of a mesh in a format. `encoding` is an index into the format's list of encodings.
- * The work before the first byte takes time linear in the mesh, and steps `watch` (NULL: none).
+ * The call takes time linear in the mesh, and reports progress to `watch`, which may be NULL.
  * Returns HE_UNSUPPORTED if the format cannot be written.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */

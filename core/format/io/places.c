@@ -28,7 +28,7 @@ he_status he_places_begin_run(he_places *places, uint32_t element, uint64_t at, 
 
 uint64_t he_places_find(const he_places *places, uint32_t element)
 {
-    size_t low = 0, high = places->count; /* the run is in [low, high) */
+    size_t low = 0, high = places->count; /* the run sought is one of [low, high) */
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
         if (places->runs[middle].first <= element) {

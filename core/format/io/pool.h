@@ -14,8 +14,8 @@ typedef struct he_pool {
     /* The index of the value of each corner, HE_NONE if it has none. The list may be shorter than
      * the number of corners. */
     he_ids of;
-    size_t named;     /* corners that have one */
-    uint32_t highest; /* highest index named */
+    size_t named;     /* number of corners that have a value */
+    uint32_t highest; /* highest index that a corner refers to */
 } he_pool;
 
 void he_pool_clear(he_pool *pool);

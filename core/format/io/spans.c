@@ -90,7 +90,7 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, he_n
 {
     const char *begin = he_skip_blanks(p, line->end);
     size_t room = (size_t)(line->end - begin);
-    char *name = he_mem_alloc(3 * room); /* room for the bytes, and for them in UTF-8 */
+    char *name = he_mem_alloc(3 * room); /* the name takes `room` bytes, twice that in UTF-8 */
     if (name == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a name of %zu bytes", room);
     }

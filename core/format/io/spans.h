@@ -12,7 +12,7 @@
 
 /* The values of consecutive faces. {0} is empty: every face has the value 0, or the label "". */
 typedef struct he_spans {
-    he_ids changes;    /* pairs of first face and value */
+    he_ids changes;    /* pairs: a face, and the value that holds from this face on */
     he_labels *labels; /* NULL for plain numbers */
 } he_spans;
 
@@ -40,8 +40,9 @@ HE_NODISCARD he_status he_line_name(const he_line *line, const char *p, he_notes
 /* Does what he_spans_set_label does, with a name that he_line_name reads from the line. */
 HE_NODISCARD he_status he_spans_set_name(he_spans *spans, size_t face, const he_line *line,
                                          const char *p, he_notes *notes, he_error *err);
-/* Writes the names to an attribute with labels, for the faces before `faces`, except those listed
- * in `own`: rising pairs of the first face of a range and the face after its last. */
+/* Writes the names of the faces before face `faces` to an attribute with labels, except for the
+ * faces in the ranges that `own` lists: rising pairs of a first face and the face after the
+ * last. */
 HE_NODISCARD he_status he_spans_merge(he_spans *spans, size_t faces, he_column *column,
                                       const he_ids *own, he_error *err);
 /* Makes the uint32 attribute `name` of the faces, unless every face has the default value. */

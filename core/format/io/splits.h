@@ -12,11 +12,11 @@
 
 #include "format/io/export.h"
 
-/* The vertices of a file after splitting. {0} is empty: no columns, no copies. */
+/* The vertices of a file after splitting. {0} means that no vertex is split. */
 typedef struct he_splits {
-    uint32_t *number; /* vertex that stands for each half-edge with a face */
-    uint32_t *own;    /* for each vertex the half-edge whose values it has; HE_NONE */
-    he_ids copies;    /* for each copy a half-edge whose origin is the vertex */
+    uint32_t *number; /* number of the vertex that is written for each half-edge with a face */
+    uint32_t *own;    /* half-edge whose values each vertex has; HE_NONE if it has no face */
+    he_ids copies;    /* a half-edge for each copy: its origin is the vertex that was copied */
 } he_splits;
 
 /* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `watch`

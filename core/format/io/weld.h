@@ -1,8 +1,8 @@
 /* weld.h - merges points at equal positions into one vertex, for formats that repeat the position
  * of a corner in each of its faces.
  *
- * Positions are equal if they are bit by bit, except that -0 equals 0. A hash table contains the
- * positions of a soup; vertices are numbered in the order in which they first appear. The hash
+ * Positions are equal if all their bits are equal, except that -0 equals 0. A hash table contains
+ * the positions of a soup; vertices are numbered in the order in which they first appear. The hash
  * depends on an address, so no file can be made in which all positions collide. */
 #ifndef HE_FORMAT_IO_WELD_H
 #define HE_FORMAT_IO_WELD_H
@@ -10,7 +10,7 @@
 #include "build/build.h"
 
 typedef struct he_weld_slot {
-    uint32_t hash, vertex; /* hash, and number + 1 of a vertex; 0 in a free slot */
+    uint32_t hash, vertex; /* hash of a position; number of its vertex + 1, 0 in a free slot */
 } he_weld_slot;
 
 /* {0} is empty. */

@@ -8,14 +8,14 @@
 typedef struct library {
     he_import *into;
     he_lines lines;
-    he_labels *names; /* names in the table already, and of the materials read */
-    he_ids slots;     /* for each name its slot in the table, HE_NONE if there was no room */
+    he_labels *names; /* names of all materials in the table, and of those read */
+    he_ids slots;     /* slot in the table for each name, HE_NONE if there was no room for it */
     char *name;       /* name of the present material, "" if there is none */
     size_t length, room;
     he_look look;
-    bool has_opacity;    /* it came from d, which takes precedence over Tr */
-    uint64_t understood; /* lines with a keyword of a library */
-    uint64_t first;      /* the first line with another keyword, 0 for none */
+    bool has_opacity;    /* the opacity came from d, which takes precedence over Tr */
+    uint64_t understood; /* number of lines with a keyword of a library */
+    uint64_t first;      /* the first line with an unknown keyword, 0 if there is none */
 } library;
 
 static void note(library *l, const char *code, const char *text, const char *subject, size_t length)
@@ -24,7 +24,7 @@ static void note(library *l, const char *code, const char *text, const char *sub
                  &(he_warning){.code = code, .text = text, .subject = subject, .length = length});
 }
 
-/* Finds the number of the material with this name; *fresh says whether the name is new. */
+/* Finds the number of a name among l->names, or adds the name; *fresh says whether it is new. */
 static he_status number_name(library *l, const char *name, size_t length, uint32_t *number,
                              bool *fresh, he_error *err)
 {
@@ -71,7 +71,7 @@ static he_status add_row(library *l, uint32_t number, bool fresh, he_error *err)
     return status;
 }
 
-/* Ends the material whose lines were read: checks it and adds it to the table. */
+/* Ends the material whose lines were just read: checks it, and adds it to the table. */
 static he_status end_material(library *l, he_error *err)
 {
     uint32_t number = 0;
@@ -127,8 +127,8 @@ static he_status begin_material(library *l, const he_line *line, const char *p, 
     return status;
 }
 
-/* Reads a colour: one number, which stands for three, or three. A colour given by a spectrum or in
- * other terms gets a warning. */
+/* Reads a colour: three numbers, or one that stands for three. A colour given by a spectrum or as
+ * CIE XYZ is ignored with a warning. */
 static he_status read_color(library *l, const he_line *line, const char *keyword, const char *p,
                             double *out, he_error *err)
 {
@@ -206,8 +206,8 @@ static bool is_texture(const char *p, size_t length)
            is_any(p, length, words);
 }
 
-/* Warns about a texture. Options come before the name of its file, which may contain blanks, so the
- * name cannot be separated from the last option: the warning quotes the whole line. */
+/* Warns about a texture. Options come before the name of its file, which may contain blanks, so it
+ * is not known where the name begins: the warning quotes the whole line. */
 static void note_texture(library *l, const he_line *line, const char *keyword)
 {
     const char *end = line->end;

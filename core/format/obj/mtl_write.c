@@ -8,10 +8,10 @@
 
 typedef struct mtl_writer {
     const he_materials *table;
-    size_t row; /* the next row */
-    bool begun; /* the header is written */
+    size_t row; /* the next row of the table to write */
+    bool begun; /* the first line of the file is written */
     he_obj_name name;
-    bool look; /* the numbers of the row come next */
+    bool look; /* the name of the row is written, and its numbers come next */
 } mtl_writer;
 
 size_t he_mtl_names(const he_mesh *mesh, const char *names[HE_COLUMN_COMPONENTS])

@@ -14,19 +14,19 @@
  *   o, g, usemtl              face attributes "object", "group", "material": the rest of the line
  *   s n | on | off            face attribute "smoothing"
  *   mtllib                    attribute "mtllib" of the mesh, which keeps the name; materials of
- *                             a library that came with the file (mtl.h), else a note. Nothing is
- *                             ever opened
- *   l, p, curves, others      noted and ignored, as are lines that begin with $; any other that
- *                             does not begin with a word is HE_SYNTAX
+ *                             a library that came with the file (mtl.h); else this is noted. No
+ *                             file is ever opened
+ *   l, p, curves, others      noted and ignored, as are lines that begin with $; any other line
+ *                             that does not begin with a word is HE_SYNTAX
  *
  * Reading returns HE_BAD_INDEX if an index is 0, or too large when the file has ended. Returns
  * HE_SYNTAX if no line was understood; a file of comments is an empty mesh. If some corners have a
  * texture coordinate or normal, those without one get zeros and a note.
  *
- * Written: v, with three numbers of a colour where there is one, vt, vn (bit-equal values of
- * corners once), then faces, with o, g, usemtl and s where they change, and before all of it mtllib
- * where the mesh has materials or came with the name of a library. A line of v never has seven
- * numbers, which other programs refuse. */
+ * Written: mtllib if the mesh has materials or came with the name of a library; v, with three
+ * numbers of a colour if vertices have colours; vt and vn (values of corners whose bits are equal
+ * are written once); then faces, with o, g, usemtl and s where they change. A line of v never has
+ * seven numbers, because other programs refuse that. */
 #ifndef HE_FORMAT_OBJ_OBJ_H
 #define HE_FORMAT_OBJ_OBJ_H
 

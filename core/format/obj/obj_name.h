@@ -22,9 +22,9 @@ static inline char he_obj_printable(const char *p, bool first)
 /* Adds a warning about a name that is changed when it is written. */
 void he_obj_note_name(const char *name, he_notes *notes);
 
-/* A name of any length that is being written; {0} is none. */
+/* A name of any length that is being written; {0} means that none is being written. */
 typedef struct he_obj_name {
-    const char *rest; /* NULL: none */
+    const char *rest; /* what is still to be written, or NULL */
     bool begun;
 } he_obj_name;
 

@@ -17,11 +17,11 @@ typedef struct obj {
     he_colors colors;
     he_spans object, group, material, smoothing;
     he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
-    he_ids library_lines; /* the first line of each */
-    uint32_t highest;     /* highest vertex named by a corner */
-    uint64_t last_line;   /* last line read */
-    uint64_t understood;  /* lines with a keyword of the format */
-    uint64_t unknown;     /* the first line with another keyword, 0 for none */
+    he_ids library_lines; /* line on which each library is named first */
+    uint32_t highest;     /* highest vertex that a corner refers to */
+    uint64_t last_line;   /* number of the last line read */
+    uint64_t understood;  /* number of lines with a keyword of the format */
+    uint64_t unknown;     /* the first line with an unknown keyword, 0 if there is none */
 } obj;
 
 /* Adds a warning about a line. */
@@ -129,8 +129,8 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
 }
 
 /* Reads an index of the file and converts it to one that counts from 0. `count` elements were read
- * so far; whether a positive index is too large is only known at the end of the file. If it returns
- * HE_BAD_INDEX, `*p` is behind the number. */
+ * so far; whether a positive index is too large is only known at the end of the file. Sets *p
+ * behind the number, also if it returns HE_BAD_INDEX. */
 static he_status read_index(const he_line *line, const char **p, const char *what, size_t count,
                             uint32_t *index, he_error *err)
 {
@@ -160,8 +160,8 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
                         "there is no %s %s: there were %zu before this line", what, text, count);
 }
 
-/* Warns about a wrong index of a texture coordinate or normal: the corner then has no such value,
- * but the shape is not affected. An index of 0 means none. */
+/* Warns about the index of a texture coordinate or normal that does not exist. The corner then has
+ * no such value, but the shape is not affected, so the file is not refused. */
 static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
     he_notes_add(
@@ -371,7 +371,7 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     if (he_at_end(p, end)) {
         return HE_OK;
     }
-    if (*p == '$') { /* some programs write comments so */
+    if (*p == '$') { /* some programs begin comments with this byte */
         note(o, line,
              (he_warning){.code = "ignored_keyword",
                           .text = "ignored: lines that begin with",
@@ -438,7 +438,8 @@ static uint64_t line_of(const obj *o, size_t corner)
     return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
 }
 
-/* Removes from the corners the indices of texture coordinates or normals that do not exist. */
+/* Removes the indices of corners that refer to a texture coordinate or normal that does not
+ * exist. */
 static void check_values(obj *o, he_pool *pool)
 {
     for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
@@ -520,8 +521,8 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
     return status;
 }
 
-/* Reads the libraries of a line mtllib. The line names either one library, whose name may contain
- * blanks, or several. */
+/* Reads the libraries that the lines mtllib name. A line names either one library, whose name may
+ * contain blanks, or several. */
 static he_status open_libraries(obj *o, he_error *err)
 {
     he_status status = HE_OK;

@@ -10,7 +10,7 @@
 /* The parts of an OBJ document, in the order in which they are written. */
 typedef enum part { HEADER, LIBRARIES, VERTICES, UVS, NORMALS, FACES, END } part;
 
-/* The lines that apply to all faces after them, until they are repeated with another value. */
+/* The kinds of lines that apply to all faces after them, until the next line of the same kind. */
 enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
 
 static const struct {
@@ -27,11 +27,11 @@ typedef struct values {
 
 typedef struct obj_writer {
     const he_mesh *mesh;
-    uint32_t *numbers; /* for vertices */
+    uint32_t *numbers; /* number of each vertex in the file; NULL if it is the id */
     const he_column *color;
     values uv, normal;
     const he_column *spans[SPANS];
-    uint32_t said[SPANS]; /* value of the last line of each kind; HE_NONE: none yet */
+    uint32_t said[SPANS]; /* value of the last line of each kind, HE_NONE before the first one */
     part part;
     uint32_t row;      /* the next vertex, value or face */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
@@ -64,7 +64,8 @@ static he_status find_values(values *v, const he_mesh *mesh, const char *name, u
     return HE_OK;
 }
 
-/* Counts the vertices without a face, whose value no corner of the file refers to. */
+/* Counts the vertices without a face that have a value other than the default; no corner in the
+ * file refers to these values. */
 static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
 {
     uint64_t count = 0;
@@ -87,7 +88,7 @@ static void note_unnamed(const obj_writer *w, he_notes *notes)
                        count_unnamed(&w->normal, w->mesh));
 }
 
-/* Returns the attribute that has the names of the material libraries, or NULL. */
+/* Finds the names of the material libraries. Returns the attribute that has them, or NULL. */
 static const he_column *find_libraries(obj_writer *w, he_notes *notes)
 {
     w->library_count = he_mtl_names(w->mesh, w->libraries);

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* The words of the shortest face, a triangle: its degree, three corners, and the length of its
- * colour. */
+/* Sizes in bytes. The shortest face is a triangle: five words for its degree, three corners, and
+ * the number of numbers in its colour. */
 enum { WORD = 4, SHORTEST_FACE = 5 * WORD };
 
 static size_t vertex_numbers(const he_off_binary *b)
@@ -30,8 +30,7 @@ static uint32_t word_at(const unsigned char *p)
     return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
 }
 
-/* Returns the byte of the input at which the part that was just read begins; it has `size`
- * bytes. */
+/* Returns the byte of the input at which the part of `size` bytes begins that was just read. */
 static uint64_t begin_of(const he_off_binary *b, size_t size)
 {
     return b->offset - size;
@@ -76,7 +75,8 @@ static void begin_faces(he_off_binary *b)
     b->part = b->faces > 0 ? HE_OFF_DEGREE : HE_OFF_END;
 }
 
-/* Reads the counts. The number of edges is ignored, because it is often wrong. */
+/* Reads the numbers of vertices and faces. The number of edges is ignored, because it is often
+ * wrong. */
 static he_status take_counts(he_off_binary *b, const unsigned char *p, he_error *err)
 {
     he_import *into = b->values->into;
@@ -236,8 +236,8 @@ static size_t size_of(const he_off_binary *b)
     return WORD;
 }
 
-/* Handles bytes after the last face: a few are ignored, but as many as a face has mean that the
- * counts were wrong. */
+/* Handles bytes after the last face. A few are ignored, but as many as the shortest face has mean
+ * that the number of faces in the header is wrong. */
 static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
 {
     if (b->trailing == 0) {

@@ -11,8 +11,8 @@
 
 #include "format/off/off_values.h"
 
-/* The bytes of a vertex with all its values, which is the longest part that must be complete to be
- * read. */
+/* The bytes of a vertex with all its values. No other part that must be complete before it is read
+ * is longer. */
 enum { HE_OFF_LONGEST = 4 * (3 + 3 + 4 + 2) };
 
 typedef enum he_off_part {
@@ -27,11 +27,13 @@ typedef enum he_off_part {
 
 typedef struct he_off_binary {
     he_off_values *values;
-    unsigned has;     /* the flags of he_off_values.h */
+    unsigned has;     /* flags of off_values.h: the values that each vertex has */
     he_off_part part; /* what comes next */
     uint64_t offset;  /* offset of the next byte */
     uint64_t vertices, faces;
-    uint32_t left, color_count; /* corners of the face still to come; numbers of its colour */
+    /* How many corners of the face, or numbers of its colour, are still to come; how many numbers
+     * the colour has in all. */
+    uint32_t left, color_count;
     double color[4];
     unsigned char held[HE_OFF_LONGEST];
     size_t held_count;

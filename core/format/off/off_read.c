@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the next token of the file is. The function read_line goes from one section to the next. */
+/* The sections of a file. `section` says to which one the next token belongs. */
 typedef enum section {
     HEADER,
     VERTEX_COUNT,
@@ -26,19 +26,19 @@ typedef struct off {
     he_lines lines;
     section section;
     unsigned has;
-    uint64_t vertices, faces;       /* announced by the header */
+    uint64_t vertices, faces;       /* how many the header declares */
     double numbers[VERTEX_NUMBERS]; /* numbers of the present vertex, or of the present face's
                                        colour */
-    size_t number_count;            /* may exceed those stored */
-    uint64_t number_line;           /* line of the first of them */
+    size_t number_count;            /* how many numbers were read; not all may be stored */
+    uint64_t number_line;           /* line on which the first of `numbers` was read */
     bool spread;                    /* some vertex continues on the next line */
     uint64_t lacking;  /* line of the first vertex that ends before its last number, or 0 */
-    uint32_t integers; /* bit i: the i-th was written as an integer */
+    uint32_t integers; /* bit i is set if numbers[i] was written as an integer */
     bool open;         /* the last face still lacks `missing` corners */
     uint64_t missing;
     he_off_values values;
     bool is_binary;
-    he_off_binary binary; /* used after a header of BINARY */
+    he_off_binary binary; /* reads the body if the header says BINARY */
     uint64_t header_bytes;
 } off;
 
@@ -49,8 +49,8 @@ static void note(off *o, const char *code, const char *text, const he_line *line
         &(he_warning){.code = code, .text = text, .place = HE_PLACE_LINE, .at = line->number});
 }
 
-/* Returns the flags of a header word such as STCNOFF; -1 if it is none, -2 if its positions have
- * other dimensions than 3. */
+/* Returns the flags that a header word such as STCNOFF stands for; -1 if it is no header, -2 if
+ * positions have another number of dimensions than 3. */
 static int header_flags(const char *p, const char *end)
 {
     if (end - p == 3 && memcmp(p, "off", 3) == 0) {
@@ -99,7 +99,7 @@ static he_status read_header(off *o, const he_line *line, const char **p, he_err
     o->section = VERTEX_COUNT;
     if (flags == -1) {
         if (**p >= '0' && **p <= '9') {
-            return HE_OK; /* no header: this is the number of vertices */
+            return HE_OK; /* there is no header, and this token is the number of vertices */
         }
         return he_token_fail(err, HE_SYNTAX, line, *p, "is not the header of an OFF file");
     }
@@ -159,8 +159,9 @@ static bool is_last_token(const he_line *line, const char *p)
     return he_at_end(he_skip_blanks(he_token_end(p, line->end), line->end), line->end);
 }
 
-/* Reads the number of edges, which is often wrong and therefore ignored. It may be missing: then
- * the line after the counts is that of a vertex, which has more than one number. */
+/* Reads the number of edges, which is often wrong and therefore ignored. It may be missing: if it
+ * is not on the line of the other counts, it must be alone on its line, because a vertex has more
+ * than one number. */
 static he_status read_edge_count(off *o, const he_line *line, const char **p, bool same_line,
                                  he_error *err)
 {
@@ -206,14 +207,14 @@ static void forget_numbers(off *o)
     o->integers = 0;
 }
 
-/* How many numbers of a vertex belong to each of the values after its position, which come in this
- * order. */
+/* How many numbers of a vertex belong to its normal, its colour and its texture coordinates, which
+ * follow the position in this order. */
 typedef struct parts {
     size_t normal, color, uv;
 } parts;
 
-/* Divides the numbers of a vertex among its values as the header announces them, or without the
- * last of these values. */
+/* Divides the `count` numbers of a vertex among the values that the header declares. Values at the
+ * end may be missing. Returns false if the numbers do not fit. */
 static bool divide(const off *o, size_t count, parts *out)
 {
     parts p = {(o->has & HE_OFF_NORMALS) != 0 ? 3 : 0, 0, (o->has & HE_OFF_UV) != 0 ? 2 : 0};
@@ -247,8 +248,9 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
                             ((o->has & HE_OFF_UV) != 0 && p.uv == 0));
     o->spread |= spread;
     o->lacking = o->lacking == 0 && lacking ? line->number : o->lacking;
-    /* If vertices continue on the next line, surplus numbers belong to the next vertex. Then no
-     * vertex may omit its last values, because the two cases could not be distinguished. */
+    /* If a vertex continues on the next line, surplus numbers there belong to the next vertex. In a
+     * file with such a vertex no vertex may omit its last values, because it could not be
+     * distinguished from one that continues. */
     if (!fits || (spread && count > end) || (o->spread && o->lacking != 0)) {
         return he_line_fail(err, HE_SYNTAX, line, line->begin,
                             "the line has %zu numbers, which is not what the header declares",
@@ -281,8 +283,8 @@ static he_status end_vertex(off *o, const he_line *line, he_error *err)
     return he_line_locate(status, line, err);
 }
 
-/* Reads numbers up to the end of the line. The first `finite` numbers of the vertex must be
- * finite. */
+/* Reads numbers up to the end of the line, and appends them to o->numbers. The first `finite` of
+ * all these numbers must be finite. */
 static he_status read_numbers(off *o, const he_line *line, const char **p, size_t finite,
                               bool colors, he_error *err)
 {
@@ -515,8 +517,8 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     return HE_OK;
 }
 
-/* Adds to an error a hint that may be the real cause: if vertices were read without some value,
- * their numbers may have been on the next line, and then all that follows is misread. */
+/* Adds a possible cause to an error: if vertices were read without some of their values, the
+ * missing numbers may have been on the next line, and everything after them was misread. */
 static he_status explain(const off *o, he_status status, he_error *err)
 {
     if (o->lacking != 0 && err != NULL && (status == HE_SYNTAX || status == HE_BAD_INDEX)) {
@@ -581,7 +583,7 @@ static he_status finish(off *o, he_error *err)
         return status;
     }
     if (o->is_binary) {
-        if (o->binary.values == NULL) { /* the line of the header has no end */
+        if (o->binary.values == NULL) { /* the file ends inside the line of the header */
             begin_binary(o);
         }
         return he_off_binary_finish(&o->binary, err);

@@ -8,8 +8,8 @@ void he_off_values_clear(he_off_values *values)
     he_colors_clear(&values->face_colors);
 }
 
-/* Sets the value of the last vertex in a column, which is made for the first vertex that has a
- * value. */
+/* Sets the value of the last vertex in a column. The column is made when the first vertex with a
+ * value comes. */
 static he_status add_row(he_soup *soup, he_column **column, const char *name, uint32_t components,
                          const double *values, he_error *err)
 {

@@ -5,7 +5,7 @@
 #include "format/io/colors.h"
 #include "format/io/format.h"
 
-/* Flags that say which values the header of an OFF file announces for each vertex. */
+/* Flags that say which values each vertex has, according to the header of an OFF file. */
 enum { HE_OFF_NORMALS = 1, HE_OFF_COLORS = 2, HE_OFF_UV = 4 };
 
 /* {.into = ...} is empty. */
@@ -16,7 +16,8 @@ typedef struct he_off_values {
 } he_off_values;
 
 void he_off_values_clear(he_off_values *values);
-/* Each adds a value of the last vertex: the normal (3 numbers) or the texture coordinates (2).
+/* These functions add a value of the last vertex: its normal (3 numbers) or its texture coordinates
+ * (2 numbers).
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_off_add_normal(he_off_values *values, const double *normal,
                                          he_error *err);

@@ -29,7 +29,7 @@ typedef struct he_ply_group {
     const char *attribute;
     uint32_t least, most; /* members */
     bool color;
-    bool written; /* this one of several groups for an attribute is written */
+    bool written; /* several groups may be read as the attribute; this is the one that is written */
     const char *names[HE_PLY_GROUP];
 } he_ply_group;
 

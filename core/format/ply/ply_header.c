@@ -225,7 +225,7 @@ static he_status read_property(he_ply_header *h, const he_line *line, const char
 
 static he_status end_header(he_ply_header *h, const he_line *line, const char *p, he_error *err)
 {
-    he_status status = require_end(line, p, err); /* the next line may be the first row */
+    he_status status = require_end(line, p, err); /* rows begin on the next line */
     if (status != HE_OK) {
         return status;
     }
@@ -256,7 +256,7 @@ he_status he_ply_header_read(he_ply_header *h, const he_line *line, he_error *er
 {
     const char *p = line->begin;
     word w = next_word(line, &p);
-    if (w.begin == w.end || *w.begin == '#') { /* lines.h keeps no long line that begins with '#' */
+    if (w.begin == w.end || *w.begin == '#') { /* lines.h may drop a line that begins with '#' */
         return HE_OK;
     }
     if (!h->begun) {

@@ -36,7 +36,7 @@ const char *he_ply_type_name(he_ply_type type);
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
-    char name[HE_NOTE_SUBJECT]; /* made printable, and cut if longer */
+    char name[HE_NOTE_SUBJECT]; /* the name, made printable, and cut if it is longer */
     bool nameable;              /* an attribute can have this name */
     bool list;
     he_ply_type count, type; /* `count` is the type of a list's length */
@@ -46,8 +46,8 @@ typedef struct he_ply_property {
 typedef struct he_ply_element {
     char name[HE_NOTE_SUBJECT];
     uint64_t rows;
-    size_t first, properties; /* its part of the header's properties */
-    bool lists;               /* it has lists, so rows differ in length */
+    size_t first, properties; /* index of its first property in the header, and their number */
+    bool lists;               /* some property is a list, so rows differ in length */
     size_t stride;            /* bytes of a row without lists */
     uint64_t line;
 } he_ply_element;
@@ -70,8 +70,8 @@ void he_ply_header_clear(he_ply_header *header);
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_ply_header_read(he_ply_header *header, const he_line *line,
                                           he_error *err);
-/* Returns the index of the element's property of this name; the element's `properties`, their
- * number, if there is none. */
+/* Returns the index, within the element, of its property of this name. Returns element->properties
+ * if there is none. */
 size_t he_ply_find(const he_ply_header *header, const he_ply_element *element, const char *name);
 
 #endif

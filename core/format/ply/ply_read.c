@@ -12,7 +12,7 @@ enum { HEADER_LINE = 1 << 16 };
 
 typedef struct ply {
     he_import *into;
-    he_lines lines; /* for the header, and for rows in ASCII */
+    he_lines lines; /* lines of the header, and of rows in ASCII */
     he_ply_header header;
     he_ply_rows rows;
     bool big;
@@ -20,8 +20,8 @@ typedef struct ply {
     /* in binary */
     uint64_t offset; /* offset of the next byte */
     unsigned char *held;
-    size_t held_count; /* bytes of an incomplete row or value */
-    uint64_t row_at;   /* where a row with lists begins */
+    size_t held_count; /* number of bytes in `held`, which begin an incomplete row or value */
+    uint64_t row_at;   /* offset of the row being read, if it has lists */
     bool in_row, in_list, trailing;
     size_t property;    /* the next property of the row */
     uint64_t list_left; /* values of the list still to come */
@@ -60,8 +60,8 @@ static he_status read_whole(const he_line *line, const char **p, const char *wha
     return HE_OK;
 }
 
-/* Reads a value of property k. A value that is not finite is refused in a position; elsewhere the
- * caller handles it. */
+/* Reads a value of property k. A value that is not finite is refused in a position; in another
+ * property he_ply_rows_value replaces it by 0. */
 static he_status read_value(ply *o, const he_line *line, const char **p, size_t k, he_error *err)
 {
     double value = 0;
@@ -241,8 +241,8 @@ static double value_of(const unsigned char *p, he_ply_type type, bool big)
     return (double)whole_of(p, type, big);
 }
 
-/* Takes the next `size` bytes of the input, if they have come; if the last piece ended inside them,
- * its part was kept. If they have not all come, the part that has come is kept. */
+/* Takes the next `size` bytes of the input, the first of which may have been kept from an earlier
+ * piece. If they have not all come, keeps those that have come and returns false. */
 static bool take(ply *o, const unsigned char **p, const unsigned char *end, size_t size,
                  const unsigned char **bytes)
 {
@@ -375,7 +375,8 @@ static he_status take_property(ply *o, const unsigned char **p, const unsigned c
     return status;
 }
 
-/* Rows of up to this many corners are read by the fast path. A length byte can announce more. */
+/* Rows of up to this many corners are read by take_plain. The byte with their number can declare
+ * more. */
 enum { PLAIN_CORNERS = 16 };
 
 /* Returns true if each row is only a list of corners, with a byte for the length and 32 bits for

@@ -29,25 +29,25 @@ typedef enum he_ply_role {
 typedef struct he_ply_target {
     he_ply_role role;
     uint32_t component;
-    double full; /* the number that stands for 1 */
+    double full; /* the number in the file that means 1 in the attribute */
     he_column *column;
 } he_ply_target;
 
 typedef struct he_ply_rows {
     he_import *into;
     const he_ply_header *header;
-    he_ply_target *targets; /* for all properties */
+    he_ply_target *targets; /* one for each property of the header */
     he_place unit;
-    uint64_t at;
-    uint64_t vertices; /* announced by the header */
+    uint64_t at;       /* line or byte of the row or value, for errors */
+    uint64_t vertices; /* number of vertices that the header declares */
 
-    const he_ply_element *element; /* NULL before the first and after the last */
-    bool vertex;                   /* its rows are vertices */
-    bool wanted;                   /* some property is stored */
-    uint64_t left;                 /* rows that have not ended */
-    size_t row;                    /* row of the attributes */
+    const he_ply_element *element; /* element being read; NULL before the first, after the last */
+    bool vertex;                   /* the rows of the element are vertices */
+    bool wanted;                   /* some property of the element is stored */
+    uint64_t left;                 /* rows of the element that have not ended */
+    size_t row;                    /* row of the attributes' columns that is being filled */
     double position[3];
-    uint32_t strip[2]; /* the last two corners */
+    uint32_t strip[2]; /* the last two corners of the strip of triangles */
     bool turned;       /* the next triangle of the strip is reversed */
     unsigned strip_length;
     he_column *uv; /* attribute of corners, from lists of faces; NULL if there is none */

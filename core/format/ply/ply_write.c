@@ -16,26 +16,26 @@ enum { VALUE_ROOM = 160 };
 /* One number of a row. */
 typedef struct output {
     const char *name;
-    const he_column *column; /* NULL: the position, or with `own` the number of the vertex */
+    const he_column *column; /* attribute; NULL for the position, or for what `own` says */
     uint32_t component;
     he_ply_type type;
-    bool color; /* a byte of a colour */
-    bool own;
+    bool color; /* the number is a component of a colour, written as a byte */
+    bool own;   /* the number is the vertex's own number in the file */
 } output;
 
 typedef struct ply_writer {
     const he_mesh *mesh;
     uint32_t *numbers; /* numbers of vertices */
-    he_splits splits;  /* for corners whose values differ at one vertex */
+    he_splits splits;  /* copies of vertices whose corners have different values */
     /* The attributes of corners that are written as properties of vertices. */
     const he_column *corners[HE_PLY_GROUPS];
     size_t corner_count;
-    const he_column *texcoord; /* one of them that faces also have as a list */
+    const he_column *texcoord; /* the one of them that faces also have as a list, or NULL */
     he_ply_encoding encoding;
-    output *outputs; /* those of vertices, then those of faces */
+    output *outputs; /* the properties of vertices, then those of faces */
     size_t vertex_outputs, count;
-    he_ply_type degree; /* type of the count of a face's corners, */
-    he_ply_type list;   /* and of twice that count */
+    he_ply_type degree; /* type in which a face's number of corners is written */
+    he_ply_type list;   /* type in which twice that number is written, before texcoord lists */
     part part;
     size_t line;       /* the next output in the header */
     uint32_t row;      /* the next vertex, copy or face */
@@ -259,7 +259,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     return HE_OK;
 }
 
-/* --- writing them --- */
+/* --- writing the document --- */
 
 static char *put_whole(uint32_t value, size_t bytes, bool big, char *p)
 {

@@ -26,15 +26,15 @@ typedef struct stl {
     he_spans object;
     bool in_facet, in_solid, begun;
     unsigned corner_count,
-        numbers; /* corners of the facet so far; numbers of the corner still to come */
+        numbers; /* corners of the facet read so far; numbers of a corner still to come */
     double number[3];
     uint64_t facet_line;
-    uint64_t unknown; /* the first line with an unknown word, 0 for none */
+    uint64_t unknown; /* the first line with an unknown word, 0 if there is none */
 
     /* binary */
     uint64_t offset; /* offset of the next byte */
     uint64_t count, left;
-    unsigned char held[HEADER]; /* an incomplete header or facet */
+    unsigned char held[HEADER]; /* the first bytes of an incomplete header or facet */
     size_t held_count, trailing;
     bool has_header;
 } stl;
@@ -92,7 +92,7 @@ static he_status begin_solid(stl *o, const he_line *line, const char *p, he_erro
     return he_spans_set_name(&o->object, o->into->soup.face_count, line, p, &o->into->notes, err);
 }
 
-/* Skips the normal of a facet: to the end of the line, or to the word "outer". */
+/* Returns the end of the normal of a facet: the end of the line, or the word "outer". */
 static const char *skip_normal(const he_line *line, const char *p)
 {
     p = he_skip_blanks(p, line->end);
@@ -267,8 +267,8 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
     return at_place(status, HE_PLACE_BYTE, at, err);
 }
 
-/* Handles bytes after the last facet: a few are padding, but the length of a facet or more means
- * that the announced number is wrong. */
+/* Handles bytes after the last facet. A few are padding, but as many as a facet has mean that the
+ * header declares a wrong number of facets. */
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
@@ -384,7 +384,7 @@ static he_status decide(stl *o, he_error *err)
     bool text =
         begins_solid(head, head + o->head_count) && memchr(head, '\0', o->head_count) == NULL;
     o->kind = text ? TEXT : BINARY;
-    /* In text most facets have seven lines. */
+    /* In text most facets take seven lines. */
     he_places_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
     he_places_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
     return feed_known(o, o->head, o->head_count, err);
@@ -429,8 +429,9 @@ static he_status stl_finish(void *state, he_error *err)
 
 const he_reading he_stl_reading = {stl_open, stl_feed, stl_finish, stl_close, false};
 
-/* Returns true if these bytes may be a binary STL file. The format has no magic number, so it is
- * recognised by a byte that no text has, and by a first facet whose numbers are plausible. */
+/* Returns true if these bytes may be an STL file: text that begins with "solid", or binary. Binary
+ * has no magic number; it is recognised by a NUL, which no text has, and a first facet whose
+ * corners are finite. */
 bool he_stl_sniff(const char *bytes, size_t n)
 {
     if (begins_solid(bytes, bytes + n)) {

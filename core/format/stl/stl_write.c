@@ -38,12 +38,12 @@ static void note_cuts(const he_cuts *cuts, he_notes *notes)
                        cuts->turned);
 }
 
-/* The mesh that a reader will make of the file: vertices are merged by position, and each facet has
- * three corners. */
+/* The mesh that a reader will make of the file, in which vertices at equal positions are merged. It
+ * is made in order to warn about differences. */
 typedef struct again {
     he_soup soup;
     he_weld weld;
-    uint32_t *vertex; /* vertex of the soup for each vertex of the mesh */
+    uint32_t *vertex; /* vertex of the soup that each vertex of the mesh becomes */
     uint64_t isolated, used;
 } again;
 
@@ -72,8 +72,8 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
     return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
 }
 
-/* Builds a mesh of the facets as a reader would, and counts its defects: vertices at one position
- * become one, and two faces may have been cut along one diagonal. */
+/* Counts the defects for which a reader will refuse the facets. They arise because vertices at
+ * equal positions are merged, or because two faces were cut along the same diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
     he_cut_walk walk = {0};
@@ -166,8 +166,8 @@ static he_vec3 scaled(he_vec3 p, double factor)
     return (he_vec3){p.x * factor, p.y * factor, p.z * factor};
 }
 
-/* Returns the unit normal of a triangle; zero if it has no area. Lengths are scaled, so that
- * nothing overflows or underflows. */
+/* Returns the unit normal of a triangle; the zero vector if the triangle has no area. Lengths are
+ * scaled, so that nothing overflows or underflows. */
 static he_vec3 normal_of(const he_vec3 *p)
 {
     he_vec3 quarter[3] = {scaled(p[0], 0.25), scaled(p[1], 0.25), scaled(p[2], 0.25)};
@@ -184,7 +184,7 @@ static he_vec3 normal_of(const he_vec3 *p)
     return (he_vec3){n.x / length + 0.0, n.y / length + 0.0, n.z / length + 0.0}; /* -0 becomes 0 */
 }
 
-/* Writes three numbers: positions keep all digits, and a normal only those of a float. */
+/* Writes three numbers in text: with all digits of doubles if `all`, else with those of floats. */
 static char *put_numbers(he_vec3 v, bool all, char *p)
 {
     const double values[3] = {v.x, v.y, v.z};

@@ -6,9 +6,9 @@
 #include <stddef.h>
 #include <string.h>
 
-/* A non-negative integer, least significant word first, without leading zero words. The longest
- * integers that are needed have 801 digits times a power of two, or 5^1146 times 54 bits: under
- * 4096 bits. */
+/* A non-negative integer, least significant word first, without leading zero words. The largest
+ * integers that are needed are a number of 801 digits times a power of two, and a number of 54 bits
+ * times 5^1146: both have fewer than 4096 bits. */
 enum { BIG_WORDS = 66 };
 
 typedef struct big {
@@ -16,8 +16,8 @@ typedef struct big {
     uint64_t words[BIG_WORDS];
 } big;
 
-/* The first 768 digits decide between any two doubles; about further digits it only matters whether
- * all are zero, so only KEPT_DIGITS are read. */
+/* The first 768 digits decide between any two doubles; of further digits it only matters whether
+ * all are zero. So KEPT_DIGITS digits are read, and one more that stands for the rest. */
 enum { KEPT_DIGITS = 800 };
 
 static void multiply_add(big *n, uint64_t factor, uint64_t add)

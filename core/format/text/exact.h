@@ -5,11 +5,11 @@
 
 #include <stdint.h>
 
-/* Returns the bits of the double nearest to a decimal, ties to even; those of infinity if it is too
- * large. [digits, end) contains decimal digits, one of them not 0, and at most one point, which is
- * ignored: the value is the number made by the digits times 10^exponent. It must be between 1e-345
- * and 1e311. `guess` is the bits of a positive double near the result: the closer it is, the fewer
- * comparisons are needed. */
+/* Returns the bits of the double nearest to a decimal number, ties to even; the bits of infinity if
+ * the number is too large. [digits, end) contains decimal digits, one of them not 0, and at most
+ * one point, which is ignored: the number is what the digits make, times 10^exponent. It must be
+ * between 1e-345 and 1e311. `guess` is the bits of a positive double near the result: the closer it
+ * is, the fewer comparisons are needed. */
 uint64_t he_exact_round(const char *digits, const char *end, int64_t exponent, uint64_t guess);
 
 #endif

@@ -179,7 +179,7 @@ void he_json_path(const he_json *json, uint32_t value, char *to, size_t size)
             index++;
         }
         if (item == HE_NONE) {
-            return; /* the value is not inside this one */
+            return; /* the value sought is not inside value `list` */
         }
         char name[40], part[60];
         if (object) {

@@ -18,18 +18,18 @@
 enum { HE_JSON_PATH = 100 };
 #define HE_JSON_VALUES ((size_t)1 << 23)         /* most values of one text, names included */
 #define HE_JSON_TEXT   ((size_t)UINT32_MAX / 2u) /* most bytes of one text */
-#define HE_JSON_WHOLE  ((uint64_t)1 << 53)       /* up to this doubles count exactly */
+#define HE_JSON_WHOLE  ((uint64_t)1 << 53)       /* doubles hold every whole number up to this */
 
 typedef struct he_json_value {
-    uint32_t at;   /* its first byte in the text, which determines its type */
-    uint32_t next; /* the value after all that is inside this one */
+    uint32_t at;   /* offset of its first byte in the text, which determines its type */
+    uint32_t next; /* number of the first value after this one and all values inside it */
 } he_json_value;
 
 /* {0} is empty. */
 typedef struct he_json {
     const char *text; /* borrowed */
     size_t length;
-    uint64_t offset; /* offset of the text in the input, for places */
+    uint64_t offset; /* offset of the text in the input, so that errors name bytes of the input */
     he_json_value *values;
     size_t count, capacity;
 } he_json;
@@ -50,17 +50,17 @@ char he_json_type(const he_json *json, uint32_t value);
 /* Finds the member of an object by its name. Returns HE_NONE if `object` is no object or has no
  * such member. Takes time linear in the number of members. */
 uint32_t he_json_find(const he_json *json, uint32_t object, const char *name);
-/* Iterate over the items of an array, or over the names of an object's members, each of which has
- * its value after it:
+/* These two functions iterate over the items of an array, or over the names of an object's members;
+ * the value of a member comes directly after its name (he_json_of):
  *     for (i = he_json_first(j, a); i != HE_NONE; i = he_json_after(j, a, i)) */
 uint32_t he_json_first(const he_json *json, uint32_t list);
 uint32_t he_json_after(const he_json *json, uint32_t list, uint32_t item);
-/* Returns the value of the member whose name is the value `name`. */
+/* Returns the number of a member's value, given the number of the member's name. */
 static inline uint32_t he_json_of(uint32_t name)
 {
     return name + 1;
 }
-/* Returns the number of values inside a value, including the value itself. */
+/* Returns how many values are inside a value, counting the value itself. */
 size_t he_json_span(const he_json *json, uint32_t value);
 
 /* Returns true if the value is a string equal to `text`. */
@@ -73,7 +73,7 @@ size_t he_json_string(const he_json *json, uint32_t value, char *to, size_t size
 /* Returns the bytes of a string value as they stand in the text, without the quotes. */
 const char *he_json_raw(const he_json *json, uint32_t value, size_t *length);
 
-/* Reads a number, or a whole number that must be in a range.
+/* he_json_number reads any number, he_json_whole a whole number from `least` to `most`.
  * Returns HE_BAD_VALUE, with the byte and the path of the value, if it is not such a number. */
 HE_NODISCARD he_status he_json_number(const he_json *json, uint32_t value, double *out,
                                       he_error *err);

@@ -94,8 +94,8 @@ static he_token end_value(he_lexer *x, he_token token)
 
 /* --- numbers --- */
 
-/* Copies to the carry buffer the bytes of a number that is cut by the end of a piece, up to a byte
- * that cannot belong to it. */
+/* Reads a number that the end of a piece may have cut: copies its bytes to the carry buffer, and
+ * converts them once a byte follows that cannot belong to the number. */
 static he_token carry_number(he_lexer *x)
 {
     he_lexer_carry *carry = x->carry;
@@ -131,7 +131,7 @@ static he_token read_number(he_lexer *x)
         return carry_number(x);
     }
     if (status != HE_SYNTAX && after < x->end && he_json_is_number_byte(*after)) {
-        status = HE_SYNTAX; /* "01" is an error, not a number followed by another */
+        status = HE_SYNTAX; /* "01" is an error, not the number 0 followed by the number 1 */
     }
     if (status != HE_OK) {
         return fault_here(x, status == HE_SYNTAX ? HE_FAULT_NUMBER : HE_FAULT_NOT_FINITE);
@@ -160,7 +160,7 @@ static he_token read_word(he_lexer *x)
 
 /* --- strings --- */
 
-/* Copies bytes of a name to the carry buffer, if the pieces of the text are freed. */
+/* Copies bytes of a name to the carry buffer, because the piece that contains them may be freed. */
 static void carry_name(he_lexer *x, const char *bytes, size_t length)
 {
     size_t used = innermost(x)->names + x->name_length;
@@ -171,7 +171,8 @@ static void carry_name(he_lexer *x, const char *bytes, size_t length)
     }
 }
 
-/* Makes the text from x->at up to `to` the next part of the string that is being read. */
+/* Reads the string on up to `to`, and carries the bytes passed if they belong to a name in a text
+ * that comes in pieces. */
 static void pass_string(he_lexer *x, const char *to)
 {
     if (x->state == HE_JSON_IN_NAME && x->carry != NULL) {
@@ -241,8 +242,8 @@ static bool is_plain(char c)
     return (unsigned char)c >= 0x20 && (unsigned char)c < 0x80 && c != '"' && c != '\\';
 }
 
-/* Returns how far a string may be read at once: to the end of the piece, for at most HE_JSON_STRING
- * bytes, or to where its name becomes too long. */
+/* Returns how far a string may be read at once: to the end of the piece, but for at most
+ * HE_JSON_STRING bytes, and in a name only up to the byte that makes it too long. */
 static const char *string_stop(const he_lexer *x)
 {
     size_t most = HE_JSON_STRING, left = (size_t)(x->end - x->at);
@@ -386,7 +387,7 @@ static he_token read_value(he_lexer *x)
     }
 }
 
-/* Handles the end of the whole text: what is still open then is a fault. */
+/* Ends the whole text. It is a fault if a value is still missing or not complete. */
 static he_token end_text(he_lexer *x)
 {
     if (x->state == HE_JSON_DONE) {

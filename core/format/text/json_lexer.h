@@ -1,7 +1,7 @@
 /* json_lexer.h - splits a JSON text into tokens; the only implementation of its grammar.
  *
- * The text must be valid by RFC 8259: no byte order mark, no leading zero, no number beyond
- * doubles, no raw control character, no \u0000, no lone surrogate, nothing but UTF-8 in strings,
+ * The text must be valid by RFC 8259: no byte order mark, no leading zero, no number too large for
+ * a double, no raw control character, no \u0000, no lone surrogate, nothing but UTF-8 in strings,
  * nothing after the value. The lexer does not check that names are unique in an object, which would
  * take memory.
  *
@@ -14,10 +14,11 @@
  *         while ((token = he_lexer_next(&x)) != HE_TOKEN_CUT) { ... }
  *     }
  *
- * The lexer takes no memory and does not recurse. It knows its place: x.depth arrays and objects
- * are open, x.frames[d] says where in them it is, he_lexer_place which byte comes next. The caller
- * decides what a token means. It may test a value before it is read (he_lexer_value_ahead) and
- * refuse it by its first byte, and it may take a row of numbers at once. */
+ * The lexer allocates no memory and does not recurse. It knows its position: x.depth arrays and
+ * objects are open, x.frames[d] says where in each of them it is, he_lexer_place which byte comes
+ * next. The caller decides what a token means. It may test a value before it is read
+ * (he_lexer_value_ahead) and refuse it by its first byte, and it may read a whole array of numbers
+ * at once (he_lexer_take_numbers). */
 #ifndef HE_FORMAT_TEXT_JSON_LEXER_H
 #define HE_FORMAT_TEXT_JSON_LEXER_H
 
@@ -28,16 +29,16 @@
 enum {
     HE_JSON_DEPTH = 128,     /* most open arrays and objects */
     HE_JSON_CARRY = 1024,    /* most bytes of a number in a text that comes in pieces */
-    HE_JSON_NAMES = 512,     /* most bytes of the names that lead to a value in such a text */
-    HE_JSON_STRING = 1 << 16 /* bytes of a string after which it is interrupted */
+    HE_JSON_NAMES = 512,     /* most bytes of all names on the path to a value, in such a text */
+    HE_JSON_STRING = 1 << 16 /* a longer string comes as several tokens (HE_TOKEN_PART) */
 };
 
 typedef enum he_token {
     HE_TOKEN_CUT,   /* the piece is used up, and the text is not known to have ended */
     HE_TOKEN_END,   /* a text in one piece has ended */
-    HE_TOKEN_FAULT, /* x.fault is at x.fault_place; the lexer cannot go on */
+    HE_TOKEN_FAULT, /* the fault x.fault is at x.fault_place; the lexer cannot go on */
     HE_TOKEN_PART,  /* HE_JSON_STRING bytes of a string; the next token continues it */
-    HE_TOKEN_KEY,   /* a member's name and its colon: the name of the innermost frame */
+    HE_TOKEN_KEY,   /* a member's name and its colon; the innermost frame has the name */
     HE_TOKEN_STRING,
     HE_TOKEN_NUMBER, /* the number is x.number, x.length bytes long */
     HE_TOKEN_TRUE,
@@ -75,7 +76,7 @@ typedef enum he_lexer_state {
     HE_JSON_NAME,         /* after ',' in an object */
     HE_JSON_AFTER,        /* ',' or a closing bracket */
     HE_JSON_DONE,         /* only blanks may follow */
-    HE_JSON_IN_STRING,    /* from here on: within a token */
+    HE_JSON_IN_STRING,    /* this state and all after it are inside a token */
     HE_JSON_IN_NUMBER,
     HE_JSON_IN_WORD,
     HE_JSON_IN_NAME,
@@ -85,7 +86,7 @@ typedef enum he_lexer_state {
 /* An open array or object, and the lexer's position in it. */
 typedef struct he_lexer_frame {
     bool object;
-    uint32_t names; /* bytes of the carried names of the frames below */
+    uint32_t names; /* bytes that the names of the enclosing objects take in the carry buffer */
     size_t index;   /* index of the item or member */
     /* The name of the member as it stands in the text, without quotes. It is NULL before it is
      * read, and also if a piece of the text ended inside it and `carry` has no room for it. */
@@ -96,29 +97,29 @@ typedef struct he_lexer_frame {
 /* A buffer for the bytes of names and numbers that must be kept when the piece of the text that
  * contains them is freed. */
 typedef struct he_lexer_carry {
-    char bytes[HE_JSON_CARRY]; /* bytes of a number or character that a piece cuts */
+    char bytes[HE_JSON_CARRY]; /* first bytes of a number or character cut by the end of a piece */
     size_t length;
     char names[HE_JSON_NAMES];
 } he_lexer_carry;
 
 /* The state of a lexer. All code may read the fields; the caller may set only the three limits. */
 typedef struct he_lexer {
-    const char *begin, *at, *end; /* the piece, and the next byte */
+    const char *begin, *at, *end; /* the piece is [begin, end); `at` is the next byte in it */
     uint64_t offset;              /* offset of the piece in the text */
-    he_lexer_carry *carry;        /* NULL: the piece is the whole text */
+    he_lexer_carry *carry;        /* NULL if the piece is the whole text */
     he_lexer_state state;
 
-    size_t depth_most;  /* at most HE_JSON_DEPTH, the initial value */
+    size_t depth_most;  /* most open arrays and objects, at most HE_JSON_DEPTH (the default) */
     size_t number_most; /* most bytes of a number in a text in pieces, at most HE_JSON_CARRY */
     size_t name_most;   /* most bytes of a name as written */
 
-    uint64_t start; /* place of the token */
+    uint64_t start; /* offset of the token's first byte in the text */
     double number;
     size_t length;
-    const char *word; /* the word that a piece cuts; its first `matched` letters were read */
+    const char *word; /* true, false or null, of which the first `matched` letters were read */
     size_t matched;
-    size_t name_length; /* bytes carried so far */
-    bool name_lost;     /* the name found no room */
+    size_t name_length; /* bytes of the present name in the carry buffer */
+    bool name_lost;     /* the present name did not fit into the carry buffer */
 
     he_fault fault;
     uint64_t fault_place;
@@ -136,14 +137,14 @@ void he_lexer_feed(he_lexer *x, const char *bytes, size_t length);
 
 he_token he_lexer_next(he_lexer *x);
 
-/* Returns true if a value begins at x.at, after skipping blanks and a comma, or if only a value can
- * stand there. Returns false if the piece ends before the value or inside a token, or if something
- * else must follow. */
+/* Skips blanks and a comma. Returns true if then a value begins at x.at, or only a value can stand
+ * there. Returns false if the piece ends before the value or inside a token, or if something other
+ * than a value must follow. */
 bool he_lexer_value_ahead(he_lexer *x);
-/* Each reads an array of numbers at once, if that is the next value: at most `most` numbers, or at
- * most `most` whole numbers below HE_DEAD in decimal digits. Returns how many numbers the array
- * has; 0 if the value is no such array or the piece does not contain all of it, and then nothing is
- * read. */
+/* These functions read a whole array at once, if it is the next value: he_lexer_take_numbers at
+ * most `most` numbers, he_lexer_take_indices at most `most` whole numbers below HE_DEAD in decimal
+ * digits. They return how many numbers the array has. If the next value is no such array, or the
+ * piece does not contain all of it, they read nothing and return 0. */
 size_t he_lexer_take_numbers(he_lexer *x, double *out, size_t most);
 size_t he_lexer_take_indices(he_lexer *x, uint32_t *out, size_t most);
 
@@ -154,9 +155,9 @@ static inline uint64_t he_lexer_place(const he_lexer *x)
 }
 /* Returns a sentence that explains the fault x.fault. */
 const char *he_lexer_fault_text(const he_lexer *x);
-/* Writes the JSON pointer (RFC 6901) of the value that the lexer is at. The pointer ends early at a
- * name that is not known or does not fit, because a pointer to a value that contains the position
- * is still correct. */
+/* Writes the JSON pointer (RFC 6901) of the value at the lexer's position. Before a name that is
+ * not known or does not fit, the pointer ends early: it then names a value that contains the
+ * position. */
 void he_lexer_pointer(const he_lexer *x, char *out, size_t size);
 
 #endif

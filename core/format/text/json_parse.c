@@ -7,15 +7,15 @@
 
 #include <string.h>
 
-/* The number of bytes between two steps of the progress watch. */
+/* The number of bytes after which progress is reported to the watch again. */
 enum { STRIDE = 1 << 16 };
 
 typedef struct scan {
     he_json *json;
     he_watch *watch;
-    const char *told; /* progress was reported up to here */
+    const char *told; /* the byte up to which progress was reported */
     he_lexer lexer;
-    uint32_t open[HE_JSON_DEPTH]; /* open arrays and objects */
+    uint32_t open[HE_JSON_DEPTH]; /* numbers of the arrays and objects that are not closed yet */
     he_error *err;
 } scan;
 
@@ -89,8 +89,8 @@ static he_status repeated(const scan *s, uint32_t name)
                       "JSON: the member '%s' is given twice", quoted);
 }
 
-/* Names up to NAME_ROOM bytes are allowed; a longer name is compared by its first bytes and refused
- * as too long. The names of an object with at most FEW members are compared pairwise. */
+/* A name of NAME_ROOM bytes or more is refused. The names of an object with at most FEW members are
+ * compared pairwise, those of a larger object by a hash table. */
 enum { NAME_ROOM = 1024, FEW = 12 };
 
 static he_status check_few(const scan *s, uint32_t object)
@@ -162,7 +162,7 @@ static he_status check_members(scan *s, uint32_t object)
 
 /* --- values --- */
 
-/* Ends the array or object whose bracket was closed. */
+/* Ends the array or object whose closing bracket was just read. */
 static he_status close_value(scan *s)
 {
     uint32_t value = s->open[s->lexer.depth];

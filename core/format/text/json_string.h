@@ -5,10 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Returns how many bytes the character at `at` < `end` takes in the text, an escape or UTF-8, at
+/* Returns how many bytes the character at `at` < `end`, an escape or UTF-8, takes in the text: at
  * most HE_JSON_CHARACTER. Returns 0 if it is refused: an unknown escape, half a surrogate pair, a
- * null or control character, or bytes that are not UTF-8. Then `*wrong` says why, and `*cut` says
- * whether bytes after `end` could make it a whole character. */
+ * null or control character, or bytes that are not UTF-8. Then *wrong says why, and *cut says
+ * whether more bytes after `end` could complete the character. */
 enum { HE_JSON_CHARACTER = 12 };
 size_t he_json_character(const char *at, const char *end, const char **wrong, bool *cut);
 
@@ -20,8 +20,8 @@ size_t he_json_decode(const char **at, char to[4]);
 /* Returns true if a string that was checked before begins with `text`, and then moves *at behind
  * that beginning. The bytes of the string run from *at to `end` or to its closing quote. */
 bool he_json_text_begins(const char **at, const char *end, const char *text);
-/* Returns true if a string equals `text`. Its bytes are those of the JSON text, were checked before
- * and have no quotes around them. */
+/* Returns true if a string equals `text`. The `length` bytes at `at` are the string as it stands in
+ * the JSON text, without its quotes; they must have been checked before. */
 bool he_json_text_is(const char *at, size_t length, const char *text);
 
 #endif

@@ -1,13 +1,14 @@
 /* lines.h - lines and tokens of a text format that arrives in pieces.
  *
- * he_lines cuts the pieces into lines and passes each to a function, in place if a piece contains
- * all of it. Lines end in LF or CRLF, or all in CR alone if the first does; the last one may have
- * no end. With `joins`, a backslash before the line end continues the line; the backslash and the
- * line end then stay in the text, where the token functions treat them as blanks, so that the line
- * number of any token can still be found. A UTF-8 byte order mark is skipped, UTF-16 refused.
+ * he_lines cuts the pieces into lines and passes each line to a function, without copying it if one
+ * piece contains all of it. Lines end in LF or CRLF, or all in CR alone if the first does; the last
+ * one may have no end. With `joins`, a backslash before the line end continues the line; the
+ * backslash and the line end then stay in the text, where the token functions treat them as blanks,
+ * so that the line number of any token can still be found. A UTF-8 byte order mark is skipped,
+ * UTF-16 is refused.
  *
  * Between pieces only the unfinished line is kept, in one block that grows by doubling; a comment
- * is not kept. All is linear in the bytes, whatever the pieces. */
+ * is not kept. Time is linear in the number of bytes, however the text is cut into pieces. */
 #ifndef HE_FORMAT_TEXT_LINES_H
 #define HE_FORMAT_TEXT_LINES_H
 
@@ -31,17 +32,17 @@ typedef struct he_lines {
     char *rest; /* the unfinished line */
     size_t length, capacity;
     uint64_t number; /* number of the line being collected */
-    uint64_t joined; /* line ends inside it, after backslashes */
-    bool in_comment; /* the unfinished line is a comment and not kept */
+    uint64_t joined; /* line ends inside the unfinished line, after backslashes */
+    bool in_comment; /* the unfinished line is a comment, so it is not kept */
     /* How lines end: the end of the first line decides for all. */
     enum { HE_ENDS_UNKNOWN, HE_ENDS_FEED, HE_ENDS_RETURN } ends;
-    bool returned; /* the last bytes are carriage returns, and `ends` is not known yet */
+    bool returned; /* a carriage return has come, and it is not known yet how lines end */
 } he_lines;
 
 void he_lines_init(he_lines *lines, he_line_take *take, void *context);
 void he_lines_clear(he_lines *lines);
-/* Returns the end of the first line of some bytes, after the line end. Callers use it that must
- * feed line by line because binary data may follow the text. */
+/* Returns the end of the first line of [p, end), after its line end. It is for callers that must
+ * feed one line at a time, because binary data may follow the text. */
 static inline const char *he_line_stop(const char *p, const char *end)
 {
     while (p < end && *p != '\n' && *p != '\r') {
@@ -86,7 +87,7 @@ static inline bool he_at_end(const char *p, const char *end)
     return p == end || *p == '#';
 }
 
-/* Does a token end at `p`? */
+/* Returns true if a token ends at `p`. */
 static inline bool he_token_ends(const char *p, const char *end)
 {
     return p == end || *p == ' ' || *p == '\t' || *p == '#' ||
@@ -104,7 +105,7 @@ static inline const char *he_token_end(const char *p, const char *end)
 
 /* Returns the number of the line that contains `p`. */
 uint64_t he_line_number(const he_line *line, const char *p);
-/* he_fail_at for that line. */
+/* Fails like he_fail_at, with the number of the line that contains `p`. */
 he_status he_line_fail(he_error *err, he_status status, const he_line *line, const char *p,
                        const char *format, ...) __attribute__((format(printf, 5, 6)));
 /* Adds the number of the line to an error that names no place, such as one for lack of memory.

@@ -1,8 +1,8 @@
 /* notes.h - warnings of a reader or writer: content that it ignored, or could not write.
  *
- * A note has a code and a subject; further occurrences with the same two are counted, not repeated.
- * The places of the first HE_NOTE_SPOTS occurrences are kept. There is room for HE_NOTES notes, and
- * no memory is allocated; `more` counts the occurrences that found no room. */
+ * A note has a code and a subject; another occurrence with that code and subject is only counted.
+ * The places in the input of the first HE_NOTE_SPOTS occurrences are kept. There is room for
+ * HE_NOTES notes, and no memory is allocated; `more` counts the occurrences that found no room. */
 #ifndef HE_FORMAT_TEXT_NOTES_H
 #define HE_FORMAT_TEXT_NOTES_H
 
@@ -14,11 +14,11 @@ enum { HE_NOTES = 32, HE_NOTE_SUBJECT = 80, HE_NOTE_SPOTS = 100 };
 
 typedef struct he_note {
     const char *code;              /* a stable slug, static */
-    const char *text;              /* one sentence without the subject, static */
-    char subject[HE_NOTE_SUBJECT]; /* what it is about: printable ASCII, may be "" */
-    uint64_t count;
-    he_place place; /* place of the first occurrence */
-    uint64_t at;
+    const char *text;              /* one sentence without the subject; a string literal */
+    char subject[HE_NOTE_SUBJECT]; /* what the warning is about: printable ASCII, may be "" */
+    uint64_t count;                /* how often it occurred */
+    he_place place;                /* unit of `at` */
+    uint64_t at;                   /* line or byte of the first occurrence */
 } he_note;
 
 /* One occurrence of a warning, as a reader or writer reports it. */
@@ -33,7 +33,7 @@ typedef struct he_warning {
 
 /* The place of one occurrence that a note counts. */
 typedef struct he_note_spot {
-    size_t note; /* its index */
+    size_t note; /* index of the note */
     uint64_t at;
 } he_note_spot;
 
@@ -41,7 +41,7 @@ typedef struct he_notes {
     he_note items[HE_NOTES];
     size_t count;
     uint64_t more;
-    he_note_spot spots[HE_NOTE_SPOTS]; /* the first occurrences of all notes together */
+    he_note_spot spots[HE_NOTE_SPOTS]; /* places of the first occurrences of all notes together */
     size_t spot_count;
 } he_notes;
 

@@ -5,11 +5,12 @@
  * ties to even: D. Lemire, "Number parsing at a gigabyte per second" (2021), the method known as
  * Eisel-Lemire, with big integers where its 128 bits do not decide.
  *
- * The text is JSON, and equal to what ECMAScript prints except for the plus sign of an exponent:
+ * Printed numbers are valid JSON, and equal to what ECMAScript prints except that an exponent has
+ * no plus sign:
  *     0  -0  1  0.1  123456789  1e21  1.5e300  0.000001  1e-7  5e-324
  *
- * The parsers take the bytes [begin, end), read nothing beyond, skip no blanks, and set `*used` to
- * the bytes of the number. They take no he_error: only the caller knows the place. */
+ * The parsers read a number from the bytes [begin, end), skip no blanks, and set *used to the
+ * length of the number. They take no he_error, because only the caller knows the line. */
 #ifndef HE_FORMAT_TEXT_NUMBER_H
 #define HE_FORMAT_TEXT_NUMBER_H
 
@@ -18,11 +19,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The room that any number printed by these functions needs. */
+/* No number that these functions print takes more bytes than this. */
 enum { HE_NUMBER_TEXT = 32 };
 
-/* Write a finite value, without a NUL at the end, and return the length. he_float_print writes the
- * shortest text that reads back to the same float. */
+/* These functions write a finite value, without a NUL at the end, and return its length.
+ * he_float_print writes the shortest text that reads back to the same float. */
 size_t he_double_print(double value, char *text);
 size_t he_float_print(float value, char *text);
 size_t he_u32_print(uint32_t value, char *text);
@@ -42,7 +43,7 @@ typedef enum he_grammar { HE_JSON_NUMBER, HE_FILE_NUMBER } he_grammar;
 HE_NODISCARD he_status he_double_parse(const char *begin, const char *end, he_grammar grammar,
                                        double *value, size_t *used);
 
-/* Parse a whole number in decimal digits; he_i64_parse accepts a minus sign.
+/* These functions parse a whole number in decimal digits; he_i64_parse accepts a minus sign.
  * Returns HE_SYNTAX if there is no digit.
  * Returns HE_BAD_VALUE if the number does not fit into 64 bits; `*used` is set. */
 HE_NODISCARD he_status he_u64_parse(const char *begin, const char *end, uint64_t *value,

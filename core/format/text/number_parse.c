@@ -13,15 +13,16 @@ static bool is_digit(char c)
     return (unsigned char)(c - '0') < 10;
 }
 
-/* Returns true if all eight bytes of a word are digits. The sums carry no bit from byte to byte. */
+/* Returns true if all eight bytes of a word are digits. If they are, the addition carries no bit
+ * from one byte into the next. */
 static bool are_eight_digits(uint64_t word)
 {
     return ((word & 0xF0F0F0F0F0F0F0F0) |
             ((word + 0x0606060606060606) & 0xF0F0F0F0F0F0F0F0) >> 4) == 0x3333333333333333;
 }
 
-/* Converts eight digits to a number: first pairs, then fours, then all. It requires little-endian
- * byte order, which column.h checks. */
+/* Converts eight digits to a number: it joins digits to pairs, pairs to fours, and fours to the
+ * number. It requires little-endian byte order, which column.h checks. */
 static uint32_t eight_digits(uint64_t word)
 {
     word -= 0x3030303030303030;
@@ -67,7 +68,8 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
 }
 
 /* Returns the bits of the double nearest to w * 10^q, with w > 0, by the method of Eisel and
- * Lemire. *decided is set to false if 128 bits of the power do not decide. */
+ * Lemire. *decided is set to false if 128 bits of the power do not suffice to tell which one it
+ * is. */
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
@@ -121,8 +123,8 @@ static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
     return (uint64_t)exponent << 52 | (mantissa & (((uint64_t)1 << 52) - 1));
 }
 
-/* Handles numbers of more than 19 digits, counting leading zeros: the value is the digits of
- * [begin, end) times 10^exponent. */
+/* Returns the bits of the double nearest to a number of more than 19 digits, leading zeros
+ * included: the number is the digits of [begin, end) times 10^exponent. */
 static uint64_t nearest_to_many(const char *begin, const char *end, int64_t exponent)
 {
     const char *p = begin;
@@ -175,8 +177,9 @@ static size_t word_length(const char *p, const char *end)
     return 0;
 }
 
-/* Returns the end of the exponent at `p`; NULL if it has no digits. A huge exponent is capped at a
- * size that no mantissa in memory can make up for. */
+/* Reads the exponent that begins with the letter at `p`, and adds it to *exponent. Returns its end,
+ * or NULL if it has no digits. A huge exponent is capped; even then no number of digits that fits
+ * into memory could bring the value back into the range of doubles. */
 static const char *read_exponent(const char *p, const char *end, int64_t *exponent)
 {
     const int64_t large = INT64_C(1) << 60;
@@ -279,7 +282,7 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
 
 he_status he_u64_parse(const char *begin, const char *end, uint64_t *value, size_t *used)
 {
-    if (end - begin >= 8) { /* most indices are this short */
+    if (end - begin >= 8) { /* most indices have fewer than eight digits */
         uint64_t word;
         memcpy(&word, begin, 8);
         size_t count = few_digits(word, value);

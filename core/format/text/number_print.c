@@ -115,15 +115,15 @@ static uint64_t scale(he_power g, uint64_t value)
 }
 
 /* Finds the shortest decimal inside the rounding interval of c * 2^q, c > 0, and among several the
- * closest. `narrow` says that the next lower number is only half as far away as the next higher
- * one. The names are those of the paper: vb, vbl and vbr are four times the value and the
- * interval's ends, in units of 10^k. */
+ * closest one. `narrow` says that the next lower number is only half as far away as the next higher
+ * one. Names are those of the paper on Schubfach (number.h): vb is four times the value in units of
+ * 10^k, `lower` and `upper` are the ends of the interval on that scale. */
 static decimal shortest(uint64_t c, int q, int narrow)
 {
     int k = narrow ? (q * 1262611 - 524031) >> 22 : (q * 1262611) >> 22; /* log10, floor */
     int h = q + he_floor_log2_of_ten(-k) + 1;
     he_power g = he_power_of_five(-k);
-    if (-k < 0 || -k > 55) { /* not exact: the paper rounds it up */
+    if (-k < 0 || -k > 55) { /* the power is not exact: the paper needs it rounded up */
         g.low++;
         g.high += g.low == 0;
     }

@@ -1,10 +1,10 @@
 /* power.h - the leading 128 bits of the powers of five, which number_print.c and number_parse.c
  * need.
  *
- * 10^k and 5^k have the same leading bits, so one table serves both. Every 27th power is kept with
- * 192 bits; a product with an exact 5^0 .. 5^26 gives those between. tests/unit/test_number.c
- * compares all of them with big integers, which shows that the 128 bits are the floor of the true
- * value for every k. */
+ * 10^k and 5^k have the same leading bits, so one table serves both. It has every 27th power of
+ * five with 192 bits; multiplying such a power by one of 5^0 to 5^26, which are exact, gives the
+ * powers in between. tests/unit/test_number.c compares all powers with big integers, which shows
+ * that the 128 bits are the floor of the true value for every k. */
 #ifndef HE_FORMAT_TEXT_POWER_H
 #define HE_FORMAT_TEXT_POWER_H
 
@@ -32,7 +32,7 @@ static inline he_power he_power_of_five(int k)
     /* The product has at most 253 bits, in the three words top, next and last. */
     high += (uint64_t)(middle >> 64);
     uint64_t top = (uint64_t)(high >> 64), next = (uint64_t)high, last = (uint64_t)middle;
-    if (top == 0) { /* fine is 1: the kept power itself */
+    if (top == 0) { /* `fine` is 1, so the product is the power of the table itself */
         return (he_power){next, last};
     }
     int zeros = __builtin_clzll(top);
