@@ -39,7 +39,7 @@ if [ "${1-}" = --inside ]; then
     case $2 in
     run) run_until_ready ;;
     bench) make bench RUNS=1 SCALE=0.1 ;;
-    report) make report REPORTS='bench bench-space' BENCH=walk RUNS=1 SCALE=0.1 ;;
+    report) make report REPORTS='bench bench-space' BENCH=onering RUNS=1 SCALE=0.1 ;;
     fuzz) make fuzz FUZZ_SECONDS=1 ;;
     soak) make soak MINUTES=1 ;;
     proof) make proof ROUNDS=1 ;;

@@ -154,7 +154,7 @@ static void as_many_tickets_are_compared_whichever_is_found(void **state)
     }
     for (size_t i = 0; i < TICKETS; i++) {
         compared = 0;
-        assert_true(api_tickets_take(tickets, texts[(7 * i) % TICKETS], "/", 0, &token));
+        assert_true(api_tickets_take(tickets, made[(7 * i) % TICKETS].text, "/", 0, &token));
         assert_int_equal(compared, TICKETS - i);
     }
     api_tickets_free(tickets);
