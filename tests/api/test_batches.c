@@ -260,7 +260,8 @@ static size_t peak_of(api_bench *b, const api_text *body)
     most = held;
     size_t before = held;
     bench_reply r;
-    assert_true(bench_try(b, "POST", "/v1/meshes/m/edits", NULL, body->bytes, body->length, &r));
+    assert_true(bench_try(
+        b, &(bench_request){"POST", "/v1/meshes/m/edits", NULL, body->bytes, body->length}, &r));
     assert_int_equal(r.status, 200);
     bench_reply_free(&r);
     return most - before;

@@ -256,9 +256,10 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     journal.staging = look_and_write;
     values[0] = 1;
     const char *const octets[] = {"Content-Type", "application/octet-stream", NULL};
-    bench_done(bench_expect(201, bench_send_bytes(b, "PUT",
+    bench_done(bench_expect(
+        201, bench_send_bytes(b, &(bench_request){"PUT",
                                                   "/v1/meshes/m/attributes/vertices/a?type=double",
-                                                  octets, (const char *)values, sizeof values)));
+                                                  octets, (const char *)values, sizeof values})));
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
@@ -274,9 +275,10 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_non_null(strstr(r.body, "\"values\":[1,0]"));
     bench_reply_free(&r);
     /* What the mesh refuses is refused as it is for a small one. */
-    bench_done(
-        bench_expect(422, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/edges/b?type=double",
-                                           octets, (const char *)values, sizeof values)));
+    bench_done(bench_expect(
+        422,
+        bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/m/attributes/edges/b?type=double",
+                                             octets, (const char *)values, sizeof values})));
     bench_free(b);
 }
 

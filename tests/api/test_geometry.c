@@ -290,7 +290,7 @@ static void test_each_allocation_failing(void **state)
     failing f = {0};
     while (failing_next(&f)) {
         bench_reply r = {0};
-        bool answered = bench_try(b, "GET", PATH, NULL, NULL, 0, &r);
+        bool answered = bench_try(b, &(bench_request){"GET", PATH, NULL, NULL, 0}, &r);
         if (failing_end(&f, answered && r.status == 200)) {
             assert_int_equal(r.length, whole.reply.length);
             assert_memory_equal(r.body, whole.reply.body, r.length);

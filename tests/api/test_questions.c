@@ -7,7 +7,7 @@
 static void say_vertex(page *p, const pg_mesh *pg, unsigned v)
 {
     pg_list edges;
-    pg_relation(pg, "vertex", v, "edges", false, &edges);
+    pg_relation(pg, (pg_element){"vertex", v}, "edges", false, &edges);
     say(p, "{\"id\":%u,\"position\":[%g,%g,%g],\"halfedge\":", v, pg->position[v][0],
         pg->position[v][1], pg->position[v][2]);
     say_id(p, pg->vertex_first[v]);
@@ -38,8 +38,8 @@ static void say_face(page *p, const pg_mesh *pg, unsigned f)
 {
     pg_list halfedges, vertices;
     double area[3], centroid[3] = {0, 0, 0};
-    pg_relation(pg, "face", f, "halfedges", false, &halfedges);
-    pg_relation(pg, "face", f, "vertices", false, &vertices);
+    pg_relation(pg, (pg_element){"face", f}, "halfedges", false, &halfedges);
+    pg_relation(pg, (pg_element){"face", f}, "vertices", false, &vertices);
     double length = pg_area(pg, f, area);
     for (int k = 0; k < 3 && length > 0; k++) {
         area[k] /= length;
@@ -102,13 +102,12 @@ static void a_degenerate_face_has_no_normal(void **state)
 
 /* --- relations --- */
 
-static void say_adjacency(page *p, const pg_mesh *pg, int kind, unsigned id, const char *what,
+static void say_adjacency(page *p, const pg_mesh *pg, pg_element of, const char *what,
                           bool clockwise)
 {
     pg_list ids;
-    pg_relation(pg, kinds[kind].name, id, what, clockwise, &ids);
-    say(p, "{\"revision\":1,\"of\":{\"%s\":%u},\"relation\":\"%s\",\"ids\":", kinds[kind].name, id,
-        what);
+    pg_relation(pg, of, what, clockwise, &ids);
+    say(p, "{\"revision\":1,\"of\":{\"%s\":%u},\"relation\":\"%s\",\"ids\":", of.kind, of.id, what);
     say_list(p, &ids);
     say(p, "}");
 }
@@ -121,7 +120,7 @@ static void try_relations(api_bench *b, const pg_mesh *pg)
                 const char *what = kinds[kind].relations[r];
                 for (int cw = 0; cw < 2; cw++) {
                     page wanted = {.used = 0};
-                    say_adjacency(&wanted, pg, kind, id, what, cw == 1);
+                    say_adjacency(&wanted, pg, (pg_element){kinds[kind].name, id}, what, cw == 1);
                     expect_get(b, &wanted, "/v1/meshes/m/%s/%u/%s%s", kinds[kind].plural, id, what,
                                cw == 1 ? "?cw=true" : "");
                 }
@@ -216,7 +215,7 @@ static void try_query(api_bench *b, const pg_mesh *pg)
             say(&body, ",{\"relation\":\"%s\",\"of\":{\"%s\":%u},\"cw\":true}", what,
                 kinds[kind].name, id);
             say(&wanted, ",");
-            say_adjacency(&wanted, pg, kind, id, what, true);
+            say_adjacency(&wanted, pg, (pg_element){kinds[kind].name, id}, what, true);
             say(&body, ",{\"get\":{\"%s\":%u}}", kinds[kind].name, id);
             say(&wanted, ",");
             say_element(&wanted, pg, kind, id);
@@ -258,7 +257,7 @@ static void try_finds(api_bench *b, const pg_mesh *pg)
                  "\"code\":\"bad_value\",\"pointer\":\"/queries/0/find\"}");
     for (unsigned i = 0; i < pg->vertices; i++) {
         pg_list about_i, about_j;
-        pg_relation(pg, "vertex", i, "faces", false, &about_i);
+        pg_relation(pg, (pg_element){"vertex", i}, "faces", false, &about_i);
         for (unsigned j = 0; j < pg->vertices; j++) {
             unsigned found = PG_NONE;
             for (unsigned h = 0; h < pg->halfedges; h++) {
@@ -269,7 +268,7 @@ static void try_finds(api_bench *b, const pg_mesh *pg)
             say_id(&wanted, found);
             say(&body, ",{\"find\":\"faces\",\"vertices\":[%u,%u]}", i, j);
             say(&wanted, "},{\"faces\":[");
-            pg_relation(pg, "vertex", j, "faces", false, &about_j);
+            pg_relation(pg, (pg_element){"vertex", j}, "faces", false, &about_j);
             const char *comma = "";
             for (unsigned k = 0; k < about_i.count; k++) {
                 if (is_in(&about_j, about_i.ids[k])) {
@@ -312,7 +311,7 @@ static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const 
     for (unsigned i = 0; i < n; i++) {
         pg_list list;
         unsigned id = backwards ? n - 1 - i : i;
-        pg_relation(pg, kinds[kind].name, id, what, false, &list);
+        pg_relation(pg, (pg_element){kinds[kind].name, id}, what, false, &list);
         for (unsigned j = 0; j < list.count; j++) {
             numbers[n + 1 + total + j] = list.ids[j];
             say(&ids, "%s%u", total + j == 0 ? "" : ",", list.ids[j]);

@@ -18,11 +18,20 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* Requests a walk along next, prev and twin, and compares the answer with the walk along the
- * polygons. `until` NULL: only the number of repetitions ends the walk. */
-static void try_path(api_bench *b, const pg_mesh *pg, unsigned from, const char *letters,
-                     unsigned repeat, const char *until)
+/* A walk from a half-edge along next, prev and twin, each of them given by its first letter.
+ * `until` NULL: only the number of repetitions ends the walk. */
+typedef struct step_walk {
+    unsigned from;
+    const char *letters;
+    unsigned repeat;
+    const char *until;
+} step_walk;
+
+/* Requests a walk, and compares the answer with the walk along the polygons. */
+static void try_path(api_bench *b, const pg_mesh *pg, const step_walk *walk)
 {
+    const unsigned from = walk->from, repeat = walk->repeat;
+    const char *letters = walk->letters, *until = walk->until;
     page body = {.used = 0}, wanted = {.used = 0};
     pg_list on = {.ids = {from}, .count = 1};
     bool ended = false;
@@ -60,12 +69,12 @@ static void try_paths(api_bench *b, const pg_mesh *pg)
     static const char *const words[] = {"n", "p", "t", "ntn", "pt", "nntp"};
     for (unsigned h = 0; h < pg->halfedges; h += 3) {
         for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-            try_path(b, pg, h, words[i], 1, NULL);
-            try_path(b, pg, h, words[i], 0, NULL);
-            try_path(b, pg, h, words[i], 5, NULL);
-            try_path(b, pg, h, words[i], 2, "start");
-            try_path(b, pg, h, words[i], PG_HALFEDGES, "start");
-            try_path(b, pg, h, words[i], PG_HALFEDGES, "boundary");
+            try_path(b, pg, &(step_walk){h, words[i], 1, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 0, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 5, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 2, "start"});
+            try_path(b, pg, &(step_walk){h, words[i], PG_HALFEDGES, "start"});
+            try_path(b, pg, &(step_walk){h, words[i], PG_HALFEDGES, "boundary"});
         }
     }
 }
@@ -81,7 +90,7 @@ static void try_loops(api_bench *b, const pg_mesh *pg)
     for (unsigned h = 0; h < pg->halfedges; h++) {
         pg_list loop;
         page wanted = {.used = 0};
-        pg_relation(pg, "halfedge", h, "loop", false, &loop);
+        pg_relation(pg, (pg_element){"halfedge", h}, "loop", false, &loop);
         say(&wanted,
             "{\"revision\":1,\"walk\":\"loop\",\"from\":{\"halfedge\":%u},\"halfedges\":", h);
         say_list(&wanted, &loop);
@@ -100,7 +109,7 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
 {
     pg_list ids, depths;
     page wanted = {.used = 0};
-    pg_breadth_first(pg, "vertex", v, depth, 0, &ids, &depths);
+    pg_breadth_first(pg, &(pg_flood){{"vertex", v}, depth, 0}, &ids, &depths);
     say(&wanted,
         "{\"revision\":1,\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u,"
         "\"rings\":[",
@@ -118,18 +127,17 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
 
 /* Compares a breadth-first walk; depth PG_NONE means no depth in the request, limit 0 means no
  * limit. */
-static void try_flood(api_bench *b, const pg_mesh *pg, int kind, unsigned from, unsigned depth,
-                      unsigned limit)
+static void try_flood(api_bench *b, const pg_mesh *pg, const pg_flood *flood)
 {
     pg_list ids, depths;
     page body = {.used = 0}, wanted = {.used = 0};
-    pg_breadth_first(pg, kinds[kind].name, from, depth, limit, &ids, &depths);
-    say(&body, "\"walk\":\"breadth_first\",\"from\":{\"%s\":%u}", kinds[kind].name, from);
-    if (depth != PG_NONE) {
-        say(&body, ",\"depth\":%u", depth);
+    pg_breadth_first(pg, flood, &ids, &depths);
+    say(&body, "\"walk\":\"breadth_first\",\"from\":{\"%s\":%u}", flood->from.kind, flood->from.id);
+    if (flood->depth != PG_NONE) {
+        say(&body, ",\"depth\":%u", flood->depth);
     }
-    if (limit != 0) {
-        say(&body, ",\"limit\":%u", limit);
+    if (flood->limit != 0) {
+        say(&body, ",\"limit\":%u", flood->limit);
     }
     say(&wanted, "{\"revision\":1,%s,\"ids\":", body.text);
     say_list(&wanted, &ids);
@@ -144,14 +152,14 @@ static void try_floods(api_bench *b, const pg_mesh *pg)
     for (unsigned v = 0; v < pg->vertices; v++) {
         for (unsigned depth = 0; depth < 4; depth++) {
             try_rings(b, pg, v, depth);
-            try_flood(b, pg, VERTEX, v, depth, 0);
+            try_flood(b, pg, &(pg_flood){{kinds[VERTEX].name, v}, depth, 0});
         }
-        try_flood(b, pg, VERTEX, v, PG_NONE, 0);
-        try_flood(b, pg, VERTEX, v, PG_NONE, 3);
+        try_flood(b, pg, &(pg_flood){{kinds[VERTEX].name, v}, PG_NONE, 0});
+        try_flood(b, pg, &(pg_flood){{kinds[VERTEX].name, v}, PG_NONE, 3});
     }
     for (unsigned f = 0; f < pg->faces; f++) {
-        try_flood(b, pg, FACE, f, 1, 2);
-        try_flood(b, pg, FACE, f, PG_NONE, 0);
+        try_flood(b, pg, &(pg_flood){{kinds[FACE].name, f}, 1, 2});
+        try_flood(b, pg, &(pg_flood){{kinds[FACE].name, f}, PG_NONE, 0});
     }
     try_loops(b, pg);
 }
@@ -167,16 +175,24 @@ static unsigned at(const cJSON *list, int i)
     return (unsigned)cJSON_GetArrayItem(list, i)->valuedouble;
 }
 
+/* The length of the shortest paths between two vertices, in edges or as the sum of the lengths of
+ * the edges; HUGE_VAL if there is no path. */
+typedef struct distance {
+    unsigned from, to;
+    bool by_length;
+    double value;
+} distance;
+
 /* There can be several shortest paths, and each of them is correct, so the test checks that the
  * answer is a path of the shortest length. */
-static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigned to, bool length,
-                         double wanted)
+static void try_shortest(api_bench *b, const pg_mesh *pg, const distance *d)
 {
+    const double wanted = d->value;
     char body[256];
     snprintf(body, sizeof body,
              "{\"walk\":\"shortest_path\",\"from\":{\"vertex\":%u},\"to\":{\"vertex\":%u},"
              "\"by\":\"%s\"}",
-             from, to, length ? "length" : "edges");
+             d->from, d->to, d->by_length ? "length" : "edges");
     bench_reply r = bench_send(b, "POST", "/v1/meshes/m/traverse", NULL, body);
     assert_int_equal(r.status, 200);
     const cJSON *vertices = cJSON_GetObjectItemCaseSensitive(r.json, "vertices");
@@ -190,13 +206,13 @@ static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigne
     int steps = cJSON_GetArraySize(edges);
     double total = 0;
     assert_int_equal(cJSON_GetArraySize(vertices), steps + 1);
-    assert_int_equal(at(vertices, 0), from);
-    assert_int_equal(at(vertices, steps), to);
+    assert_int_equal(at(vertices, 0), d->from);
+    assert_int_equal(at(vertices, steps), d->to);
     for (int i = 0; i < steps; i++) {
         unsigned e = at(edges, i), p = at(vertices, i), q = at(vertices, i + 1);
         assert_true((pg->origin[2 * e] == p && pg->origin[2 * e + 1] == q) ||
                     (pg->origin[2 * e] == q && pg->origin[2 * e + 1] == p));
-        total += length ? pg_length(pg, e) : 1;
+        total += d->by_length ? pg_length(pg, e) : 1;
     }
     assert_true(fabs(total - wanted) < 1e-9 && fabs(sum->valuedouble - wanted) < 1e-9);
     bench_reply_free(&r);
@@ -209,7 +225,7 @@ static void try_all_shortest(api_bench *b, const pg_mesh *pg)
         pg_distances(pg, length == 1, distances);
         for (unsigned i = 0; i < pg->vertices; i++) {
             for (unsigned j = 0; j < pg->vertices; j++) {
-                try_shortest(b, pg, i, j, length == 1, distances[i][j]);
+                try_shortest(b, pg, &(distance){i, j, length == 1, distances[i][j]});
             }
         }
     }

@@ -173,8 +173,9 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
                              const bench_reply *first)
 {
     char *before = state_of(b);
-    bench_reply again = bench_send_bytes(b, w->method, w->target, headers, w->body,
-                                         w->body == NULL ? 0 : strlen(w->body));
+    bench_reply again =
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body,
+                                             w->body == NULL ? 0 : strlen(w->body)});
     char *after = state_of(b);
     assert_string_equal(before, after);
     assert_true(again.status == w->status || again.status == first->status ||
@@ -201,12 +202,13 @@ static void try_write(const write *w, failing *f)
                              NULL};
     size_t length = w->body == NULL ? 0 : strlen(w->body);
     if (w->how == BEFORE) {
-        bench_done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
+        bench_done(
+            bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length}));
     }
     char *before = state_of(b);
     failing_resume();
     bench_reply r = {0};
-    bool sent = bench_try(b, w->method, w->target, headers, w->body, length, &r);
+    bool sent = bench_try(b, &(bench_request){w->method, w->target, headers, w->body, length}, &r);
     failing_end(f, sent && r.status < 300);
     char *after = state_of(b);
     bool same = strcmp(before, after) == 0;
@@ -262,7 +264,8 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     char *before = state_of(b);
     uint64_t groups = journal.groups;
     journal.refuse = refusal;
-    bench_reply r = bench_send_bytes(b, w->method, w->target, headers, w->body, length);
+    bench_reply r =
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length});
     char *after = state_of(b);
     if (r.status != status || strcmp(before, after) != 0) {
         fail_msg("%s %s: %d where the journal has no place", w->method, w->target, r.status);
@@ -276,8 +279,9 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     assert_int_equal(journal.out, 0);
     bench_reply_free(&r);
     journal.refuse = ST_OK;
-    bench_done(bench_expect(w->status,
-                            bench_send_bytes(b, w->method, w->target, headers, w->body, length)));
+    bench_done(bench_expect(
+        w->status,
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length})));
     free(before);
     free(after);
     bench_free(b);
