@@ -35,7 +35,7 @@ static uint64_t number_from(const char *name, uint64_t fallback)
 
 static void put_mesh(client *c, const char *body)
 {
-    reply r = client_send(c, "PUT", "/v1/meshes/m", body, strlen(body), NULL);
+    reply r = client_send(c, "PUT", "/v1/meshes/m", NULL, body);
     assert_true(r.status == 200 || r.status == 201);
     reply_free(&r);
 }
@@ -64,7 +64,7 @@ static void dump_kind(client *c, mirror *m, he_kind kind)
     static const char *const lines[] = {"Accept: application/x-ndjson", NULL};
     char target[64];
     (void)snprintf(target, sizeof target, "/v1/meshes/m/%s", he_kind_plural(kind));
-    reply r = client_send(c, "GET", target, NULL, 0, lines);
+    reply r = client_send(c, "GET", target, lines, NULL);
     assert_int_equal(r.status, 200);
     bool ended = false;
     char *rest = NULL;
@@ -273,7 +273,7 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
     assert_string_equal(listener_next(l, true), "edit");
     (void)snprintf(id, sizeof id, "%s", l->events.id);
-    reply r = client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL);
+    reply r = client_send(c, "DELETE", "/v1/meshes/m", NULL, NULL);
     assert_int_equal(r.status, 204);
     reply_free(&r);
     assert_string_equal(listener_next(l, true), "bye");
@@ -411,7 +411,7 @@ static void send_until_done(const daemon_process *d, const char *method, const c
     long status = 0;
     for (int tries = 0; tries < 20 && status != 200 && status != 201; tries++) {
         client *c = client_new(d);
-        reply r = client_send(c, method, path, body, strlen(body), NULL);
+        reply r = client_send(c, method, path, NULL, body);
         status = r.status;
         reply_free(&r);
         client_free(c);
@@ -495,7 +495,7 @@ static void closed_listeners_free_their_descriptors(void **state)
         daemon_start((const char *const[]){"--log", "off", "--heartbeat", "3600", NULL});
     client *c = client_new(d);
     reply_done(
-        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}", 16, NULL)));
+        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     size_t before = open_descriptors(d);
     for (int i = 0; i < GONE; i++) {
         gone[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);

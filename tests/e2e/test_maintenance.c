@@ -65,8 +65,8 @@ static void a_backup_is_made_beside_the_daemon_and_restored_without_it(void **st
 
 static reply back_up(client *c, const char *prefer)
 {
-    return client_send(c, "POST", "/v1/admin/backup", NULL, 0,
-                       prefer == NULL ? NULL : ARGUMENTS(prefer));
+    return client_send(c, "POST", "/v1/admin/backup", prefer == NULL ? NULL : ARGUMENTS(prefer),
+                       NULL);
 }
 
 static void save(const reply *r)
@@ -106,7 +106,7 @@ static void a_backup_is_asked_for_and_fetched(void **state)
     }
     (void)snprintf(left, sizeof left, "%s/sent.db", folder);
     assert_int_not_equal(access(left, F_OK), 0);
-    reply_done(reply_expect(204, client_send(c, "DELETE", job, NULL, 0, NULL)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", job, NULL, NULL)));
     r = reply_expect(200, back_up(c, "Prefer: wait=60"));
     save(&r);
     reply_done(r);
