@@ -7,13 +7,20 @@
 
 #include "format/io/format.h"
 
-/* Reads a file in pieces of `piece` bytes; 0: in one piece. */
-static inline he_status read_pieces(const char *format, const void *text, size_t length,
-                                    size_t piece, const he_limits *limits, he_import *out,
-                                    he_error *err)
+/* A file, of the format with this name. */
+typedef struct format_file {
+    const char *format;
+    const void *bytes;
+    size_t length;
+} format_file;
+
+/* Reads a file in pieces of `piece` bytes; 0: in one piece. `limits` may be NULL. */
+static inline he_status read_pieces(const format_file *file, size_t piece, const he_limits *limits,
+                                    he_import *out, he_error *err)
 {
+    const size_t length = file->length;
     he_reader *reader;
-    he_status status = he_reader_new(he_format_find(format), limits, &reader, err);
+    he_status status = he_reader_new(he_format_find(file->format), limits, &reader, err);
     if (status != HE_OK) {
         return status;
     }
@@ -24,7 +31,7 @@ static inline he_status read_pieces(const char *format, const void *text, size_t
          * beyond it */
         char *bytes = malloc(n);
         assert_non_null(bytes);
-        memcpy(bytes, (const char *)text + at, n);
+        memcpy(bytes, (const char *)file->bytes + at, n);
         status = he_reader_feed(reader, bytes, n, err);
         free(bytes);
     }
@@ -97,12 +104,13 @@ static inline he_status read_bytes(const char *format, const void *text, size_t 
                                    he_import *out, he_error *err)
 {
     static const size_t pieces[] = {1, 2, 3, 7};
+    const format_file file = {format, text, length};
     he_error first = {0};
-    he_status status = read_pieces(format, text, length, 0, NULL, out, &first);
+    he_status status = read_pieces(&file, 0, NULL, out, &first);
     for (size_t i = 0; i < sizeof pieces / sizeof *pieces; i++) {
         he_import other = {0};
         he_error second = {0};
-        he_status again = read_pieces(format, text, length, pieces[i], NULL, &other, &second);
+        he_status again = read_pieces(&file, pieces[i], NULL, &other, &second);
         assert_int_equal(again, status);
         assert_string_equal(first.text, second.text);
         assert_int_equal(first.place, second.place);
@@ -127,34 +135,35 @@ static inline he_import read_text(const char *format, const char *text)
 }
 
 /* Requires that the file is refused at this line, and that the message has these words. */
-static inline void expect_bytes_refused(const char *format, const void *text, size_t length,
-                                        he_status wanted, uint64_t line, const char *words)
+static inline void expect_bytes_refused(const format_file *file, he_status wanted, uint64_t line,
+                                        const char *words)
 {
     he_import import = {0};
     he_error err = {0};
-    he_status status = read_bytes(format, text, length, &import, &err);
+    he_status status = read_bytes(file->format, file->bytes, file->length, &import, &err);
     /* The text of the message must not repeat its place in the file (core/base/status.h). */
     if (status != wanted || err.place != HE_PLACE_LINE || err.at != line ||
         strstr(err.text, words) == NULL || strncmp(err.text, "line ", 5) == 0) {
-        fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s", (const char *)text,
-                 he_status_slug(status), (unsigned long long)err.at, err.text,
-                 he_status_slug(wanted), (unsigned long long)line, words);
+        fail_msg("%.300s\ngot %s, line %llu: %s\nwanted %s, line %llu, %s",
+                 (const char *)file->bytes, he_status_slug(status), (unsigned long long)err.at,
+                 err.text, he_status_slug(wanted), (unsigned long long)line, words);
     }
 }
 
 static inline void expect_refused(const char *format, const char *text, he_status wanted,
                                   uint64_t line, const char *words)
 {
-    expect_bytes_refused(format, text, strlen(text), wanted, line, words);
+    const format_file file = {format, text, strlen(text)};
+    expect_bytes_refused(&file, wanted, line, words);
 }
 
 /* Requires that the file is refused at this byte, and that the message has these words. */
-static inline void expect_refused_at_byte(const char *format, const void *bytes, size_t length,
-                                          he_status wanted, uint64_t at, const char *words)
+static inline void expect_refused_at_byte(const format_file *file, he_status wanted, uint64_t at,
+                                          const char *words)
 {
     he_import import = {0};
     he_error err = {0};
-    he_status status = read_bytes(format, bytes, length, &import, &err);
+    he_status status = read_bytes(file->format, file->bytes, file->length, &import, &err);
     if (status != wanted || err.place != HE_PLACE_BYTE || err.at != at ||
         strstr(err.text, words) == NULL) {
         fail_msg("got %s, %llu: %s\nwanted %s, byte %llu, %s", he_status_slug(status),
@@ -189,15 +198,30 @@ static inline const he_column *find_column(const he_import *import, he_kind doma
     return NULL;
 }
 
-static inline void expect_doubles(const he_import *import, he_kind domain, const char *name,
-                                  uint32_t components, const double *values, size_t rows)
+/* An expected attribute: where it is, its name, the numbers in each row, and its rows. */
+typedef struct attribute_shape {
+    he_kind domain;
+    const char *name;
+    uint32_t components;
+    size_t rows;
+} attribute_shape;
+
+static inline const he_column *expect_shape(const he_import *import, const attribute_shape *shape,
+                                            he_type type)
 {
-    const he_column *column = find_column(import, domain, name);
+    const he_column *column = find_column(import, shape->domain, shape->name);
     assert_non_null(column);
-    assert_int_equal(column->type, HE_DOUBLE);
-    assert_int_equal(column->components, components);
-    assert_int_equal(column->rows, rows);
-    assert_memory_equal(column->data, values, rows * components * sizeof *values);
+    assert_int_equal(column->type, type);
+    assert_int_equal(column->components, shape->components);
+    assert_int_equal(column->rows, shape->rows);
+    return column;
+}
+
+static inline void expect_doubles(const he_import *import, const attribute_shape *shape,
+                                  const double *values)
+{
+    const he_column *column = expect_shape(import, shape, HE_DOUBLE);
+    assert_memory_equal(column->data, values, shape->rows * shape->components * sizeof *values);
 }
 
 /* Requires colours that are equal to these bytes, in the precision of the attribute's type. */
@@ -222,15 +246,11 @@ static inline void expect_bytes(const he_import *import, he_kind domain, uint32_
     }
 }
 
-static inline void expect_u32s(const he_import *import, he_kind domain, const char *name,
-                               uint32_t components, const uint32_t *values, size_t rows)
+static inline void expect_u32s(const he_import *import, const attribute_shape *shape,
+                               const uint32_t *values)
 {
-    const he_column *column = find_column(import, domain, name);
-    assert_non_null(column);
-    assert_int_equal(column->type, HE_UINT32);
-    assert_int_equal(column->components, components);
-    assert_int_equal(column->rows, rows);
-    assert_memory_equal(column->data, values, rows * components * sizeof *values);
+    const he_column *column = expect_shape(import, shape, HE_UINT32);
+    assert_memory_equal(column->data, values, shape->rows * shape->components * sizeof *values);
 }
 
 static inline const char *face_label(const he_import *import, const char *name, size_t face)

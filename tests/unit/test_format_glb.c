@@ -331,7 +331,8 @@ static void numbers_that_are_not_aligned(void **state)
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
         ",{'bufferView':4,'byteOffset':1,'componentType':5123,'count':4,'type':'SCALAR'}],"
         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}");
-    expect_u32s(&import, HE_VERTEX, "A", 1, (uint32_t[]){0, 255, 0xFF00, 0xCC66}, 4);
+    expect_u32s(&import, &(attribute_shape){HE_VERTEX, "A", 1, 4},
+                (uint32_t[]){0, 255, 0xFF00, 0xCC66});
     assert_int_equal(find_note(&import.notes, "misaligned", "")->count, 1);
     he_import_clear(&import);
 }
@@ -347,7 +348,7 @@ static void attributes_of_vertices(void **state)
         "'_HEAT':3,'_':3,'other':3,'TEXCOORD_0':0,'COLOR_1':0,'COLOR_01':0,'TANGENT':0,"
         "'_position':0,'JOINTS_0':4,'_any\\u0041':4},'indices':1}]}]}");
     expect_bytes(&import, HE_VERTEX, 3, colors, 4);
-    expect_u32s(&import, HE_VERTEX, "HEAT", 1, (uint32_t[]){0, 1, 2, 3}, 4);
+    expect_u32s(&import, &(attribute_shape){HE_VERTEX, "HEAT", 1, 4}, (uint32_t[]){0, 1, 2, 3});
     const he_column *normal = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(normal->type, HE_FLOAT);
     assert_int_equal(normal->rule, HE_INTERPOLATE);

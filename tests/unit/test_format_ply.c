@@ -51,7 +51,8 @@ static void every_type_in_every_encoding(void **state)
             }
             he_import import = {0};
             he_error err = {0};
-            if (read_pieces("ply", f.bytes, f.length, 1 + i % 9, NULL, &import, &err) != HE_OK) {
+            if (read_pieces(&(format_file){"ply", f.bytes, f.length}, 1 + i % 9, NULL, &import,
+                            &err) != HE_OK) {
                 fail_msg("%s: %s", header, err.text);
             }
             expect_points(&import, square, 4);
@@ -151,7 +152,7 @@ static void elements_and_properties_in_any_order(void **state)
         he_import import = read_file(&f);
         expect_points(&import, square, 4);
         expect_corners(&import, corners, 7);
-        expect_u32s(&import, HE_FACE, "group", 1, groups, 2);
+        expect_u32s(&import, &(attribute_shape){HE_FACE, "group", 1, 2}, groups);
         assert_int_equal(find_column(&import, HE_FACE, "angle")->type, HE_FLOAT);
         assert_int_equal(import.notes.count, 0);
         he_import_clear(&import);
@@ -181,7 +182,7 @@ static void properties_become_attributes(void **state)
     expect_points(&import, points, 2);
     expect_bytes(&import, HE_VERTEX, 4, colors, 2);
     expect_bytes(&import, HE_FACE, 3, faces, 1);
-    expect_doubles(&import, HE_VERTEX, "quality", 1, qualities, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "quality", 1, 2}, qualities);
     const he_column *column = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(column->type, HE_FLOAT);
     assert_int_equal(column->components, 3);
@@ -411,7 +412,8 @@ static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
     assert_int_equal(import.notes.count, 0);
     he_import_clear(&import);
     for (size_t end = at; end < length; end++) {
-        expect_refused_at_byte("ply", bytes, end, HE_SYNTAX, end, "the file ends after");
+        expect_refused_at_byte(&(format_file){"ply", bytes, end}, HE_SYNTAX, end,
+                               "the file ends after");
     }
 }
 
@@ -451,7 +453,7 @@ static void strips_become_triangles(void **state)
                      "element face 1\n" CORNER "property uint mark\nend_header\n"
                      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2 1\n2 0 1 2\n3 2 1 3 3\n3 0 2 1 7\n");
     expect_corners(&import, both, 9);
-    expect_u32s(&import, HE_FACE, "mark", 1, marks, 3);
+    expect_u32s(&import, &(attribute_shape){HE_FACE, "mark", 1, 3}, marks);
     expect_note(&import, "ignored_property", "id", 1, 9);
     he_import_clear(&import);
 }

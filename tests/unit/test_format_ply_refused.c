@@ -71,7 +71,7 @@ static void wrong_text_names_its_line(void **state)
         expect_refused("ply", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
     }
     static const char wide[] = "\xFF\xFEp\0l\0y\0\n\0";
-    expect_bytes_refused("ply", wide, sizeof wide - 1, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"ply", wide, sizeof wide - 1}, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
 #define ROWS \
@@ -163,16 +163,17 @@ static void wrong_bytes_name_their_place(void **state)
                 put_value(&f, count ? 0 : INT, rows[i].faces[k]);
                 left = count ? (size_t)fabs(rows[i].faces[k]) : left - 1;
             }
-            expect_refused_at_byte("ply", f.bytes, f.length, rows[i].status, body + rows[i].at,
-                                   rows[i].words);
+            expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, rows[i].status,
+                                   body + rows[i].at, rows[i].words);
         }
         begin(&f, e, "element vertex 2\n" XYZ "end_header\n");
         size_t body = f.length;
         for (size_t k = 0; k < 6; k++) {
             put_value(&f, FLOAT, k == 4 ? NAN : 0);
         }
-        expect_refused_at_byte("ply", f.bytes, f.length, HE_NOT_FINITE, body + 12, "vertex 1");
-        expect_refused_at_byte("ply", f.bytes, body + 23, HE_SYNTAX, body + 23,
+        expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, HE_NOT_FINITE, body + 12,
+                               "vertex 1");
+        expect_refused_at_byte(&(format_file){"ply", f.bytes, body + 23}, HE_SYNTAX, body + 23,
                                "after 1 of the 2 rows");
     }
 }
@@ -206,7 +207,8 @@ static void fractions_of_bytes_name_their_place(void **state)
             put_value(&f, rows[i].type, 1);
             size_t at = f.length;
             put_value(&f, rows[i].type, rows[i].corner);
-            expect_refused_at_byte("ply", f.bytes, f.length, HE_BAD_INDEX, at, rows[i].words);
+            expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, HE_BAD_INDEX, at,
+                                   rows[i].words);
         }
     }
 }
@@ -280,7 +282,8 @@ static void counts_are_not_believed(void **state)
             he_import import = {0};
             he_error err = {0};
             he_mem_set_hook(&hook);
-            he_status status = read_pieces("ply", f.bytes, f.length, 3, NULL, &import, &err);
+            he_status status =
+                read_pieces(&(format_file){"ply", f.bytes, f.length}, 3, NULL, &import, &err);
             he_mem_set_hook(NULL);
             bool short_text = e == TEXT && strstr(err.text, "ends before its last") != NULL;
             if (!short_text && (status != rows[i].status || !strstr(err.text, rows[i].words))) {
@@ -309,8 +312,9 @@ static void limits_are_kept(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(
-            read_pieces("ply", text, sizeof text - 1, 1, &rows[i].limits, &import, &err), HE_LIMIT);
+        assert_int_equal(read_pieces(&(format_file){"ply", text, sizeof text - 1}, 1,
+                                     &rows[i].limits, &import, &err),
+                         HE_LIMIT);
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
@@ -326,10 +330,12 @@ static void limits_are_kept(void **state)
     he_limits limits = {.bytes = 300};
     he_import import = {0};
     he_error err = {0};
-    assert_int_equal(read_pieces("ply", f.bytes, f.length, 0, NULL, &import, &err), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"ply", f.bytes, f.length}, 0, NULL, &import, &err),
+                     HE_OK);
     he_import_clear(&import);
     limits.bytes = 239;
-    assert_int_equal(read_pieces("ply", f.bytes, f.length, 0, &limits, &import, &err), HE_LIMIT);
+    assert_int_equal(
+        read_pieces(&(format_file){"ply", f.bytes, f.length}, 0, &limits, &import, &err), HE_LIMIT);
     assert_int_equal(err.place, HE_PLACE_BYTE);
 
     static char header[200000];
@@ -346,7 +352,9 @@ static void limits_are_kept(void **state)
             memset(header + length, 'c', sizeof header - 1 - length);
             length = sizeof header - 1;
         }
-        assert_int_equal(read_pieces("ply", header, length, 1000, NULL, &import, &err), HE_LIMIT);
+        assert_int_equal(
+            read_pieces(&(format_file){"ply", header, length}, 1000, NULL, &import, &err),
+            HE_LIMIT);
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
 }
