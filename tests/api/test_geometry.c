@@ -186,7 +186,7 @@ static void test_rows_keep_their_ids_when_others_die(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    api_bench *b = specimen_begin("0123,7654,1045,2156,3267,0374", &pg);
     edit(b, "{\"ops\":[{\"op\":\"face_delete\",\"face\":2},{\"op\":\"vertex_delete\","
             "\"vertex\":8}]}");
     arrays a = fetch(b);
@@ -208,7 +208,7 @@ static void test_undo_brings_the_same_rows(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    api_bench *b = specimen_begin("0123,7654,1045,2156,3267,0374", &pg);
     arrays before = fetch(b);
     edit(b, "{\"op\":\"vertex_delete\",\"vertex\":8}");
     bench_reply undone = bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL);
@@ -227,7 +227,7 @@ static void test_not_modified_until_it_is(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("012,023", &pg);
+    api_bench *b = specimen_begin("012,023", &pg);
     arrays a = fetch(b);
     char etag[128];
     snprintf(etag, sizeof etag, "%s", bench_header(&a.reply, "ETag"));
@@ -250,7 +250,7 @@ static void test_refusals(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("012", &pg);
+    api_bench *b = specimen_begin("012", &pg);
     const char *const json[] = {"Accept", "application/json", NULL};
     bench_reply r = bench_send(b, "GET", PATH, json, NULL);
     assert_int_equal(r.status, 406);
@@ -284,7 +284,7 @@ static void test_each_allocation_failing(void **state)
         pg.position[v][1] = radius * sin(angle);
         pg.position[v][2] = 0;
     }
-    put_mesh(b, &pg);
+    specimen_put(b, &pg);
     arrays whole = fetch(b);
     unsigned refused = 0;
     failing f = {0};

@@ -457,7 +457,7 @@ static void take_result(api_bench *b)
 
 static void take_costly_check(api_bench *b)
 {
-    put_fan(b, "/v1/meshes/fan", 3001, 1201);
+    fan_put(b, "/v1/meshes/fan", 3001, 1201);
     take(b, 413,
          &(bench_request){"GET", "/v1/meshes/fan/check?self_intersections=true", NULL, NULL, 0});
 }

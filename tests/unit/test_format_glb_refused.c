@@ -8,7 +8,7 @@ static void containers(void **state)
     (void)state;
     unsigned char bin[SQUARE_BYTES];
     glb_file good;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
     /* a file that is truncated at any length must be refused */
@@ -384,10 +384,10 @@ static void references_and_numbers(void **state)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].status == HE_OK) {
-            he_import import = square_import(rows[i].json);
+            he_import import = glb_square_import(rows[i].json);
             he_import_clear(&import);
         } else {
-            expect_json_refused(rows[i].json, rows[i].status, rows[i].words);
+            glb_expect_refused(rows[i].json, rows[i].status, rows[i].words);
         }
     }
 }
@@ -399,7 +399,7 @@ static void numbers_in_the_buffer(void **state)
     static const uint32_t bits[] = {0x7FC00000, 0x7F800000, 0xFF800000};
     glb_file f;
     for (size_t i = 0; i < 3; i++) {
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 28, &bits[i], 4);
         glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
         expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_NOT_FINITE, f.bin + 24,
@@ -407,7 +407,7 @@ static void numbers_in_the_buffer(void **state)
     }
     static const uint16_t bad[] = {4, 65535};
     for (size_t i = 0; i < 2; i++) {
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 56, &bad[i], 2);
         glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
         expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_BAD_INDEX, f.bin + 56,
@@ -416,7 +416,7 @@ static void numbers_in_the_buffer(void **state)
     /* a NaN in an attribute other than the position is read as 0, with a note */
     he_import import = {0};
     he_error err = {0};
-    square_bin(bin);
+    glb_square_bin(bin);
     memcpy(bin + 64, &bits[0], 4);
     glb_make(&f,
              "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
@@ -626,7 +626,7 @@ static void limits_of_the_caller(void **state)
     (void)state;
     unsigned char bin[SQUARE_BYTES];
     glb_file f;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
     const he_limits rows[] = {{.vertices = 3}, {.faces = 1}, {.corners = 5}, {.bytes = 100}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

@@ -349,7 +349,7 @@ static void extras_are_not_believed(void **state)
         char json[3000];
         glb_file f;
         snprintf(json, sizeof json, PRIVATE("%s", "%s", "%s"), words, rows[i].hedge, rows[i].node);
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 80, &rows[i].degree, 4);
         memcpy(bin + 84, &rows[i].second, 4);
         glb_make(&f, json, bin, sizeof bin);
@@ -401,7 +401,7 @@ static void names_beside_names_in_extras(void **state)
                  "{'attributes':{'POSITION':0},'indices':1%s%s}]},{'primitives':[" PRIMITIVE
                  "]}],'nodes':[{'mesh':0},{'mesh':1}]}",
                  one, rows[i].second == NULL ? "" : ",", rows[i].second == NULL ? "" : two);
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 80, (unsigned char[]){1, 0, 0, 0, 0, 0, 0, 0}, 8);
         glb_make(&f, json, bin, sizeof bin);
         he_import import = read_back((const char *)f.bytes, f.length);

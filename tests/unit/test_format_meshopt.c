@@ -112,7 +112,7 @@ static bin square_packed(he_meshopt_mode mode, size_t stride)
 static void expect_square(const he_import *import)
 {
     expect_counts(import, 4, 2, 6);
-    assert_memory_equal(import->soup.positions, square, sizeof square);
+    assert_memory_equal(import->soup.positions, glb_square, sizeof glb_square);
     assert_int_equal(import->notes.count, 0);
 }
 
@@ -440,18 +440,18 @@ static void what_unpacks_to_too_much_is_refused(void **state)
 static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
 {
     (void)state;
-    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
-                        "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
-                        "," MESHES "}",
-                        HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
-    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
-                        "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
-                        "," ACCESSORS "," MESHES "}",
-                        HE_UNSUPPORTED, "the buffer is in another file, 'x.bin'");
+    glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
+                       "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
+                       "," MESHES "}",
+                       HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
+    glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                       "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
+                       "," ACCESSORS "," MESHES "}",
+                       HE_UNSUPPORTED, "the buffer is in another file, 'x.bin'");
     he_import import =
-        square_import("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
-                      "'extensions':{'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS
-                      "," ACCESSORS "," MESHES "}");
+        glb_square_import("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                          "'extensions':{'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS
+                          "," ACCESSORS "," MESHES "}");
     expect_square(&import);
     he_import_clear(&import);
 }
