@@ -442,6 +442,13 @@ const char *bench_header(const bench_reply *r, const char *name)
     return "";
 }
 
+const char *bench_text(const bench_reply *r, const char *member)
+{
+    const cJSON *value = cJSON_GetObjectItem(r->json, member);
+    assert_true(cJSON_IsString(value));
+    return value->valuestring;
+}
+
 void bench_reply_free(bench_reply *r)
 {
     free(r->body);

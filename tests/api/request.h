@@ -70,6 +70,8 @@ bench_reply bench_send_bytes(api_bench *b, const bench_request *request);
  * the exchange. */
 bool bench_try(api_bench *b, const bench_request *request, bench_reply *out);
 const char *bench_header(const bench_reply *r, const char *name); /* returns "" when absent */
+/* Returns a member of the answer, which must be a string. */
+const char *bench_text(const bench_reply *r, const char *member);
 void bench_reply_free(bench_reply *r);
 
 /* Shorthands for common requests. */

@@ -1,5 +1,6 @@
 /* The examples in the OpenAPI document must equal the answers of the service. */
 #include "tests/api/request.h"
+#include "tests/json_member.h"
 
 #include "api/describe/examples.h"
 #include "api/describe/routes.h"
@@ -176,19 +177,10 @@ static void each_example_is_a_real_answer(void **state)
     bench_free(b);
 }
 
-static const cJSON *member(const cJSON *object, const char *name)
-{
-    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
-    if (found == NULL) {
-        fail_msg("there is no \"%s\"", name);
-    }
-    return found;
-}
-
 /* Requires that `body` is the example given for this media type in `content`. */
 static void find_in(const cJSON *content, const char *media, const char *body)
 {
-    const cJSON *shown = member(member(content, media), "example");
+    const cJSON *shown = json_member(json_member(content, media), "example");
     if (cJSON_IsString(shown)) {
         assert_string_equal(shown->valuestring, body);
     } else {
@@ -214,16 +206,19 @@ static void the_description_shows_them(void **state)
         if (row->status >= 400) {
             continue;
         }
-        const cJSON *operation = member(member(member(r.json, "paths"), route->path), method);
+        const cJSON *operation =
+            json_member(json_member(json_member(r.json, "paths"), route->path), method);
         snprintf(status, sizeof status, "%d", row->status);
-        find_in(member(member(member(operation, "responses"), status), "content"), row->produces,
-                api_example_response(row->route, row->produces));
+        find_in(json_member(json_member(json_member(operation, "responses"), status), "content"),
+                row->produces, api_example_response(row->route, row->produces));
         if (row->request != NULL) {
-            find_in(member(member(operation, "requestBody"), "content"), row->consumes,
+            find_in(json_member(json_member(operation, "requestBody"), "content"), row->consumes,
                     api_example_request(row->route, row->consumes));
         }
     }
-    find_in(member(member(member(member(r.json, "components"), "responses"), "problem"), "content"),
+    find_in(json_member(
+                json_member(json_member(json_member(r.json, "components"), "responses"), "problem"),
+                "content"),
             "application/problem+json", api_example_problem());
     bench_reply_free(&r);
     bench_free(b);

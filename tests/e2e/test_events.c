@@ -10,6 +10,7 @@
 
 #include "op/op.h"
 #include "system/clock.h"
+#include "tests/seed.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -26,12 +27,6 @@
 #include <cmocka.h>
 
 #define EVENTS "/v1/meshes/m/events"
-
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
-}
 
 static void put_mesh(client *c, const char *body)
 {
@@ -224,8 +219,8 @@ static uint64_t random_request(copy *c, md_random *r)
 static void a_copy_stays_equal_through_random_edits(void **state)
 {
     (void)state;
-    uint64_t edits = number_from("EDITS", 2000), done = 0, asked = 0, last = 1;
-    md_random random = {number_from("SEED", (uint64_t)time(NULL))};
+    uint64_t edits = seed_setting("EDITS", 2000), done = 0, asked = 0, last = 1;
+    md_random random = {seed_setting("SEED", (uint64_t)time(NULL))};
     printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", random.state, edits);
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
     copy c = {.daemon = d, .client = client_new(d)};

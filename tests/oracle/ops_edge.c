@@ -258,11 +258,6 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
     return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
 }
 
-static bool same_point(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* Returns whether the point at t between u and v differs from v in any case, however it is
  * rounded. */
 static bool surely_off(double u, double v, double t)
@@ -280,8 +275,8 @@ uint64_t or_check_collapse(const or_mesh *o, const or_collapse *c, uint64_t *dou
 {
     he_vec3 from = o->vertex[c->u].at;
     he_vec3 at = o->vertex[c->v].at;
-    bool apart = !same_point(from, at) || o->vertex[c->v].near;
-    bool can_move = c->to != NULL ? !same_point(*c->to, at) : c->t != 1 && apart;
+    bool apart = !or_same_point(from, at) || o->vertex[c->v].near;
+    bool can_move = c->to != NULL ? !or_same_point(*c->to, at) : c->t != 1 && apart;
     bool moves = can_move && (c->to != NULL || surely_moves(from, at, c->t));
     uint64_t refused = link_condition(o, c->u, c->v) | marks_about(o, c->u, c->v, moves);
     *doubt |= marks_about(o, c->u, c->v, can_move) & ~refused;
@@ -334,6 +329,6 @@ void or_draw_together(or_mesh *o, const or_collapse *c)
         }
     }
     o->vertex[u].alive = false;
-    o->vertex[v].near = to == NULL && (o->vertex[v].near || !same_point(from, at));
+    o->vertex[v].near = to == NULL && (o->vertex[v].near || !or_same_point(from, at));
     o->vertex[v].at = to != NULL ? *to : between(from, at, c->t);
 }

@@ -36,11 +36,6 @@ static bool overlap(const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m
     return false;
 }
 
-static bool same_point(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* --- loop_bridge --- */
 
 static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
@@ -229,9 +224,9 @@ static bool join_is_locked(const or_mesh *o, or_loop a, or_loop b)
     bool locked = (a.face != OR_NONE && o->face[a.face].locked) ||
                   (b.face != OR_NONE && o->face[b.face].locked);
     for (uint32_t i = 0; i < n; i++) {
-        locked =
-            locked || o->vertex[b.v[i]].locked ||
-            (o->vertex[a.v[i]].locked && !same_point(o->vertex[a.v[i]].at, o->vertex[b.v[i]].at));
+        locked = locked || o->vertex[b.v[i]].locked ||
+                 (o->vertex[a.v[i]].locked &&
+                  !or_same_point(o->vertex[a.v[i]].at, o->vertex[b.v[i]].at));
     }
     for (uint32_t e = 0; e < o->edges; e++) {
         locked = locked || (o->edge[e].alive && o->edge[e].locked &&

@@ -127,6 +127,7 @@ void or_set_joined(or_mesh *o, uint32_t e);
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
 uint32_t or_live_faces(const or_mesh *o);
+bool or_same_point(he_vec3 a, he_vec3 b);
 /* or_place returns the position of v among the corners of f, OR_NONE if it is no corner; or_after
  * returns the next corner. */
 uint32_t or_place(const or_face *f, uint32_t v);

@@ -430,17 +430,6 @@ static void test_values_follow(void **state)
     he_mesh_free(m);
 }
 
-/* Requires these pairs, given as text: "merged into" or "child parent". */
-static void assert_pairs(const he_ids *list, const char *expected)
-{
-    char text[256] = "";
-    size_t at = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
-    }
-    assert_string_equal(text, expected);
-}
-
 static void test_descent(void **state)
 {
     (void)state;
@@ -460,11 +449,11 @@ static void test_descent(void **state)
         he_mesh_record(m, delta);
         script_prepare(m, cases[i].script);
         assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-        assert_pairs(&changes.parents[HE_VERTEX], cases[i].vertices);
-        assert_pairs(&changes.parents[HE_EDGE], cases[i].edges);
-        assert_pairs(&changes.parents[HE_FACE], cases[i].faces);
-        assert_pairs(&changes.merged[HE_VERTEX], cases[i].merged_vertices);
-        assert_pairs(&changes.merged[HE_EDGE], cases[i].merged_edges);
+        assert_ids(&changes.parents[HE_VERTEX], cases[i].vertices);
+        assert_ids(&changes.parents[HE_EDGE], cases[i].edges);
+        assert_ids(&changes.parents[HE_FACE], cases[i].faces);
+        assert_ids(&changes.merged[HE_VERTEX], cases[i].merged_vertices);
+        assert_ids(&changes.merged[HE_EDGE], cases[i].merged_edges);
         he_changes_clear(&changes);
         he_mesh_record(m, NULL);
         he_delta_free(delta);
