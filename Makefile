@@ -89,7 +89,7 @@ FUZZ_C     := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 # program of its own.
 FUZZ_PARTS := $(sort $(filter-out $(FUZZ_C) $(if $(filter fuzz,$(CONFIG)),tests/fuzz/replay.c), \
                 $(wildcard tests/fuzz/*.c)) tests/codings.c tests/json_tokens.c tests/pace.c tests/traffic.c \
-                tests/api/request.c server/http/syntax/http_fault.c server/http/syntax/http_syntax.c \
+                tests/api/request.c tests/unit/fixture.c tests/unit/format_fixture.c server/http/syntax/http_fault.c server/http/syntax/http_syntax.c \
                 server/log/trace.c)
 HTTP_C     := $(sort $(wildcard tests/bench/http/*.c))
 FAULTS_C   := tests/durable/inject/faults.c

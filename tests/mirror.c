@@ -3,6 +3,7 @@
 #include "mesh/column.h"
 #include "mesh/material.h"
 #include "mesh/walk.h"
+#include "tests/json_member.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -257,15 +258,6 @@ void mirror_take(mirror *m, const he_mesh *mesh, uint64_t revision)
     take_materials(m, he_mesh_materials(mesh));
 }
 
-static const cJSON *member(const cJSON *object, const char *name)
-{
-    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
-    if (found == NULL) {
-        fail_msg("there is no \"%s\"", name);
-    }
-    return found;
-}
-
 static uint32_t id_of(const cJSON *item)
 {
     assert_true(cJSON_IsNull(item) || cJSON_IsNumber(item));
@@ -296,18 +288,18 @@ static void round_numbers(const mirror_column *c, double *values)
 void mirror_add_line(mirror *m, he_kind kind, const cJSON *element)
 {
     static const char *const links[] = {"next", "prev", "origin", "face"};
-    uint32_t id = id_of(member(element, "id")), link[MIRROR_LINKS];
+    uint32_t id = id_of(json_member(element, "id")), link[MIRROR_LINKS];
     double position[3];
     if (kind == HE_HALFEDGE) {
         for (size_t i = 0; i < MIRROR_LINKS; i++) {
-            link[i] = id_of(member(element, links[i]));
+            link[i] = id_of(json_member(element, links[i]));
         }
         put_links(m, kind, id, link, MIRROR_LINKS);
         return;
     }
-    link[0] = id_of(member(element, "halfedge"));
+    link[0] = id_of(json_member(element, "halfedge"));
     if (kind == HE_VERTEX) {
-        read_numbers(member(element, "position"), position, 3);
+        read_numbers(json_member(element, "position"), position, 3);
         put_vertex(m, id, position, link[0]);
     } else {
         put_links(m, kind, id, link, 1);
@@ -329,11 +321,11 @@ static he_kind kind_of(const char *plural)
 
 void mirror_add_attribute(mirror *m, const cJSON *attribute)
 {
-    mirror_column *c = add_column(m, kind_of(member(attribute, "domain")->valuestring),
-                                  member(attribute, "name")->valuestring,
-                                  (size_t)member(attribute, "components")->valuedouble);
-    const cJSON *fallback = member(attribute, "default"), *label;
-    c->single = strcmp(member(attribute, "type")->valuestring, "float") == 0;
+    mirror_column *c = add_column(m, kind_of(json_member(attribute, "domain")->valuestring),
+                                  json_member(attribute, "name")->valuestring,
+                                  (size_t)json_member(attribute, "components")->valuedouble);
+    const cJSON *fallback = json_member(attribute, "default"), *label;
+    c->single = strcmp(json_member(attribute, "type")->valuestring, "float") == 0;
     if (c->components == 1) {
         c->fallback[0] = number_of(fallback);
     } else {
@@ -351,8 +343,8 @@ static void apply_columns(mirror *m, const cJSON *data)
     const cJSON *item;
     cJSON_ArrayForEach(item, cJSON_GetObjectItem(data, "attributes_dropped"))
     {
-        mirror_column *gone = find_column(m, kind_of(member(item, "domain")->valuestring),
-                                          member(item, "name")->valuestring);
+        mirror_column *gone = find_column(m, kind_of(json_member(item, "domain")->valuestring),
+                                          json_member(item, "name")->valuestring);
         assert_non_null(gone);
         drop_column(m, (size_t)(gone - m->columns));
     }
@@ -370,12 +362,12 @@ void mirror_set_materials(mirror *m, const cJSON *list)
     cJSON_ArrayForEach(item, list)
     {
         double numbers[9];
-        read_numbers(member(item, "base_color"), numbers, 4);
-        numbers[4] = member(item, "metallic")->valuedouble;
-        numbers[5] = member(item, "roughness")->valuedouble;
-        read_numbers(member(item, "emission"), numbers + 6, 3);
-        add_material(m, member(item, "name")->valuestring, numbers,
-                     cJSON_IsTrue(member(item, "two_sided")));
+        read_numbers(json_member(item, "base_color"), numbers, 4);
+        numbers[4] = json_member(item, "metallic")->valuedouble;
+        numbers[5] = json_member(item, "roughness")->valuedouble;
+        read_numbers(json_member(item, "emission"), numbers + 6, 3);
+        add_material(m, json_member(item, "name")->valuestring, numbers,
+                     cJSON_IsTrue(json_member(item, "two_sided")));
     }
 }
 
@@ -442,7 +434,7 @@ static void apply_vertices(mirror *m, const cJSON *list)
 void mirror_add_values(mirror *m, he_kind domain, const char *name, const cJSON *page)
 {
     mirror_column *c = find_column(m, domain, name);
-    const cJSON *id = member(page, "ids")->child, *value = member(page, "values")->child;
+    const cJSON *id = json_member(page, "ids")->child, *value = json_member(page, "values")->child;
     assert_non_null(c);
     for (; id != NULL; id = id->next, value = value->next) {
         double *to = value_of(c, id_of(id));
@@ -496,8 +488,8 @@ static void require_set(const mirror *m, const cJSON *sets, bool live)
 
 mirror_step mirror_apply(mirror *m, const cJSON *data)
 {
-    uint64_t base = (uint64_t)member(data, "base")->valuedouble;
-    uint64_t revision = (uint64_t)member(data, "revision")->valuedouble;
+    uint64_t base = (uint64_t)json_member(data, "base")->valuedouble;
+    uint64_t revision = (uint64_t)json_member(data, "revision")->valuedouble;
     assert_true(revision == base + 1);
     if (revision <= m->revision) {
         return MIRROR_KNOWN;
@@ -505,22 +497,22 @@ mirror_step mirror_apply(mirror *m, const cJSON *data)
     if (base != m->revision || cJSON_GetObjectItem(data, "stale") != NULL) {
         return MIRROR_LOST;
     }
-    const cJSON *values = member(data, "values");
-    require_set(m, member(data, "created"), false);
-    require_set(m, member(data, "modified"), true);
+    const cJSON *values = json_member(data, "values");
+    require_set(m, json_member(data, "created"), false);
+    require_set(m, json_member(data, "modified"), true);
     apply_columns(m, data);
     const cJSON *materials = cJSON_GetObjectItem(data, "materials");
     if (materials != NULL) { /* if a row changed, the whole table is sent */
         mirror_set_materials(m, materials);
     }
-    apply_deleted(m, member(data, "deleted"));
-    apply_vertices(m, member(values, "vertices"));
-    apply_links(m, HE_HALFEDGE, member(values, "halfedges"));
-    apply_links(m, HE_FACE, member(values, "faces"));
-    apply_attributes(m, member(values, "attributes"));
-    require_set(m, member(data, "created"), true);
-    require_set(m, member(data, "modified"), true);
-    require_set(m, member(data, "deleted"), false);
+    apply_deleted(m, json_member(data, "deleted"));
+    apply_vertices(m, json_member(values, "vertices"));
+    apply_links(m, HE_HALFEDGE, json_member(values, "halfedges"));
+    apply_links(m, HE_FACE, json_member(values, "faces"));
+    apply_attributes(m, json_member(values, "attributes"));
+    require_set(m, json_member(data, "created"), true);
+    require_set(m, json_member(data, "modified"), true);
+    require_set(m, json_member(data, "deleted"), false);
     m->revision = revision;
     return MIRROR_APPLIED;
 }

@@ -15,3 +15,9 @@ uint64_t seed_of_run(void)
     printf("note: SEED=%" PRIu64 "\n", seed);
     return seed;
 }
+
+uint64_t seed_setting(const char *name, uint64_t fallback)
+{
+    const char *text = getenv(name);
+    return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
+}

@@ -1,4 +1,4 @@
-/* seed.h - the seed of random tests. */
+/* seed.h - what the environment sets for random tests: their seed, and numbers such as ROUNDS. */
 #ifndef TESTS_SEED_H
 #define TESTS_SEED_H
 
@@ -7,5 +7,7 @@
 /* Returns the seed in the environment variable SEED, or else one from the clock; prints it, so that
  * a failed run can be repeated. */
 uint64_t seed_of_run(void);
+/* Returns the number in an environment variable, or `fallback` if it is absent or empty. */
+uint64_t seed_setting(const char *name, uint64_t fallback);
 
 #endif

@@ -115,6 +115,16 @@ void told_begin(told_journal *told, const st_journal *journal)
     journal->listen(journal->self, &listener);
 }
 
+void told_open(told_journal *told, const char *folder)
+{
+    st_sqlite_opened opened;
+    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &opened)) {
+        (void)fprintf(stderr, "%s: %s\n", folder, opened.message);
+        abort();
+    }
+    told_begin(told, &opened.journal);
+}
+
 void told_wait(told_journal *told, uint64_t position)
 {
     pthread_mutex_lock(&told->lock);

@@ -30,6 +30,8 @@ typedef struct told_journal {
 } told_journal;
 
 void told_begin(told_journal *told, const st_journal *journal);
+/* Opens the store in a folder, and begins with its journal. */
+void told_open(told_journal *told, const char *folder);
 void told_wait(told_journal *told, uint64_t position); /* waits until it is durable or lost */
 unsigned told_losses(told_journal *told);
 void told_end(told_journal *told); /* closes the journal */

@@ -1,5 +1,5 @@
 /* fan.h - a vertex with many triangles around it. If the triangles cross each other, the search for
- * self-intersections takes long. Include this header once per program: its functions are static. */
+ * self-intersections takes long. */
 #ifndef TESTS_API_FAN_H
 #define TESTS_API_FAN_H
 
@@ -18,43 +18,14 @@ typedef struct fan_text {
     size_t length, room;
 } fan_text;
 
-static inline fan_text fan_text_new(size_t room)
-{
-    fan_text t = {malloc(room), 0, room};
-    assert_non_null(t.bytes);
-    return t;
-}
+/* Makes an empty text of at most `room` bytes; the caller must free its bytes. */
+fan_text fan_text_new(size_t room);
 
-static inline void fan_add(fan_text *t, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-static inline void fan_add(fan_text *t, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    t->length += (size_t)vsnprintf(t->bytes + t->length, t->room - t->length, format, list);
-    va_end(list);
-    assert_true(t->length < t->room);
-}
+/* Appends formatted text. */
+void fan_add(fan_text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Creates a mesh of one vertex with triangles to `spokes` points on a circle around it; consecutive
  * corners are `stride` points apart, so with a stride above 1 the triangles cross. */
-static inline void put_fan(api_bench *b, const char *path, int spokes, int stride)
-{
-    fan_text t = fan_text_new(128 * (size_t)spokes);
-    fan_add(&t, "{\"vertices\":[[0,0,0]");
-    for (int i = 0; i < spokes; i++) {
-        double turn = 2 * 3.141592653589793 * fmod((double)i * stride, spokes) / spokes;
-        fan_add(&t, ",[%.17g,%.17g,%.17g]", cos(turn), sin(turn), cos(turn) / 3);
-    }
-    fan_add(&t, "],\"faces\":[");
-    for (int i = 0; i < spokes; i++) {
-        fan_add(&t, "%s[0,%d,%d]", i == 0 ? "" : ",", i + 1, (i + 1) % spokes + 1);
-    }
-    fan_add(&t, "]}");
-    bench_reply r = bench_send(b, "PUT", path, NULL, t.bytes);
-    assert_true(r.status == 201 || r.status == 200);
-    bench_reply_free(&r);
-    free(t.bytes);
-}
+void fan_put(api_bench *b, const char *path, int spokes, int stride);
 
 #endif

@@ -76,18 +76,9 @@ static void write_file(char out[FILE_BYTES], const char *without)
 }
 
 /* Sends a request and requires that no secret of any token appears in the answer. */
-static bench_reply ask_with(world *w, const char *authorization, const char *method,
-                            const char *target, const char *const *more, const char *body)
+static bench_reply ask_with(world *w, const char *method, const char *target,
+                            const char *const *headers, const char *body)
 {
-    const char *headers[9] = {NULL};
-    size_t count = 0;
-    for (; more != NULL && more[count] != NULL; count++) {
-        headers[count] = more[count];
-    }
-    if (authorization != NULL) {
-        headers[count++] = "Authorization";
-        headers[count++] = authorization;
-    }
     bench_reply r = bench_send(w->bench, method, target, headers, body);
     bool tells = strstr(r.body, SECRET) != NULL;
     for (size_t i = 0; i < r.header_count; i++) {
@@ -105,16 +96,22 @@ static bench_reply ask(world *w, const char *name, const char *method, const cha
     char secret[80], authorization[100];
     secret_of(name, secret);
     snprintf(authorization, sizeof authorization, "Bearer %s", secret);
-    return ask_with(w, authorization, method, target, NULL, body);
+    const char *const headers[] = {"Authorization", authorization, NULL};
+    return ask_with(w, method, target, headers, body);
 }
 
-static void must(world *w, const char *name, const char *method, const char *target,
-                 const char *body, int status)
+/* A request with the token of this name, and the status that its answer must have. */
+typedef struct attempt {
+    const char *name, *method, *target, *body;
+    int status;
+} attempt;
+
+static void must(world *w, const attempt *a)
 {
-    bench_reply r = ask(w, name, method, target, body);
-    if (r.status != status) {
-        found(w, "%s: %s %s is %d and not %d: %.200s", name, method, target, r.status, status,
-              r.body);
+    bench_reply r = ask(w, a->name, a->method, a->target, a->body);
+    if (r.status != a->status) {
+        found(w, "%s: %s %s is %d and not %d: %.200s", a->name, a->method, a->target, r.status,
+              a->status, r.body);
     }
     bench_done(r);
 }
@@ -199,9 +196,9 @@ static void begin(world *w)
     for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
         char target[TARGET];
         snprintf(target, sizeof target, "/v1/meshes/%s", meshes[i]);
-        must(w, "boss", "PUT", target, "{\"shape\":\"cube\"}", 201);
+        must(w, &(attempt){"boss", "PUT", target, "{\"shape\":\"cube\"}", 201});
         snprintf(target, sizeof target, "/v1/meshes/%s/attributes/faces/a", meshes[i]);
-        must(w, "boss", "PUT", target, "{\"type\":\"bool\"}", 201);
+        must(w, &(attempt){"boss", "PUT", target, "{\"type\":\"bool\"}", 201});
     }
 }
 
@@ -246,9 +243,10 @@ static void try_strangers(world *w)
             for (size_t s = 0; s < 2 * STRANGERS; s++) {
                 char target[TARGET];
                 target_of(&api_routes().rows[i], s % 2 == 0 ? "left-m" : "left-0", "none", target);
-                const char *authorization = strangers[s / 2];
-                bench_reply r = ask_with(w, authorization, methods[m], target, NULL,
-                                         row == NULL ? NULL : body_of(row));
+                const char *const headers[] = {strangers[s / 2] == NULL ? NULL : "Authorization",
+                                               strangers[s / 2], NULL};
+                bench_reply r =
+                    ask_with(w, methods[m], target, headers, row == NULL ? NULL : body_of(row));
                 bool refused = r.status == 401;
                 if (row == NULL && r.status != 405 && r.status != 204) {
                     found(w, "a stranger's %s %s is %d", methods[m], target, r.status);
@@ -330,20 +328,25 @@ static void try_roles(world *w)
 static void try_rehearsals(world *w)
 {
     double before = revision_of(w, "m");
-    must(w, "reader", "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 200);
-    must(w, "reader", "POST", "/v1/meshes/m/edits",
-         "{\"ops\":[{\"op\":\"face_poke\",\"face\":0}],\"dry_run\":true}", 200);
-    must(w, "reader", "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":false}", 403);
-    must(w, "reader", "PUT", "/v1/meshes/m/attributes/faces/b",
-         "{\"type\":\"bool\",\"dry_run\":true}", 200);
-    must(w, "reader", "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\"}", 403);
-    must(w, "reader", "PATCH", "/v1/meshes/m/attributes/faces/a",
-         "{\"ids\":\"all\",\"value\":true,\"dry_run\":true}", 200);
-    must(w, "reader", "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL, 200);
-    must(w, "meter", "POST", "/v1/meshes/m/edits",
-         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 403);
+    static const attempt attempts[] = {
+        {"reader", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 200},
+        {"reader", "POST", "/v1/meshes/m/edits",
+         "{\"ops\":[{\"op\":\"face_poke\",\"face\":0}],\"dry_run\":true}", 200},
+        {"reader", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":false}", 403},
+        {"reader", "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\",\"dry_run\":true}",
+         200},
+        {"reader", "PUT", "/v1/meshes/m/attributes/faces/b", "{\"type\":\"bool\"}", 403},
+        {"reader", "PATCH", "/v1/meshes/m/attributes/faces/a",
+         "{\"ids\":\"all\",\"value\":true,\"dry_run\":true}", 200},
+        {"reader", "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL, 200},
+        {"meter", "POST", "/v1/meshes/m/edits",
+         "{\"op\":\"face_poke\",\"face\":0,\"dry_run\":true}", 403},
+    };
+    for (size_t i = 0; i < sizeof attempts / sizeof *attempts; i++) {
+        must(w, &attempts[i]);
+    }
     if (revision_of(w, "m") != before) {
         found(w, "a dry run has changed a mesh");
     }
@@ -385,8 +388,8 @@ static void try_prefixes(world *w)
     if (revision_of(w, "left-m") != before) {
         found(w, "a mesh outside the prefixes was changed");
     }
-    must(w, "right", "GET", "/v1/meshes/right-m", NULL, 200);
-    must(w, "right", "GET", "/v1/meshes/also-right.m", NULL, 200);
+    must(w, &(attempt){"right", "GET", "/v1/meshes/right-m", NULL, 200});
+    must(w, &(attempt){"right", "GET", "/v1/meshes/also-right.m", NULL, 200});
 }
 
 /* Requires that the list of meshes, read page by page with the token of this name, consists of the
@@ -442,7 +445,7 @@ static void try_bodies_and_ids(world *w)
         }
         bench_done(r);
     }
-    must(w, "boss", "GET", "/v1/meshes/left-0", NULL, 404);
+    must(w, &(attempt){"boss", "GET", "/v1/meshes/left-0", NULL, 404});
     static const char *const makes[] = {"/v1/meshes", "/v1/meshes/right-m/copy"};
     for (size_t i = 0; i < 2; i++) {
         bench_reply r = ask(w, "right", "POST", makes[i], i == 0 ? "{\"shape\":\"cube\"}" : NULL);
@@ -450,7 +453,7 @@ static void try_bodies_and_ids(world *w)
         if (r.status != 201 || strncmp(location, "/v1/meshes/right-", 17) != 0) {
             found(w, "right's new mesh is at %s: %d", location, r.status);
         } else {
-            must(w, "right", "DELETE", location, NULL, 204);
+            must(w, &(attempt){"right", "DELETE", location, NULL, 204});
         }
         bench_done(r);
     }
@@ -460,10 +463,10 @@ static void try_bodies_and_ids(world *w)
  * tokens it is an unknown job. */
 static void try_jobs(world *w)
 {
-    static const char *const async[] = {"Prefer", "respond-async", NULL};
+    static const char *const async[] = {"Authorization", "Bearer left" SECRET, "Prefer",
+                                        "respond-async", NULL};
     static const char *const ends[] = {"", "/result", "/events"};
-    bench_reply made = ask_with(w, "Bearer left" SECRET, "POST", "/v1/meshes/left-m/query", async,
-                                "{\"queries\":[]}");
+    bench_reply made = ask_with(w, "POST", "/v1/meshes/left-m/query", async, "{\"queries\":[]}");
     char job[TARGET], id[TARGET];
     snprintf(job, sizeof job, "%s", bench_header(&made, "Location"));
     snprintf(id, sizeof id, "%s", made.status == 202 ? job + strlen("/v1/jobs/") : "");
@@ -491,9 +494,9 @@ static void try_jobs(world *w)
             found(w, "%s's jobs: %.300s", viewers[i], r.body);
         }
         bench_done(r);
-        must(w, viewers[i], "GET", job, NULL, i < 2 ? 404 : 200);
+        must(w, &(attempt){viewers[i], "GET", job, NULL, i < 2 ? 404 : 200});
     }
-    must(w, "left", "DELETE", job, NULL, 202);
+    must(w, &(attempt){"left", "DELETE", job, NULL, 202});
     bench_run_jobs(w->bench, BENCH_JOBS);
 }
 
@@ -544,8 +547,8 @@ static void try_streams(world *w)
     }
     write_file(file, "left");
     bench_change_tokens(w->bench, file);
-    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
-    must(w, "left", "GET", "/v1/meshes/left-m", NULL, 401);
+    must(w, &(attempt){"boss", "POST", "/v1/admin/reload", NULL, 200});
+    must(w, &(attempt){"left", "GET", "/v1/meshes/left-m", NULL, 401});
     if (!woken[0] || woken[1]) {
         found(w, "the streams woken are %d and %d", woken[0], woken[1]);
     }
@@ -561,13 +564,13 @@ static void try_streams(world *w)
         api_free(streams[i]);
     }
     bench_change_tokens(w->bench, w->file);
-    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
-    must(w, "left", "GET", "/v1/meshes/left-m", NULL, 200);
+    must(w, &(attempt){"boss", "POST", "/v1/admin/reload", NULL, 200});
+    must(w, &(attempt){"left", "GET", "/v1/meshes/left-m", NULL, 200});
 }
 
 static void try_url(world *w, const char *method, const char *target, int status)
 {
-    bench_reply r = ask_with(w, NULL, method, target, NULL, NULL);
+    bench_reply r = ask_with(w, method, target, NULL, NULL);
     if (r.status != status) {
         found(w, "%s with a ticket is %d and not %d: %.200s", method, r.status, status, r.body);
     }
@@ -611,25 +614,24 @@ static void try_tickets(world *w)
     try_url(w, "GET", url, 404);
     ask_ticket(w, "right", "/v1/meshes/right-m", url);
     try_url(w, "GET", url, 200);
-    must(w, "meter", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes\"}", 403);
-    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes?ticket=x\"}", 400);
-    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m x\"}", 400);
-    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"//evil.example/\"}", 400);
-    must(w, "left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m/undo\"}", 400);
+    must(w, &(attempt){"meter", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes\"}", 403});
+    must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes?ticket=x\"}", 400});
+    must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m x\"}", 400});
+    must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"//evil.example/\"}", 400});
+    must(w, &(attempt){"left", "POST", "/v1/tickets", "{\"path\":\"/v1/meshes/m/undo\"}", 400});
     ask_ticket(w, "left", "/v1/meshes/left-m", url);
     write_file(file, "left");
     bench_change_tokens(w->bench, file);
-    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+    must(w, &(attempt){"boss", "POST", "/v1/admin/reload", NULL, 200});
     try_url(w, "GET", url, 401);
     bench_change_tokens(w->bench, w->file);
-    must(w, "boss", "POST", "/v1/admin/reload", NULL, 200);
+    must(w, &(attempt){"boss", "POST", "/v1/admin/reload", NULL, 200});
 }
 
 /* Idempotency keys belong to a token: equal keys of two tokens must be independent, in requests
  * about a mesh and in requests that create one. */
 static void try_keys(world *w)
 {
-    static const char *const key[] = {"Idempotency-Key", "one", NULL};
     static const struct {
         const char *target, *body;
     } rows[] = {{"/v1/meshes/left-m/edits", "{\"op\":\"face_poke\",\"face\":0}"},
@@ -642,7 +644,9 @@ static void try_keys(world *w)
         for (size_t s = 0; s < sizeof sends / sizeof *sends; s++) {
             char authorization[100];
             snprintf(authorization, sizeof authorization, "Bearer %s" SECRET, sends[s].name);
-            bench_reply r = ask_with(w, authorization, "POST", rows[i].target, key, rows[i].body);
+            const char *const headers[] = {"Authorization", authorization, "Idempotency-Key", "one",
+                                           NULL};
+            bench_reply r = ask_with(w, "POST", rows[i].target, headers, rows[i].body);
             bool again = strcmp(bench_header(&r, "Idempotency-Replayed"), "true") == 0;
             if (r.status >= 300 || again != sends[s].again) {
                 found(w, "%s's key at %s: %d, replayed %d", sends[s].name, rows[i].target, r.status,

@@ -230,9 +230,10 @@ static unsigned read_off(const pg_mesh *pg, const char *kind, const char *what, 
     return h; /* for the relations outgoing, halfedges, loop and ring */
 }
 
-void pg_relation(const pg_mesh *pg, const char *kind, unsigned id, const char *what, bool clockwise,
-                 pg_list *out)
+void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out)
 {
+    const char *kind = of.kind;
+    const unsigned id = of.id;
     pg_list halfedges = {.count = 0};
     if (strcmp(kind, "vertex") == 0) {
         ring(pg, pg->vertex_first[id], &halfedges);
@@ -281,16 +282,17 @@ double pg_area(const pg_mesh *pg, unsigned f, double out[3])
 
 /* --- walks --- */
 
-void pg_breadth_first(const pg_mesh *pg, const char *kind, unsigned from, unsigned depth,
-                      unsigned limit, pg_list *ids, pg_list *depths)
+void pg_breadth_first(const pg_mesh *pg, const pg_flood *flood, pg_list *ids, pg_list *depths)
 {
+    const char *kind = flood->from.kind;
     bool about_vertex = strcmp(kind, "vertex") == 0;
     ids->count = depths->count = 0;
-    add(ids, from);
+    add(ids, flood->from.id);
     add(depths, 0);
-    for (unsigned i = 0; i < ids->count && depths->ids[i] < depth; i++) {
+    for (unsigned i = 0; i < ids->count && depths->ids[i] < flood->depth; i++) {
         pg_list beside;
-        pg_relation(pg, kind, ids->ids[i], about_vertex ? "vertices" : "faces", false, &beside);
+        pg_relation(pg, (pg_element){kind, ids->ids[i]}, about_vertex ? "vertices" : "faces", false,
+                    &beside);
         for (unsigned j = 0; j < beside.count; j++) {
             add_once(ids, beside.ids[j]);
             while (depths->count < ids->count) {
@@ -298,8 +300,8 @@ void pg_breadth_first(const pg_mesh *pg, const char *kind, unsigned from, unsign
             }
         }
     }
-    if (limit != 0 && ids->count > limit) {
-        ids->count = depths->count = limit;
+    if (flood->limit != 0 && ids->count > flood->limit) {
+        ids->count = depths->count = flood->limit;
     }
 }
 

@@ -38,10 +38,15 @@ void pg_learn_vertex(pg_mesh *pg, unsigned v, unsigned halfedge);
 void pg_learn_face(pg_mesh *pg, unsigned f, unsigned halfedge);
 void pg_learn_next(pg_mesh *pg, unsigned h, unsigned next);
 
-/* Finds the elements in a relation to an element: `kind` and `id` name the element, `what` names
- * the relation, as in "faces" of the "vertex" 3. */
-void pg_relation(const pg_mesh *pg, const char *kind, unsigned id, const char *what, bool clockwise,
-                 pg_list *out);
+/* An element, such as the "vertex" 3. */
+typedef struct pg_element {
+    const char *kind;
+    unsigned id;
+} pg_element;
+
+/* Finds the elements in a relation to an element: `what` names the relation, as in "faces" of the
+ * "vertex" 3. */
+void pg_relation(const pg_mesh *pg, pg_element of, const char *what, bool clockwise, pg_list *out);
 bool pg_is_isolated(const pg_mesh *pg, unsigned v);
 bool pg_is_boundary(const pg_mesh *pg, unsigned v);
 unsigned pg_fans(const pg_mesh *pg, unsigned v);
@@ -49,8 +54,13 @@ double pg_length(const pg_mesh *pg, unsigned e);
 /* Returns the area of a face; `out` becomes its area vector, half of the sum of p[i] x p[i + 1]. */
 double pg_area(const pg_mesh *pg, unsigned f, double out[3]);
 
-void pg_breadth_first(const pg_mesh *pg, const char *kind, unsigned from, unsigned depth,
-                      unsigned limit, pg_list *ids, pg_list *depths);
+/* A breadth-first walk from a vertex along edges or from a face across them: `depth` is its maximum
+ * number of steps, `limit` its maximum number of elements, 0: no limit. */
+typedef struct pg_flood {
+    pg_element from;
+    unsigned depth, limit;
+} pg_flood;
+void pg_breadth_first(const pg_mesh *pg, const pg_flood *flood, pg_list *ids, pg_list *depths);
 /* Finds the distances between all pairs of vertices, in edges or by length; HUGE_VAL: not
  * connected. */
 void pg_distances(const pg_mesh *pg, bool by_length, double out[PG_VERTICES][PG_VERTICES]);

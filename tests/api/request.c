@@ -333,25 +333,24 @@ static void read_all(api_bench *b, const api_answer *answer, bench_reply *r)
     r->body[r->length] = '\0';
 }
 
-bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
-               const char *body, size_t length, bench_reply *out)
+bool bench_try(api_bench *b, const bench_request *sent, bench_reply *out)
 {
-    const char *mark = strchr(target, '?');
-    size_t path_length = mark == NULL ? strlen(target) : (size_t)(mark - target);
-    char *path = strndup(target, path_length);
+    const char *mark = strchr(sent->target, '?');
+    size_t path_length = mark == NULL ? strlen(sent->target) : (size_t)(mark - sent->target);
+    char *path = strndup(sent->target, path_length);
     assert_non_null(path);
-    api_request request = {.method = method,
+    api_request request = {.method = sent->method,
                            .path = path,
                            .query = mark == NULL ? "" : mark + 1,
                            .request_id = "test",
                            .client = {{b->address, 0}},
                            .is_beyond = b->is_beyond,
-                           .has_length = body != NULL,
-                           .length = length,
-                           .has_body = body != NULL};
-    read_headers(headers, &request);
+                           .has_length = sent->body != NULL,
+                           .length = sent->length,
+                           .has_body = sent->body != NULL};
+    read_headers(sent->headers, &request);
     const char **type = &request.headers[API_HEADER_CONTENT_TYPE];
-    if (body != NULL && *type == NULL) {
+    if (sent->body != NULL && *type == NULL) {
         *type = "application/json";
     } else if (*type != NULL && **type == '\0') {
         *type = NULL;
@@ -360,7 +359,7 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
     if (*authorization == NULL && b->bearer[0] != '\0') {
         *authorization = b->bearer;
     }
-    bench_reply r = {.exchange = api_handle(b->service, &request, body, length)};
+    bench_reply r = {.exchange = api_handle(b->service, &request, sent->body, sent->length)};
     free(path);
     if (r.exchange == NULL) {
         return false;
@@ -382,9 +381,9 @@ bool bench_try(api_bench *b, const char *method, const char *target, const char 
 /* Writes a request and its answer to the recorded traffic, which a later test compares with the
  * OpenAPI document. Tests with failing allocations record nothing, because their answers are cut
  * short. */
-static void record(const char *method, const char *target, const char *const *headers,
-                   const char *body, size_t length, const bench_reply *r)
+static void record(const bench_request *sent, const bench_reply *r)
 {
+    const char *const *headers = sent->headers;
     char *heads[2];
     size_t size;
     FILE *out = open_memstream(&heads[0], &size);
@@ -397,7 +396,7 @@ static void record(const char *method, const char *target, const char *const *he
             fprintf(out, "%s: %s\r\n", headers[i], headers[i + 1]);
         }
     }
-    if (body != NULL && !typed) {
+    if (sent->body != NULL && !typed) {
         fputs("Content-Type: application/json\r\n", out);
     }
     fclose(out);
@@ -409,20 +408,19 @@ static void record(const char *method, const char *target, const char *const *he
     fclose(out);
     /* The server, not the api, leaves out the body of an answer to HEAD, so a recorded answer has
      * to drop it here. */
-    bool head = strcmp(method, "HEAD") == 0;
-    const traffic_message asked = {heads[0], body == NULL ? "" : body, length};
+    bool head = strcmp(sent->method, "HEAD") == 0;
+    const traffic_message asked = {heads[0], sent->body == NULL ? "" : sent->body, sent->length};
     const traffic_message said = {heads[1], head ? "" : r->body, head ? 0 : r->length};
-    traffic_record(method, target, &asked, r->status, &said);
+    traffic_record(sent->method, sent->target, &asked, r->status, &said);
     free(heads[0]);
     free(heads[1]);
 }
 
-bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
-                             const char *const *headers, const char *body, size_t length)
+bench_reply bench_send_bytes(api_bench *b, const bench_request *request)
 {
     bench_reply r;
-    assert_true(bench_try(b, method, target, headers, body, length, &r));
-    record(method, target, headers, body, length, &r);
+    assert_true(bench_try(b, request, &r));
+    record(request, &r);
     r.json = cJSON_ParseWithLength(r.body, r.length);
     return r;
 }
@@ -430,7 +428,8 @@ bench_reply bench_send_bytes(api_bench *b, const char *method, const char *targe
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body)
 {
-    return bench_send_bytes(b, method, target, headers, body, body == NULL ? 0 : strlen(body));
+    return bench_send_bytes(
+        b, &(bench_request){method, target, headers, body, body == NULL ? 0 : strlen(body)});
 }
 
 const char *bench_header(const bench_reply *r, const char *name)
@@ -441,6 +440,13 @@ const char *bench_header(const bench_reply *r, const char *name)
         }
     }
     return "";
+}
+
+const char *bench_text(const bench_reply *r, const char *member)
+{
+    const cJSON *value = cJSON_GetObjectItem(r->json, member);
+    assert_true(cJSON_IsString(value));
+    return value->valuestring;
 }
 
 void bench_reply_free(bench_reply *r)

@@ -58,13 +58,20 @@ typedef struct bench_reply {
  * Content-Type of "" the header is left out. `body` NULL: the request has no body. */
 bench_reply bench_send(api_bench *b, const char *method, const char *target,
                        const char *const *headers, const char *body);
-bench_reply bench_send_bytes(api_bench *b, const char *method, const char *target,
-                             const char *const *headers, const char *body, size_t length);
+/* A request whose body may hold any bytes; the members are as in bench_send(). */
+typedef struct bench_request {
+    const char *method, *target;
+    const char *const *headers;
+    const char *body;
+    size_t length; /* bytes of the body; 0 if there is none */
+} bench_request;
+bench_reply bench_send_bytes(api_bench *b, const bench_request *request);
 /* Sends a request and does not parse the answer; returns false if the service could not allocate
  * the exchange. */
-bool bench_try(api_bench *b, const char *method, const char *target, const char *const *headers,
-               const char *body, size_t length, bench_reply *out);
+bool bench_try(api_bench *b, const bench_request *request, bench_reply *out);
 const char *bench_header(const bench_reply *r, const char *name); /* returns "" when absent */
+/* Returns a member of the answer, which must be a string. */
+const char *bench_text(const bench_reply *r, const char *member);
 void bench_reply_free(bench_reply *r);
 
 /* Shorthands for common requests. */

@@ -20,13 +20,6 @@ static bench_reply put(api_bench *b, const char *target, const char *body)
     return bench_send(b, "PUT", target, NULL, body);
 }
 
-static const char *text_of(const bench_reply *r, const char *member)
-{
-    const cJSON *value = cJSON_GetObjectItem(r->json, member);
-    assert_true(cJSON_IsString(value));
-    return value->valuestring;
-}
-
 static int count_of(api_bench *b, const char *mesh, const char *kind)
 {
     char target[100];
@@ -113,8 +106,8 @@ static void what_cannot_be_had_is_refused_at_its_place(void **state)
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         bench_reply r =
             bench_expect(refused[i].status, bench_post(b, "/v1/meshes/box/edits", refused[i].body));
-        assert_string_equal(text_of(&r, "code"), refused[i].code);
-        assert_string_equal(text_of(&r, "pointer"), refused[i].pointer);
+        assert_string_equal(bench_text(&r, "code"), refused[i].code);
+        assert_string_equal(bench_text(&r, "pointer"), refused[i].pointer);
         bench_done(r);
     }
     assert_int_equal(count_of(b, "box", "faces"), 6);
@@ -135,7 +128,7 @@ static void no_request_names_more_meshes_than_it_may(void **state)
     }
     api_text_add(&body, "]}", sizeof "]}");
     bench_reply r = bench_expect(413, bench_post(b, "/v1/meshes/box/edits", body.bytes));
-    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
     bench_done(r);
     assert_int_equal(count_of(b, "box", "faces"), 6);
     api_text_clear(&body);
@@ -154,7 +147,7 @@ static void attributes_of_one_name_and_two_types_are_refused(void **state)
     bench_done(bench_expect(201, put(b, "/v1/meshes/tile/attributes/vertices/heat", bodies[1])));
     bench_reply r = bench_expect(
         422, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
-    assert_string_equal(text_of(&r, "code"), "attribute_clash");
+    assert_string_equal(bench_text(&r, "code"), "attribute_clash");
     bench_done(r);
     bench_free(b);
 }
@@ -178,7 +171,7 @@ static void no_mesh_gets_more_attributes_than_it_may(void **state)
                                      "{\"type\":\"bool\",\"components\":1}")));
     bench_reply r = bench_expect(
         413, bench_post(b, "/v1/meshes/box/edits", "{\"op\":\"append\",\"mesh\":\"tile\"}"));
-    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
     bench_done(r);
     bench_free(b);
 }

@@ -90,8 +90,10 @@ static void what_changes_nothing_makes_no_revision(void **state)
     strip_send(b, 200, "DELETE", "/v1/meshes/m/attributes/faces/a?dry_run=true", NULL);
     const char *const headers[] = {"Content-Type", OCTETS, NULL};
     bench_reply octets = bench_expect(
-        200, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
-                              headers, "\0\1\0\1\0\1", 6));
+        200,
+        bench_send_bytes(
+            b, &(bench_request){"PUT", "/v1/meshes/m/attributes/faces/b?type=bool&dry_run=true",
+                                headers, "\0\1\0\1\0\1", 6}));
     bench_reply_free(&octets);
     assert_int_equal(revision_of(b), before);
     strip_send(b, 404, "GET", "/v1/meshes/m/attributes/faces/b", NULL);

@@ -85,8 +85,8 @@ static void add_columns(api_bench *b, const char *mesh, md_random *r)
             assert_non_null(body);
             fill(r, type, body, rows * count);
             const char *const headers[] = {"Content-Type", OCTETS, NULL};
-            bench_reply reply =
-                bench_expect(201, bench_send_bytes(b, "PUT", target, headers, body, length));
+            bench_reply reply = bench_expect(
+                201, bench_send_bytes(b, &(bench_request){"PUT", target, headers, body, length}));
             bench_reply_free(&reply);
             *strchr(target, '?') = '\0';
             size_t got;
@@ -443,7 +443,8 @@ static void octets_are_checked(void **state)
         char target[200];
         const char *const headers[] = {"Content-Type", OCTETS, NULL};
         snprintf(target, sizeof target, "/v1/meshes/m/attributes/vertices/o%s", cases[i].query);
-        bench_reply r = bench_send_bytes(b, "PUT", target, headers, cases[i].body, cases[i].length);
+        bench_reply r = bench_send_bytes(
+            b, &(bench_request){"PUT", target, headers, cases[i].body, cases[i].length});
         if (r.status != cases[i].status) {
             fail_msg("case %zu: %d, %s", i, r.status, r.body);
         }

@@ -96,11 +96,6 @@ static void state_free(state_of *state)
     bench_done(state->history);
 }
 
-static const char *text_of(const bench_reply *r, const char *member)
-{
-    return cJSON_GetObjectItem(r->json, member)->valuestring;
-}
-
 static int number_of(const bench_reply *r, const char *member)
 {
     return cJSON_GetObjectItem(r->json, member)->valueint;
@@ -165,8 +160,8 @@ static void the_last_of_ten_thousand_undoes_all_before_it(void **state)
         write_chain(&body, "", MANY, cases[i].last);
         bench_reply r =
             bench_expect(cases[i].status, bench_post(b, "/v1/meshes/m/edits", body.bytes));
-        assert_string_equal(text_of(&r, "code"), cases[i].code);
-        assert_string_equal(text_of(&r, "pointer"), cases[i].pointer);
+        assert_string_equal(bench_text(&r, "code"), cases[i].code);
+        assert_string_equal(bench_text(&r, "pointer"), cases[i].pointer);
         bench_reply_free(&r);
         expect_same(b, &before);
     }
@@ -225,7 +220,7 @@ static void the_list_may_stand_anywhere_in_its_document(void **state)
         bench_reply r =
             bench_expect(cases[i].status, bench_post(b, "/v1/meshes/m/edits", cases[i].body));
         if (cases[i].pointer != NULL && cases[i].pointer[0] != '\0') {
-            assert_string_equal(text_of(&r, "pointer"), cases[i].pointer);
+            assert_string_equal(bench_text(&r, "pointer"), cases[i].pointer);
         }
         bench_reply_free(&r);
     }
@@ -260,7 +255,8 @@ static size_t peak_of(api_bench *b, const api_text *body)
     most = held;
     size_t before = held;
     bench_reply r;
-    assert_true(bench_try(b, "POST", "/v1/meshes/m/edits", NULL, body->bytes, body->length, &r));
+    assert_true(bench_try(
+        b, &(bench_request){"POST", "/v1/meshes/m/edits", NULL, body->bytes, body->length}, &r));
     assert_int_equal(r.status, 200);
     bench_reply_free(&r);
     return most - before;

@@ -222,7 +222,7 @@ static void a_starved_check_says_so(void **state)
     failing f = {.may_succeed = true};
     while (failing_next(&f)) {
         bench_reply r;
-        bool any = bench_try(b, "GET", target, NULL, NULL, 0, &r);
+        bool any = bench_try(b, &(bench_request){"GET", target, NULL, NULL, 0}, &r);
         failing_end(&f, any && r.status == 200);
         if (any) {
             assert_true(r.status == 200 || r.status == 507);

@@ -49,16 +49,17 @@ static bench_reply get(api_bench *b, const char *target, const char *accept)
     return bench_send(b, "GET", target, HEADERS("Accept-Encoding", accept), NULL);
 }
 
-/* Sends a request with a compressed body. */
-static bench_reply send_packed(api_bench *b, const char *method, const char *target,
-                               const char *coding, const char *type, const char *body,
-                               size_t length)
+/* Sends a request with its body compressed and declared as of this type; the request itself has no
+ * headers. */
+static bench_reply send_packed(api_bench *b, const char *coding, const char *type,
+                               const bench_request *plain)
 {
     size_t packed;
-    char *bytes = coding_pack(coding, body, length, &packed);
-    bench_reply r =
-        bench_send_bytes(b, method, target,
-                         HEADERS("Content-Encoding", coding, "Content-Type", type), bytes, packed);
+    char *bytes = coding_pack(coding, plain->body, plain->length, &packed);
+    bench_reply r = bench_send_bytes(
+        b,
+        &(bench_request){plain->method, plain->target,
+                         HEADERS("Content-Encoding", coding, "Content-Type", type), bytes, packed});
     free(bytes);
     return r;
 }
@@ -66,7 +67,8 @@ static bench_reply send_packed(api_bench *b, const char *method, const char *tar
 static bench_reply send_json(api_bench *b, const char *method, const char *target,
                              const char *coding, const char *body)
 {
-    return send_packed(b, method, target, coding, "application/json", body, strlen(body));
+    return send_packed(b, coding, "application/json",
+                       &(bench_request){method, target, NULL, body, strlen(body)});
 }
 
 static api_bench *with_grid(void)
@@ -327,17 +329,19 @@ static void every_format_comes_back(void **state)
             bench_reply file = expect(200, get(b, files[i].target, both[c]));
             char again[100];
             snprintf(again, sizeof again, "/v1/meshes/again%s", strrchr(files[i].target, '/'));
-            done(expect(201, bench_send_bytes(b, "PUT", "/v1/meshes/again",
-                                              HEADERS("Content-Encoding", both[c], "Content-Type",
-                                                      files[i].type),
-                                              file.body, file.length)));
+            done(expect(201,
+                        bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/again",
+                                                             HEADERS("Content-Encoding", both[c],
+                                                                     "Content-Type", files[i].type),
+                                                             file.body, file.length})));
             bench_reply back = expect(200, bench_send(b, "GET", again, NULL, NULL));
             assert_int_equal(back.length, plain.length);
             assert_memory_equal(back.body, plain.body, plain.length);
             bench_reply_free(&back);
             bench_reply_free(&file);
-            done(expect(200, send_packed(b, "PUT", "/v1/meshes/again", both[c], files[i].type,
-                                         plain.body, plain.length)));
+            done(expect(200, send_packed(b, both[c], files[i].type,
+                                         &(bench_request){"PUT", "/v1/meshes/again", NULL,
+                                                          plain.body, plain.length})));
             done(expect(204, bench_send(b, "DELETE", "/v1/meshes/again", NULL, NULL)));
         }
         bench_reply_free(&plain);
@@ -420,12 +424,15 @@ static void what_is_not_the_coding_is_refused(void **state)
         refused(400, "bad_encoding", "byte 0 of the",
                 bench_send(b, "POST", "/v1/meshes", headers, json));
         refused(400, "bad_encoding", "the body ends before",
-                bench_send_bytes(b, "POST", "/v1/meshes", headers, packed, length - 1));
-        refused(400, "missing_body", "", bench_send_bytes(b, "POST", "/v1/meshes", headers, "", 0));
+                bench_send_bytes(
+                    b, &(bench_request){"POST", "/v1/meshes", headers, packed, length - 1}));
+        refused(400, "missing_body", "",
+                bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", headers, "", 0}));
         packed[length - 1] ^= 1;
         if (strcmp(both[c], "gzip") == 0) {
             refused(400, "bad_encoding", "incorrect length check",
-                    bench_send_bytes(b, "POST", "/v1/meshes", headers, packed, length));
+                    bench_send_bytes(
+                        b, &(bench_request){"POST", "/v1/meshes", headers, packed, length}));
         }
         free(packed);
         /* A compressed empty body counts as an empty body. */
@@ -528,11 +535,12 @@ static void a_key_is_of_the_unfolded_body(void **state)
     for (size_t c = 0; c < 2; c++) {
         size_t length;
         char *packed = coding_pack(both[c], poke, sizeof poke - 1, &length);
-        bench_reply r =
-            expect(200, bench_send_bytes(b, "POST", "/v1/meshes/m/edits",
+        bench_reply r = expect(
+            200, bench_send_bytes(
+                     b, &(bench_request){"POST", "/v1/meshes/m/edits",
                                          HEADERS("Idempotency-Key", "k", "Content-Encoding",
                                                  both[c], "Content-Type", "application/json"),
-                                         packed, length));
+                                         packed, length}));
         assert_string_equal(bench_header(&r, "Idempotency-Replayed"), "true");
         assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 2);
         bench_reply_free(&r);
@@ -561,11 +569,13 @@ static void a_job_of_a_coded_upload(void **state)
     (void)state;
     api_bench *b = with_grid();
     bench_reply file = expect(200, get(b, "/v1/meshes/m/content?format=obj", "zstd"));
-    bench_reply r = expect(202, bench_send_bytes(b, "PUT", "/v1/meshes/j",
-                                                 HEADERS("Content-Encoding", "zstd", "Content-Type",
-                                                         "model/obj", "Prefer", "respond-async",
-                                                         "Accept-Encoding", "gzip, identity;q=0"),
-                                                 file.body, file.length));
+    bench_reply r = expect(
+        202,
+        bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/j",
+                                             HEADERS("Content-Encoding", "zstd", "Content-Type",
+                                                     "model/obj", "Prefer", "respond-async",
+                                                     "Accept-Encoding", "gzip, identity;q=0"),
+                                             file.body, file.length}));
     unfold(&r, "gzip");
     char location[80];
     snprintf(location, sizeof location, "%s", bench_header(&r, "Location"));
@@ -584,13 +594,12 @@ static void a_job_of_a_coded_upload(void **state)
 /* --- memory --- */
 
 /* Lets each allocation of the request fail in turn: the answer must be the expected one or 507. */
-static void starve(api_bench *b, const char *method, const char *target, const char *const *headers,
-                   const char *body, size_t length, const bench_reply *expected)
+static void starve(api_bench *b, const bench_request *request, const bench_reply *expected)
 {
-    failing f = {.may_succeed = true, .what = target};
+    failing f = {.may_succeed = true, .what = request->target};
     while (failing_next(&f)) {
         bench_reply r;
-        bool sent = bench_try(b, method, target, headers, body, length, &r);
+        bool sent = bench_try(b, request, &r);
         failing_end(&f, sent && r.status == expected->status);
         if (!sent) {
             continue;
@@ -607,7 +616,7 @@ static void starve(api_bench *b, const char *method, const char *target, const c
         }
         bench_reply_free(&r);
     }
-    print_message("%s %s: %ld allocations failed\n", method, target, f.n - 1);
+    print_message("%s %s: %ld allocations failed\n", request->method, request->target, f.n - 1);
 }
 
 static void every_allocation_may_fail(void **state)
@@ -623,17 +632,19 @@ static void every_allocation_may_fail(void **state)
                 continue; /* the reader of this format allocates for each corner */
             }
             bench_reply plain = expect(200, bench_send(b, "GET", read[i].target, NULL, NULL));
-            starve(b, "GET", read[i].target, accept, NULL, 0, &plain);
+            starve(b, &(bench_request){"GET", read[i].target, accept, NULL, 0}, &plain);
             bench_reply_free(&plain);
         }
         size_t length;
         char *packed = coding_pack(both[c], question, sizeof question - 1, &length);
         bench_reply plain =
             expect(200, bench_send(b, "POST", "/v1/meshes/m/query", NULL, question));
-        starve(b, "POST", "/v1/meshes/m/query",
-               HEADERS("Accept-Encoding", both[c], "Content-Encoding", both[c], "Content-Type",
-                       "application/json"),
-               packed, length, &plain);
+        starve(b,
+               &(bench_request){"POST", "/v1/meshes/m/query",
+                                HEADERS("Accept-Encoding", both[c], "Content-Encoding", both[c],
+                                        "Content-Type", "application/json"),
+                                packed, length},
+               &plain);
         bench_reply_free(&plain);
         free(packed);
     }

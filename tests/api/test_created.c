@@ -11,13 +11,6 @@
 
 #include <cmocka.h>
 
-static const char *text_of(const bench_reply *r, const char *member)
-{
-    const cJSON *value = cJSON_GetObjectItem(r->json, member);
-    assert_true(cJSON_IsString(value));
-    return value->valuestring;
-}
-
 static int vertices_of(const bench_reply *summary)
 {
     const cJSON *counts = cJSON_GetObjectItem(summary->json, "counts");
@@ -66,10 +59,10 @@ static void what_was_made_is_shown_as_it_was_made(void **state)
         bench_reply r = bench_expect(201, bench_send(b, made[i][0], made[i][1], NULL, made[i][2]));
         meddling = false;
         assert_non_null(strstr(bench_header(&r, "ETag"), "-1-1-summary"));
-        assert_string_equal(text_of(&r, "name"), "mine");
+        assert_string_equal(bench_text(&r, "name"), "mine");
         assert_non_null(strstr(r.body, "\"revision\":1,"));
         char path[128];
-        snprintf(path, sizeof path, "/v1/meshes/%s", text_of(&r, "id"));
+        snprintf(path, sizeof path, "/v1/meshes/%s", bench_text(&r, "id"));
         int vertices = vertices_of(&r);
         bench_reply_free(&r);
         /* The summary in the first answer must not be cached as the present one: the next GET shows

@@ -28,13 +28,6 @@ static api_bench *begin(void)
     return b;
 }
 
-static const char *text_of(const bench_reply *r, const char *member)
-{
-    const cJSON *value = cJSON_GetObjectItem(r->json, member);
-    assert_true(cJSON_IsString(value));
-    return value->valuestring;
-}
-
 static void lose_newest(st_status why)
 {
     const uint64_t newest = slow_journal_newest(&journal);
@@ -81,7 +74,7 @@ static void a_write_to_what_was_lost_is_refused_as_the_disk_is(void **state)
         journal.refuse = cases[i].disk;
         bench_reply r = bench_expect(
             cases[i].status, bench_send(b, "PATCH", "/v1/meshes/m", NULL, "{\"name\":\"y\"}"));
-        assert_string_equal(text_of(&r, "code"), cases[i].code);
+        assert_string_equal(bench_text(&r, "code"), cases[i].code);
         assert_string_equal(bench_header(&r, "Retry-After"), cases[i].retry);
         /* The refusal does not wait for the disk; otherwise, when the lost change is noticed,
          * another refusal could replace it. */
@@ -140,7 +133,7 @@ static void what_was_lost_is_not_copied_or_appended(void **state)
         const uint64_t groups = journal.groups;
         loss_between = ST_FULL;
         bench_reply r = bench_expect(503, bench_post(b, cases[i].target, cases[i].body));
-        assert_string_equal(text_of(&r, "code"), "store_lost");
+        assert_string_equal(bench_text(&r, "code"), "store_lost");
         assert_string_equal(bench_header(&r, "Retry-After"), "0");
         bench_reply_free(&r);
         assert_true(journal.groups == groups);
@@ -159,8 +152,8 @@ static void a_change_that_is_too_large_to_be_kept_names_the_limit(void **state)
     journal.refuse = ST_TOO_LARGE;
     bench_reply r =
         bench_expect(413, bench_post(b, "/v1/meshes/m/edits", "{\"op\":\"face_poke\",\"face\":0}"));
-    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
-    assert_non_null(strstr(text_of(&r, "detail"), "900000000 bytes"));
+    assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
+    assert_non_null(strstr(bench_text(&r, "detail"), "900000000 bytes"));
     bench_reply_free(&r);
     journal.refuse = ST_OK;
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
@@ -256,9 +249,10 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     journal.staging = look_and_write;
     values[0] = 1;
     const char *const octets[] = {"Content-Type", "application/octet-stream", NULL};
-    bench_done(bench_expect(201, bench_send_bytes(b, "PUT",
+    bench_done(bench_expect(
+        201, bench_send_bytes(b, &(bench_request){"PUT",
                                                   "/v1/meshes/m/attributes/vertices/a?type=double",
-                                                  octets, (const char *)values, sizeof values)));
+                                                  octets, (const char *)values, sizeof values})));
     assert_int_equal(journal.staged_edits, 1);
     assert_true(journal.record.staged_edit && journal.record.body == NULL);
     journal.staging = NULL;
@@ -274,9 +268,10 @@ static void a_large_attribute_keeps_no_reader_and_no_writer_of_another_mesh(void
     assert_non_null(strstr(r.body, "\"values\":[1,0]"));
     bench_reply_free(&r);
     /* What the mesh refuses is refused as it is for a small one. */
-    bench_done(
-        bench_expect(422, bench_send_bytes(b, "PUT", "/v1/meshes/m/attributes/edges/b?type=double",
-                                           octets, (const char *)values, sizeof values)));
+    bench_done(bench_expect(
+        422,
+        bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/m/attributes/edges/b?type=double",
+                                             octets, (const char *)values, sizeof values})));
     bench_free(b);
 }
 
@@ -325,7 +320,7 @@ static void readiness_tells_how_the_disk_is(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         journal.refuse = cases[i].disk;
         bench_reply r = bench_expect(cases[i].status, bench_get(b, "/readyz"));
-        assert_string_equal(text_of(&r, cases[i].member), cases[i].text);
+        assert_string_equal(bench_text(&r, cases[i].member), cases[i].text);
         bench_reply_free(&r);
     }
     bench_free(b);

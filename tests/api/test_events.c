@@ -549,7 +549,8 @@ static void a_failed_allocation_loses_no_listener(void **state)
             stream_dump(b, &copy);
             failing_resume();
             bench_reply r = {0};
-            bool sent = bench_try(b, "POST", "/v1/meshes/m/edits", NULL, POKE, sizeof POKE - 1, &r);
+            bool sent = bench_try(
+                b, &(bench_request){"POST", "/v1/meshes/m/edits", NULL, POKE, sizeof POKE - 1}, &r);
             failing_pause();
             if (sent) {
                 bench_reply_free(&r);

@@ -1,6 +1,7 @@
 /* The examples in the OpenAPI document must equal the answers of the service. Called as
  * `test_examples record FILE`, which `make examples` does, this program writes the file anew. */
 #include "tests/api/examples_record.h"
+#include "tests/json_member.h"
 
 #include "api/describe/routes.h"
 
@@ -89,20 +90,11 @@ static void each_example_is_a_real_answer(void **state)
     api_examples_clear(&file);
 }
 
-static const cJSON *member(const cJSON *object, const char *name)
-{
-    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
-    if (found == NULL) {
-        fail_msg("there is no \"%s\"", name);
-    }
-    return found;
-}
-
 /* Requires that the example of `content` for this media type is this body of an example. */
 static void find_in(const cJSON *content, const char *media, const api_examples *file,
                     uint32_t example, api_example_part part)
 {
-    const cJSON *shown = member(member(content, media), "example");
+    const cJSON *shown = json_member(json_member(content, media), "example");
     api_text body = {0};
     assert_true(api_example_body(file, example, part, &body));
     api_text_add_char(&body, '\0');
@@ -118,20 +110,23 @@ static void find_in(const cJSON *content, const char *media, const api_examples 
 
 static void find_example(const cJSON *document, const api_examples *file, const cJSON *row)
 {
-    const char *name = member(row, "route")->valuestring;
-    const char *produces = member(row, "produces")->valuestring;
+    const char *name = json_member(row, "route")->valuestring;
+    const char *produces = json_member(row, "produces")->valuestring;
     const cJSON *consumes = cJSON_GetObjectItemCaseSensitive(row, "consumes");
     const api_route *route = examples_route(name);
     char method[8] = "", status[8];
     for (size_t c = 0; c + 1 < sizeof method && route->method[c] != '\0'; c++) {
         method[c] = (char)(route->method[c] | 32);
     }
-    const cJSON *operation = member(member(member(document, "paths"), route->path), method);
-    snprintf(status, sizeof status, "%d", member(row, "status")->valueint);
-    find_in(member(member(member(operation, "responses"), status), "content"), produces, file,
-            api_example_find(file, API_EXAMPLE_RESPONSE, name, produces), API_EXAMPLE_RESPONSE);
+    const cJSON *operation =
+        json_member(json_member(json_member(document, "paths"), route->path), method);
+    snprintf(status, sizeof status, "%d", json_member(row, "status")->valueint);
+    find_in(json_member(json_member(json_member(operation, "responses"), status), "content"),
+            produces, file, api_example_find(file, API_EXAMPLE_RESPONSE, name, produces),
+            API_EXAMPLE_RESPONSE);
     if (consumes != NULL) {
-        find_in(member(member(operation, "requestBody"), "content"), consumes->valuestring, file,
+        find_in(json_member(json_member(operation, "requestBody"), "content"),
+                consumes->valuestring, file,
                 api_example_find(file, API_EXAMPLE_REQUEST, name, consumes->valuestring),
                 API_EXAMPLE_REQUEST);
     }
@@ -146,12 +141,14 @@ static void the_description_shows_them(void **state)
     api_bench *b = bench_new();
     bench_reply r = bench_send(b, "GET", "/v1/openapi.json", NULL, NULL);
     assert_non_null(r.json);
-    for (const cJSON *row = member(rows, "examples")->child; row != NULL; row = row->next) {
-        if (member(row, "status")->valueint < 400) {
+    for (const cJSON *row = json_member(rows, "examples")->child; row != NULL; row = row->next) {
+        if (json_member(row, "status")->valueint < 400) {
             find_example(r.json, &file, row);
         }
     }
-    find_in(member(member(member(member(r.json, "components"), "responses"), "problem"), "content"),
+    find_in(json_member(
+                json_member(json_member(json_member(r.json, "components"), "responses"), "problem"),
+                "content"),
             "application/problem+json", &file, api_example_problem(&file), API_EXAMPLE_RESPONSE);
     bench_reply_free(&r);
     bench_free(b);

@@ -47,8 +47,9 @@ static void import(api_bench *b, const char *target, const char *type, const ben
                    size_t i)
 {
     const char *const headers[] = {"Content-Type", type, NULL};
-    bench_reply r =
-        bench_expect(201, bench_send_bytes(b, "POST", target, headers, file->body, file->length));
+    bench_reply r = bench_expect(
+        201,
+        bench_send_bytes(b, &(bench_request){"POST", target, headers, file->body, file->length}));
     const cJSON *counts = cJSON_GetObjectItem(r.json, "counts");
     const cJSON *report = cJSON_GetObjectItem(r.json, "import");
     assert_int_equal(cJSON_GetObjectItem(counts, "vertices")->valueint, files[i].vertices);
@@ -167,7 +168,8 @@ static void a_compressed_export_is_another_representation(void **state)
         bench_reply r = bench_expect(200, bench_send(b, "GET", targets[i], NULL, NULL));
         assert_string_equal(bench_header(&r, "Content-Type"), "model/gltf-binary");
         snprintf(tags[i], sizeof tags[i], "%s", bench_header(&r, "ETag"));
-        bench_reply made = bench_send_bytes(b, "POST", "/v1/meshes", type, r.body, r.length);
+        bench_reply made =
+            bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", type, r.body, r.length});
         made = bench_expect(201, made);
         assert_non_null(strstr(made.body, "\"vertices\":8,\"faces\":6,"));
         assert_non_null(strstr(made.body, "\"volume\":1,"));
@@ -444,8 +446,9 @@ static void a_body_that_is_no_mesh_is_called_by_its_name(void **state)
     api_bench *b = with_cube();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         const char *const headers[] = {"Content-Type", rows[i].type, NULL};
-        bench_reply r = bench_expect(rows[i].status, bench_send_bytes(b, "POST", rows[i].target,
-                                                                      headers, rows[i].body, 100));
+        bench_reply r = bench_expect(
+            rows[i].status, bench_send_bytes(b, &(bench_request){"POST", rows[i].target, headers,
+                                                                 rows[i].body, 100}));
         if (strstr(r.body, rows[i].words) == NULL || strstr(r.body, "facets") != NULL) {
             fail_msg("no %s in %s", rows[i].words, r.body);
         }
@@ -466,12 +469,13 @@ static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
     api_bench *b = bench_new();
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         const char *const headers[] = {"Content-Type", types[i] == NULL ? "" : types[i], NULL};
-        bench_reply r =
-            bench_send_bytes(b, "PUT", "/v1/meshes/part?format=obj", headers, obj, sizeof obj - 1);
+        bench_reply r = bench_send_bytes(
+            b, &(bench_request){"PUT", "/v1/meshes/part?format=obj", headers, obj, sizeof obj - 1});
         r = bench_expect(i == 0 ? 201 : 200, r);
         assert_non_null(strstr(r.body, "\"format\":\"obj\""));
         bench_reply_free(&r);
-        r = bench_send_bytes(b, "PUT", "/v1/meshes/part", headers, obj, sizeof obj - 1);
+        r = bench_send_bytes(
+            b, &(bench_request){"PUT", "/v1/meshes/part", headers, obj, sizeof obj - 1});
         r = bench_expect(i == 3 ? 200 : 415, r);
         if (i < 3) {
             assert_non_null(strstr(
@@ -482,7 +486,8 @@ static void a_format_that_is_named_stands_in_for_a_generic_type(void **state)
         bench_reply_free(&r);
     }
     const char *const other[] = {"Content-Type", "image/png", NULL};
-    bench_reply r = bench_send_bytes(b, "PUT", "/v1/meshes/part?format=obj", other, obj, 5);
+    bench_reply r =
+        bench_send_bytes(b, &(bench_request){"PUT", "/v1/meshes/part?format=obj", other, obj, 5});
     r = bench_expect(415, r);
     bench_reply_free(&r);
     r = bench_expect(400, bench_send(b, "PUT", "/v1/meshes/part?format=obj", NULL, ""));

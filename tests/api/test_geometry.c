@@ -186,7 +186,7 @@ static void rows_of_vertices_keep_their_ids_when_others_are_deleted(void **state
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    api_bench *b = specimen_begin("0123,7654,1045,2156,3267,0374", &pg);
     edit(b, "{\"ops\":[{\"op\":\"face_delete\",\"face\":2},{\"op\":\"vertex_delete\","
             "\"vertex\":8}]}");
     arrays a = fetch(b);
@@ -208,7 +208,7 @@ static void an_undo_brings_back_the_same_rows(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("0123,7654,1045,2156,3267,0374", &pg);
+    api_bench *b = specimen_begin("0123,7654,1045,2156,3267,0374", &pg);
     arrays before = fetch(b);
     edit(b, "{\"op\":\"vertex_delete\",\"vertex\":8}");
     bench_reply undone = bench_send(b, "POST", "/v1/meshes/m/undo", NULL, NULL);
@@ -227,7 +227,7 @@ static void a_tag_holds_until_the_mesh_changes(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("012,023", &pg);
+    api_bench *b = specimen_begin("012,023", &pg);
     arrays a = fetch(b);
     char etag[128];
     snprintf(etag, sizeof etag, "%s", bench_header(&a.reply, "ETag"));
@@ -250,7 +250,7 @@ static void a_wrong_type_parameter_or_mesh_is_refused(void **state)
 {
     (void)state;
     pg_mesh pg;
-    api_bench *b = begin("012", &pg);
+    api_bench *b = specimen_begin("012", &pg);
     const char *const json[] = {"Accept", "application/json", NULL};
     bench_reply r = bench_send(b, "GET", PATH, json, NULL);
     assert_int_equal(r.status, 406);
@@ -284,13 +284,13 @@ static void arrays_without_memory_are_complete_or_refused(void **state)
         pg.position[v][1] = radius * sin(angle);
         pg.position[v][2] = 0;
     }
-    put_mesh(b, &pg);
+    specimen_put(b, &pg);
     arrays whole = fetch(b);
     unsigned refused = 0;
     failing f = {0};
     while (failing_next(&f)) {
         bench_reply r = {0};
-        bool answered = bench_try(b, "GET", PATH, NULL, NULL, 0, &r);
+        bool answered = bench_try(b, &(bench_request){"GET", PATH, NULL, NULL, 0}, &r);
         if (failing_end(&f, answered && r.status == 200)) {
             assert_int_equal(r.length, whole.reply.length);
             assert_memory_equal(r.body, whole.reply.body, r.length);

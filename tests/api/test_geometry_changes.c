@@ -548,7 +548,7 @@ static void changes_without_memory_are_complete_or_refused(void **state)
                  c.revision, c.layout);
         bench_reply r = {0};
         failing_resume();
-        bool answered = bench_try(w.b, "GET", target, NULL, NULL, 0, &r);
+        bool answered = bench_try(w.b, &(bench_request){"GET", target, NULL, NULL, 0}, &r);
         if (failing_end(&f, answered && r.status == 200)) {
             arrays_apply(&c, r.body, r.length);
         } else {

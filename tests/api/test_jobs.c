@@ -610,8 +610,9 @@ static void starve(const char *method, const char *target, const char *body)
         bench = bench_new();
         send(201, "PUT", "/v1/meshes/m", LARGE);
         failing_resume();
-        bool sent =
-            bench_try(bench, method, target, async, body, body == NULL ? 0 : strlen(body), &r);
+        bool sent = bench_try(
+            bench, &(bench_request){method, target, async, body, body == NULL ? 0 : strlen(body)},
+            &r);
         if (sent) {
             assert_true(r.status == 202 || r.status == 507);
             if (r.status == 202) {

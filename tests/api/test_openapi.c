@@ -1,6 +1,7 @@
 /* The OpenAPI document that the service serves is consistent, and agrees with the tables of routes
  * and operations. */
 #include "tests/api/request.h"
+#include "tests/json_member.h"
 
 #include "algo/shape.h"
 #include "api/request/answer_headers.h"
@@ -13,21 +14,12 @@
 
 #include <cmocka.h>
 
-static const cJSON *member(const cJSON *object, const char *name)
-{
-    const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
-    if (found == NULL) {
-        fail_msg("there is no \"%s\"", name);
-    }
-    return found;
-}
-
 /* Returns what a reference "#/components/GROUP/NAME" names. */
 static const cJSON *resolve(const cJSON *root, const char *reference)
 {
     char group[32], name[64];
     assert_int_equal(sscanf(reference, "#/components/%31[^/]/%63s", group, name), 2);
-    return member(member(member(root, "components"), group), name);
+    return json_member(json_member(json_member(root, "components"), group), name);
 }
 
 /* Follows every reference below `at`, counts the references, and marks the schemas that they
@@ -63,14 +55,14 @@ static void references_meet_and_nothing_is_left_over(void **state)
     follow(r.json, r.json, &references);
     assert_true(references > 100);
     const cJSON *schema;
-    cJSON_ArrayForEach(schema, member(member(r.json, "components"), "schemas"))
+    cJSON_ArrayForEach(schema, json_member(json_member(r.json, "components"), "schemas"))
     {
         if (schema->valueint != 1) {
             fail_msg("nothing refers to the schema %s", schema->string);
         }
     }
-    assert_int_equal(cJSON_GetArraySize(member(r.json, "servers")), 1);
-    assert_true(cJSON_IsArray(member(r.json, "security")));
+    assert_int_equal(cJSON_GetArraySize(json_member(r.json, "servers")), 1);
+    assert_true(cJSON_IsArray(json_member(r.json, "security")));
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -80,15 +72,16 @@ static void shapes_are_those_of_the_table(void **state)
     (void)state;
     api_bench *b = bench_new();
     bench_reply r = description(b);
-    const cJSON *shapes = member(resolve(r.json, "#/components/schemas/shape"), "oneOf");
+    const cJSON *shapes = json_member(resolve(r.json, "#/components/schemas/shape"), "oneOf");
     assert_int_equal(cJSON_GetArraySize(shapes), he_shape_count());
     for (size_t i = 0; i < he_shape_count(); i++) {
         const he_shape *shape = he_shape_at(i);
-        const cJSON *part = member(cJSON_GetArrayItem(shapes, (int)i), "$ref");
-        const cJSON *properties = member(resolve(r.json, part->valuestring), "properties");
-        assert_string_equal(member(member(properties, "shape"), "const")->valuestring, shape->name);
+        const cJSON *part = json_member(cJSON_GetArrayItem(shapes, (int)i), "$ref");
+        const cJSON *properties = json_member(resolve(r.json, part->valuestring), "properties");
+        assert_string_equal(json_member(json_member(properties, "shape"), "const")->valuestring,
+                            shape->name);
         for (size_t p = 0; p < he_shape_params(shape); p++) {
-            member(member(properties, shape->params[p].name), "default");
+            json_member(json_member(properties, shape->params[p].name), "default");
         }
     }
     bench_reply_free(&r);
@@ -115,13 +108,13 @@ static void bodies_take_what_their_schemas_list(void **state)
         char reference[64], body[128];
         snprintf(reference, sizeof reference, "#/components/schemas/%s", bodies[i].schema);
         const cJSON *property;
-        cJSON_ArrayForEach(property, member(resolve(r.json, reference), "properties"))
+        cJSON_ArrayForEach(property, json_member(resolve(r.json, reference), "properties"))
         {
             snprintf(body, sizeof body, "{\"%s\":false}", property->string);
             bench_reply a = bench_send(b, bodies[i].method, bodies[i].target, NULL, body);
             /* The refusal shows that the service knows the member and expects another type. */
             assert_int_equal(a.status, 400);
-            assert_string_equal(member(a.json, "code")->valuestring, "wrong_type");
+            assert_string_equal(json_member(a.json, "code")->valuestring, "wrong_type");
             bench_reply_free(&a);
         }
     }

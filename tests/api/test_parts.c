@@ -66,7 +66,8 @@ static bench_reply send_body(api_bench *b, const char *method, const char *targe
                              const several *body)
 {
     static const char *const headers[] = {"Content-Type", type, NULL};
-    return bench_send_bytes(b, method, target, headers, body->bytes, body->length);
+    return bench_send_bytes(b,
+                            &(bench_request){method, target, headers, body->bytes, body->length});
 }
 
 static bench_reply send_files(api_bench *b, const char *target, const file *files)
@@ -247,13 +248,15 @@ static void every_upload_takes_them(void **state)
         char *coded = coding_pack(codings[i], packed.bytes, packed.length, &length);
         const char *const headers[] = {"Content-Type", type, "Content-Encoding", codings[i], NULL};
         bench_done(expect_triangle(
-            "gltf", bench_send_bytes(b, "POST", "/v1/meshes", headers, coded, length)));
+            "gltf",
+            bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", headers, coded, length})));
         free(coded);
     }
     /* The request may become a job, which reads the files after the body has been freed. */
     const char *const headers[] = {"Content-Type", type, "Prefer", "respond-async", NULL};
-    bench_reply r = bench_expect(202, bench_send_bytes(b, "POST", "/v1/meshes?id=late", headers,
-                                                       packed.bytes, packed.length));
+    bench_reply r = bench_expect(
+        202, bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes?id=late", headers,
+                                                  packed.bytes, packed.length}));
     bench_reply_free(&r);
     bench_run_jobs(b, 1);
     r = bench_expect(200, bench_get(b, "/v1/meshes/late"));
@@ -270,10 +273,12 @@ static void a_body_that_is_cut_or_has_no_boundary_is_refused(void **state)
     api_bench *b = bench_new();
     const char *const plain[] = {"Content-Type", "multipart/form-data", NULL};
     expect_refused(400, "bad_header", "needs one boundary of 1 to 70 characters",
-                   bench_send_bytes(b, "POST", "/v1/meshes", plain, packed.bytes, packed.length));
+                   bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", plain, packed.bytes,
+                                                        packed.length}));
     const char *const mixed[] = {"Content-Type", "multipart/mixed; boundary=xyz", NULL};
     expect_refused(415, "unsupported_media_type", "multipart/mixed",
-                   bench_send_bytes(b, "POST", "/v1/meshes", mixed, packed.bytes, packed.length));
+                   bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", mixed, packed.bytes,
+                                                        packed.length}));
     packed.length -= 4; /* the last hyphens and the line break */
     expect_refused(400, "bad_multipart", "ends before its last delimiter",
                    send_body(b, "POST", "/v1/meshes", &packed));
@@ -295,8 +300,9 @@ static void another_boundary_is_the_same_request(void **state)
     for (size_t i = 0; i < 2; i++) {
         several packed = pack_as(boundaries[i], files);
         const char *const headers[] = {"Content-Type", types[i], "Idempotency-Key", "k", NULL};
-        bench_reply r = bench_expect(
-            201, bench_send_bytes(b, "POST", "/v1/meshes", headers, packed.bytes, packed.length));
+        bench_reply r =
+            bench_expect(201, bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", headers,
+                                                                   packed.bytes, packed.length}));
         assert_string_equal(bench_header(&r, "Idempotency-Replayed"), i == 0 ? "" : "true");
         if (i == 0) {
             first = strdup(r.body);
@@ -314,9 +320,9 @@ static void another_boundary_is_the_same_request(void **state)
         *changed = i == 0 ? (file){"b.mtl", NULL, MTL, 0} : (file){"a.mtl", NULL, MTL "\n", 0};
         several packed = pack_as(BOUNDARY, files);
         const char *const headers[] = {"Content-Type", type, "Idempotency-Key", "k", NULL};
-        expect_refused(
-            422, "idempotency_mismatch", "another request",
-            bench_send_bytes(b, "POST", "/v1/meshes", headers, packed.bytes, packed.length));
+        expect_refused(422, "idempotency_mismatch", "another request",
+                       bench_send_bytes(b, &(bench_request){"POST", "/v1/meshes", headers,
+                                                            packed.bytes, packed.length}));
     }
     bench_free(b);
 }
@@ -334,8 +340,9 @@ static void without_memory_nothing_is_made(void **state)
     while (failing_next(&f)) {
         bench_reply r;
         assert_true(f.n <= 10000);
-        bool answered =
-            bench_try(b, "POST", "/v1/meshes?id=m", headers, packed.bytes, packed.length, &r);
+        bool answered = bench_try(
+            b, &(bench_request){"POST", "/v1/meshes?id=m", headers, packed.bytes, packed.length},
+            &r);
         int status = answered ? r.status : 507;
         failing_pause();
         if (answered) {

@@ -176,7 +176,7 @@ static void every_allocation_of_a_reader_may_fail(void **state)
             api_bench *b = history_begin();
             failing_resume();
             bench_reply r;
-            bool answered = bench_try(b, "GET", targets[i], NULL, NULL, 0, &r);
+            bool answered = bench_try(b, &(bench_request){"GET", targets[i], NULL, NULL, 0}, &r);
             failing_end(&f, answered && r.status == 200);
             if (answered) {
                 assert_true(r.status == 200 || r.status == 507 || r.status == 503);

@@ -27,7 +27,7 @@ static void a_flat_fan_of_thousands_is_searched_whole(void **state)
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 10000, 1);
+    fan_put(b, "/v1/meshes/m", 10000, 1);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL);
     assert_int_equal(r.status, 200);
     assert_true(cJSON_IsTrue(in(r.json, "complete")));
@@ -49,7 +49,7 @@ static void a_check_beyond_its_steps_is_refused_and_names_the_limit_and_a_job(vo
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 2001, 801);
+    fan_put(b, "/v1/meshes/m", 2001, 801);
     bench_reply r = bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", NULL, NULL);
     assert_int_equal(r.status, 413);
     assert_string_equal(in(r.json, "code")->valuestring, "limit_exceeded");
@@ -63,7 +63,7 @@ static void a_check_beyond_its_steps_is_a_job_where_the_client_takes_one(void **
     (void)state;
     static const char *const patient[] = {"Prefer", "respond-async, wait=60", NULL};
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 2001, 801);
+    fan_put(b, "/v1/meshes/m", 2001, 801);
     bench_reply r =
         bench_send(b, "GET", "/v1/meshes/m/check?self_intersections=true", patient, NULL);
     assert_int_equal(r.status, 202);
@@ -86,7 +86,7 @@ static void many_searches_in_one_request_are_refused_by_the_limit(void **state)
     (void)state;
     enum { ASKED = 500 };
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 2500, 1);
+    fan_put(b, "/v1/meshes/m", 2500, 1);
     fan_text body = fan_text_new(32 * (ASKED + 1));
     fan_add(&body, "{\"queries\":[");
     for (int i = 0; i < ASKED; i++) {
@@ -123,7 +123,7 @@ static void a_search_that_was_refused_has_used_up_the_steps_of_its_request(void 
 {
     (void)state;
     api_bench *b = bench_new();
-    put_fan(b, "/v1/meshes/m", 2001, 801);
+    fan_put(b, "/v1/meshes/m", 2001, 801);
     bench_reply r =
         bench_expect(200, bench_post(b, QUERY,
                                      "{\"queries\":[{\"self_intersections\":{}},"

@@ -7,39 +7,41 @@
 static void say_vertex(page *p, const pg_mesh *pg, unsigned v)
 {
     pg_list edges;
-    pg_relation(pg, "vertex", v, "edges", false, &edges);
-    say(p, "{\"id\":%u,\"position\":[%g,%g,%g],\"halfedge\":", v, pg->position[v][0],
-        pg->position[v][1], pg->position[v][2]);
-    say_id(p, pg->vertex_first[v]);
-    say(p, ",\"degree\":%u,\"boundary\":%s,\"isolated\":%s}", edges.count,
-        pg_is_boundary(pg, v) ? "true" : "false", pg_is_isolated(pg, v) ? "true" : "false");
+    pg_relation(pg, (pg_element){"vertex", v}, "edges", false, &edges);
+    page_say(p, "{\"id\":%u,\"position\":[%g,%g,%g],\"halfedge\":", v, pg->position[v][0],
+             pg->position[v][1], pg->position[v][2]);
+    page_say_id(p, pg->vertex_first[v]);
+    page_say(p, ",\"degree\":%u,\"boundary\":%s,\"isolated\":%s}", edges.count,
+             pg_is_boundary(pg, v) ? "true" : "false", pg_is_isolated(pg, v) ? "true" : "false");
 }
 
 static void say_halfedge(page *p, const pg_mesh *pg, unsigned h)
 {
-    say(p,
+    page_say(
+        p,
         "{\"id\":%u,\"twin\":%u,\"next\":%u,\"prev\":%u,\"origin\":%u,\"target\":%u,\"edge\":%u,"
         "\"face\":",
         h, h ^ 1u, pg->next[h], pg->prev[h], pg->origin[h], pg->origin[h ^ 1u], h / 2);
-    say_id(p, pg->face[h]);
-    say(p, ",\"boundary\":%s}", pg->face[h] == PG_NONE ? "true" : "false");
+    page_say_id(p, pg->face[h]);
+    page_say(p, ",\"boundary\":%s}", pg->face[h] == PG_NONE ? "true" : "false");
 }
 
 static void say_edge(page *p, const pg_mesh *pg, unsigned e)
 {
-    say(p, "{\"id\":%u,\"halfedges\":[%u,%u],\"vertices\":[%u,%u],\"faces\":", e, 2 * e, 2 * e + 1,
-        pg->origin[2 * e], pg->origin[2 * e + 1]);
-    say_ids(p, &pg->face[2 * e], 2);
+    page_say(p, "{\"id\":%u,\"halfedges\":[%u,%u],\"vertices\":[%u,%u],\"faces\":", e, 2 * e,
+             2 * e + 1, pg->origin[2 * e], pg->origin[2 * e + 1]);
+    page_say_ids(p, &pg->face[2 * e], 2);
     bool boundary = pg->face[2 * e] == PG_NONE || pg->face[2 * e + 1] == PG_NONE;
-    say(p, ",\"length\":%.17g,\"boundary\":%s}", pg_length(pg, e), boundary ? "true" : "false");
+    page_say(p, ",\"length\":%.17g,\"boundary\":%s}", pg_length(pg, e),
+             boundary ? "true" : "false");
 }
 
 static void say_face(page *p, const pg_mesh *pg, unsigned f)
 {
     pg_list halfedges, vertices;
     double area[3], centroid[3] = {0, 0, 0};
-    pg_relation(pg, "face", f, "halfedges", false, &halfedges);
-    pg_relation(pg, "face", f, "vertices", false, &vertices);
+    pg_relation(pg, (pg_element){"face", f}, "halfedges", false, &halfedges);
+    pg_relation(pg, (pg_element){"face", f}, "vertices", false, &vertices);
     double length = pg_area(pg, f, area);
     for (int k = 0; k < 3 && length > 0; k++) {
         area[k] /= length;
@@ -49,13 +51,13 @@ static void say_face(page *p, const pg_mesh *pg, unsigned f)
             centroid[k] += pg->position[vertices.ids[i]][k] / vertices.count;
         }
     }
-    say(p, "{\"id\":%u,\"halfedge\":%u,\"degree\":%u,\"vertices\":", f, pg->face_first[f],
-        pg->degree[f]);
-    say_list(p, &vertices);
-    say(p, ",\"halfedges\":");
-    say_list(p, &halfedges);
-    say(p, ",\"area\":%.17g,\"normal\":[%.17g,%.17g,%.17g],\"centroid\":[%.17g,%.17g,%.17g]}",
-        length, area[0], area[1], area[2], centroid[0], centroid[1], centroid[2]);
+    page_say(p, "{\"id\":%u,\"halfedge\":%u,\"degree\":%u,\"vertices\":", f, pg->face_first[f],
+             pg->degree[f]);
+    page_say_list(p, &vertices);
+    page_say(p, ",\"halfedges\":");
+    page_say_list(p, &halfedges);
+    page_say(p, ",\"area\":%.17g,\"normal\":[%.17g,%.17g,%.17g],\"centroid\":[%.17g,%.17g,%.17g]}",
+             length, area[0], area[1], area[2], centroid[0], centroid[1], centroid[2]);
 }
 
 static void say_element(page *p, const pg_mesh *pg, int kind, unsigned id)
@@ -68,12 +70,13 @@ static void say_element(page *p, const pg_mesh *pg, int kind, unsigned id)
 static void try_elements(api_bench *b, const pg_mesh *pg)
 {
     for (int kind = 0; kind < KINDS; kind++) {
-        for (unsigned id = 0; id < count_of(pg, kind); id++) {
+        for (unsigned id = 0; id < specimen_count(pg, kind); id++) {
             page wanted = {.used = 0};
             say_element(&wanted, pg, kind, id);
-            expect_get(b, &wanted, "/v1/meshes/m/%s/%u", kinds[kind].plural, id);
+            page_expect_get(b, &wanted, "/v1/meshes/m/%s/%u", specimen_kinds[kind].plural, id);
         }
-        bench_reply r = get(b, "/v1/meshes/m/%s/%u", kinds[kind].plural, count_of(pg, kind));
+        bench_reply r = specimen_get(b, "/v1/meshes/m/%s/%u", specimen_kinds[kind].plural,
+                                     specimen_count(pg, kind));
         assert_int_equal(r.status, 404);
         bench_reply_free(&r);
     }
@@ -94,36 +97,39 @@ static void a_degenerate_face_has_no_normal(void **state)
     assert_int_equal(r.status, 201);
     bench_reply_free(&r);
     page wanted = {.used = 0};
-    say(&wanted, "{\"id\":0,\"halfedge\":0,\"degree\":3,\"vertices\":[0,1,2],\"halfedges\":[0,2,4],"
-                 "\"area\":0,\"normal\":[0,0,0],\"centroid\":[1,0,0]}");
-    expect_get(b, &wanted, "/v1/meshes/m/faces/0");
+    page_say(&wanted,
+             "{\"id\":0,\"halfedge\":0,\"degree\":3,\"vertices\":[0,1,2],\"halfedges\":[0,2,4],"
+             "\"area\":0,\"normal\":[0,0,0],\"centroid\":[1,0,0]}");
+    page_expect_get(b, &wanted, "/v1/meshes/m/faces/0");
     bench_free(b);
 }
 
 /* --- relations --- */
 
-static void say_adjacency(page *p, const pg_mesh *pg, int kind, unsigned id, const char *what,
+static void say_adjacency(page *p, const pg_mesh *pg, pg_element of, const char *what,
                           bool clockwise)
 {
     pg_list ids;
-    pg_relation(pg, kinds[kind].name, id, what, clockwise, &ids);
-    say(p, "{\"revision\":1,\"of\":{\"%s\":%u},\"relation\":\"%s\",\"ids\":", kinds[kind].name, id,
-        what);
-    say_list(p, &ids);
-    say(p, "}");
+    pg_relation(pg, of, what, clockwise, &ids);
+    page_say(p, "{\"revision\":1,\"of\":{\"%s\":%u},\"relation\":\"%s\",\"ids\":", of.kind, of.id,
+             what);
+    page_say_list(p, &ids);
+    page_say(p, "}");
 }
 
 static void try_relations(api_bench *b, const pg_mesh *pg)
 {
     for (int kind = 0; kind < KINDS; kind++) {
-        for (unsigned id = 0; id < count_of(pg, kind); id++) {
-            for (int r = 0; kinds[kind].relations[r] != NULL; r++) {
-                const char *what = kinds[kind].relations[r];
+        for (unsigned id = 0; id < specimen_count(pg, kind); id++) {
+            for (int r = 0; specimen_kinds[kind].relations[r] != NULL; r++) {
+                const char *what = specimen_kinds[kind].relations[r];
                 for (int cw = 0; cw < 2; cw++) {
                     page wanted = {.used = 0};
-                    say_adjacency(&wanted, pg, kind, id, what, cw == 1);
-                    expect_get(b, &wanted, "/v1/meshes/m/%s/%u/%s%s", kinds[kind].plural, id, what,
-                               cw == 1 ? "?cw=true" : "");
+                    say_adjacency(&wanted, pg, (pg_element){specimen_kinds[kind].name, id}, what,
+                                  cw == 1);
+                    page_expect_get(b, &wanted, "/v1/meshes/m/%s/%u/%s%s",
+                                    specimen_kinds[kind].plural, id, what,
+                                    cw == 1 ? "?cw=true" : "");
                 }
             }
         }
@@ -144,22 +150,23 @@ static void try_pages(api_bench *b, const pg_mesh *pg)
         char cursor[256] = "", next[256];
         for (unsigned from = 0; from == 0 || cursor[0] != '\0'; from += 3) {
             page wanted = {.used = 0};
-            say(&wanted, "{\"revision\":1,\"items\":[");
-            for (unsigned id = from; id < from + 3 && id < count_of(pg, kind); id++) {
-                say(&wanted, id == from ? "" : ",");
+            page_say(&wanted, "{\"revision\":1,\"items\":[");
+            for (unsigned id = from; id < from + 3 && id < specimen_count(pg, kind); id++) {
+                page_say(&wanted, id == from ? "" : ",");
                 say_element(&wanted, pg, kind, id);
             }
-            bench_reply r = get(b, "/v1/meshes/m/%s?limit=3%s%s", kinds[kind].plural,
-                                from == 0 ? "" : "&cursor=", cursor);
+            bench_reply r =
+                specimen_get(b, "/v1/meshes/m/%s?limit=3%s%s", specimen_kinds[kind].plural,
+                             from == 0 ? "" : "&cursor=", cursor);
             const cJSON *value = cJSON_GetObjectItemCaseSensitive(r.json, "next");
             snprintf(next, sizeof next, "%s", cJSON_IsString(value) ? value->valuestring : "");
-            assert_int_equal(next[0] != '\0', from + 3 < count_of(pg, kind));
-            say(&wanted, next[0] == '\0' ? "],\"next\":null}" : "],\"next\":\"%s\"}", next);
-            expect(&r, &wanted);
+            assert_int_equal(next[0] != '\0', from + 3 < specimen_count(pg, kind));
+            page_say(&wanted, next[0] == '\0' ? "],\"next\":null}" : "],\"next\":\"%s\"}", next);
+            page_expect(&r, &wanted);
             char link[600] = "";
             if (next[0] != '\0') {
                 snprintf(link, sizeof link, "</v1/meshes/m/%s?limit=3&cursor=%s>; rel=\"next\"",
-                         kinds[kind].plural, next);
+                         specimen_kinds[kind].plural, next);
             }
             assert_string_equal(bench_header(&r, "Link"), link);
             bench_reply_free(&r);
@@ -174,14 +181,14 @@ static void try_lines(api_bench *b, const pg_mesh *pg)
     for (int kind = 0; kind < KINDS; kind++) {
         char target[64];
         page wanted = {.used = 0};
-        for (unsigned id = 0; id < count_of(pg, kind); id++) {
+        for (unsigned id = 0; id < specimen_count(pg, kind); id++) {
             say_element(&wanted, pg, kind, id);
-            say(&wanted, "\n");
+            page_say(&wanted, "\n");
         }
-        say(&wanted, "{\"end\":true,\"count\":%u}\n", count_of(pg, kind));
-        snprintf(target, sizeof target, "/v1/meshes/m/%s", kinds[kind].plural);
+        page_say(&wanted, "{\"end\":true,\"count\":%u}\n", specimen_count(pg, kind));
+        snprintf(target, sizeof target, "/v1/meshes/m/%s", specimen_kinds[kind].plural);
         bench_reply r = bench_send(b, "GET", target, accept, NULL);
-        expect(&r, &wanted);
+        page_expect(&r, &wanted);
         assert_string_equal(bench_header(&r, "Content-Type"), "application/x-ndjson");
         bench_reply_free(&r);
     }
@@ -204,21 +211,21 @@ static void lines_give_all_elements_and_their_count(void **state)
 static void try_query(api_bench *b, const pg_mesh *pg)
 {
     page body = {.used = 0}, wanted = {.used = 0};
-    say(&body, "{\"queries\":[{\"walk\":\"none\"}");
-    say(&wanted,
-        "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
-        "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"none\\\" is "
-        "not one of path, loop, rings, breadth_first, shortest_path, edge_loop, edge_ring\","
-        "\"code\":\"bad_value\",\"pointer\":\"/queries/0/walk\"}");
+    page_say(&body, "{\"queries\":[{\"walk\":\"none\"}");
+    page_say(&wanted,
+             "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
+             "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"none\\\" is "
+             "not one of path, loop, rings, breadth_first, shortest_path, edge_loop, edge_ring\","
+             "\"code\":\"bad_value\",\"pointer\":\"/queries/0/walk\"}");
     for (int kind = 0; kind < KINDS; kind++) {
-        for (unsigned id = 0; id < count_of(pg, kind); id += 2) {
-            const char *what = kinds[kind].relations[id % 2];
-            say(&body, ",{\"relation\":\"%s\",\"of\":{\"%s\":%u},\"cw\":true}", what,
-                kinds[kind].name, id);
-            say(&wanted, ",");
-            say_adjacency(&wanted, pg, kind, id, what, true);
-            say(&body, ",{\"get\":{\"%s\":%u}}", kinds[kind].name, id);
-            say(&wanted, ",");
+        for (unsigned id = 0; id < specimen_count(pg, kind); id += 2) {
+            const char *what = specimen_kinds[kind].relations[id % 2];
+            page_say(&body, ",{\"relation\":\"%s\",\"of\":{\"%s\":%u},\"cw\":true}", what,
+                     specimen_kinds[kind].name, id);
+            page_say(&wanted, ",");
+            say_adjacency(&wanted, pg, (pg_element){specimen_kinds[kind].name, id}, what, true);
+            page_say(&body, ",{\"get\":{\"%s\":%u}}", specimen_kinds[kind].name, id);
+            page_say(&wanted, ",");
             say_element(&wanted, pg, kind, id);
         }
     }
@@ -228,15 +235,15 @@ static void try_query(api_bench *b, const pg_mesh *pg)
             for (unsigned h = 0; h < pg->halfedges; h++) {
                 found = pg->origin[h] == i && pg->origin[h ^ 1u] == j ? h : found;
             }
-            say(&body, ",{\"find\":\"halfedge\",\"vertices\":[%u,%u]}", i, j);
-            say(&wanted, ",{\"halfedge\":");
-            say_id(&wanted, found);
-            say(&wanted, "}");
+            page_say(&body, ",{\"find\":\"halfedge\",\"vertices\":[%u,%u]}", i, j);
+            page_say(&wanted, ",{\"halfedge\":");
+            page_say_id(&wanted, found);
+            page_say(&wanted, "}");
         }
     }
-    say(&body, "]}");
-    say(&wanted, "]}");
-    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+    page_say(&body, "]}");
+    page_say(&wanted, "]}");
+    page_expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
 }
 
 static bool is_in(const pg_list *list, unsigned id)
@@ -251,38 +258,39 @@ static bool is_in(const pg_list *list, unsigned id)
 static void try_finds(api_bench *b, const pg_mesh *pg)
 {
     page body = {.used = 0}, wanted = {.used = 0};
-    say(&body, "{\"queries\":[{\"find\":\"loop\",\"vertices\":[0,0]}");
-    say(&wanted, "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
-                 "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"loop\\\" is "
-                 "not one of halfedge, edge, faces\","
-                 "\"code\":\"bad_value\",\"pointer\":\"/queries/0/find\"}");
+    page_say(&body, "{\"queries\":[{\"find\":\"loop\",\"vertices\":[0,0]}");
+    page_say(&wanted,
+             "{\"revision\":1,\"results\":[{\"type\":\"/problems/bad_value\",\"title\":\"A "
+             "value is outside its allowed range\",\"status\":400,\"detail\":\"\\\"loop\\\" is "
+             "not one of halfedge, edge, faces\","
+             "\"code\":\"bad_value\",\"pointer\":\"/queries/0/find\"}");
     for (unsigned i = 0; i < pg->vertices; i++) {
         pg_list about_i, about_j;
-        pg_relation(pg, "vertex", i, "faces", false, &about_i);
+        pg_relation(pg, (pg_element){"vertex", i}, "faces", false, &about_i);
         for (unsigned j = 0; j < pg->vertices; j++) {
             unsigned found = PG_NONE;
             for (unsigned h = 0; h < pg->halfedges; h++) {
                 found = pg->origin[h] == i && pg->origin[h ^ 1u] == j ? h / 2 : found;
             }
-            say(&body, ",{\"find\":\"edge\",\"vertices\":[%u,%u]}", i, j);
-            say(&wanted, ",{\"edge\":");
-            say_id(&wanted, found);
-            say(&body, ",{\"find\":\"faces\",\"vertices\":[%u,%u]}", i, j);
-            say(&wanted, "},{\"faces\":[");
-            pg_relation(pg, "vertex", j, "faces", false, &about_j);
+            page_say(&body, ",{\"find\":\"edge\",\"vertices\":[%u,%u]}", i, j);
+            page_say(&wanted, ",{\"edge\":");
+            page_say_id(&wanted, found);
+            page_say(&body, ",{\"find\":\"faces\",\"vertices\":[%u,%u]}", i, j);
+            page_say(&wanted, "},{\"faces\":[");
+            pg_relation(pg, (pg_element){"vertex", j}, "faces", false, &about_j);
             const char *comma = "";
             for (unsigned k = 0; k < about_i.count; k++) {
                 if (is_in(&about_j, about_i.ids[k])) {
-                    say(&wanted, "%s%u", comma, about_i.ids[k]);
+                    page_say(&wanted, "%s%u", comma, about_i.ids[k]);
                     comma = ",";
                 }
             }
-            say(&wanted, "]}");
+            page_say(&wanted, "]}");
         }
     }
-    say(&body, "]}");
-    say(&wanted, "]}");
-    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+    page_say(&body, "]}");
+    page_say(&wanted, "]}");
+    page_expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
 }
 
 static void edges_and_common_faces_of_two_vertices_are_found(void **state)
@@ -304,30 +312,31 @@ static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const 
 {
     static const char *const octets[] = {"Accept", "application/octet-stream", NULL};
     page offsets = {.used = 0}, ids = {.used = 0}, body = {.used = 0}, wanted = {.used = 0};
-    unsigned numbers[2000] = {0}, total = 0, n = count_of(pg, kind);
-    say(&body, "{\"queries\":[{\"relation\":\"%s\",\"of\":{\"%s\":", what, kinds[kind].plural);
-    say(&body, backwards ? "[" : "\"all\"");
-    say(&offsets, "[0");
+    unsigned numbers[2000] = {0}, total = 0, n = specimen_count(pg, kind);
+    page_say(&body, "{\"queries\":[{\"relation\":\"%s\",\"of\":{\"%s\":", what,
+             specimen_kinds[kind].plural);
+    page_say(&body, backwards ? "[" : "\"all\"");
+    page_say(&offsets, "[0");
     numbers[0] = 0;
     for (unsigned i = 0; i < n; i++) {
         pg_list list;
         unsigned id = backwards ? n - 1 - i : i;
-        pg_relation(pg, kinds[kind].name, id, what, false, &list);
+        pg_relation(pg, (pg_element){specimen_kinds[kind].name, id}, what, false, &list);
         for (unsigned j = 0; j < list.count; j++) {
             numbers[n + 1 + total + j] = list.ids[j];
-            say(&ids, "%s%u", total + j == 0 ? "" : ",", list.ids[j]);
+            page_say(&ids, "%s%u", total + j == 0 ? "" : ",", list.ids[j]);
         }
         total += list.count;
         numbers[i + 1] = total;
-        say(&offsets, ",%u", total);
+        page_say(&offsets, ",%u", total);
         if (backwards) {
-            say(&body, "%s%u", i == 0 ? "" : ",", id);
+            page_say(&body, "%s%u", i == 0 ? "" : ",", id);
         }
     }
-    say(&body, "%s}}]}", backwards ? "]" : "");
-    say(&wanted, "{\"revision\":1,\"results\":[{\"offsets\":%s],\"ids\":[%s]}]}", offsets.text,
-        ids.text);
-    expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
+    page_say(&body, "%s}}]}", backwards ? "]" : "");
+    page_say(&wanted, "{\"revision\":1,\"results\":[{\"offsets\":%s],\"ids\":[%s]}]}", offsets.text,
+             ids.text);
+    page_expect_post(b, &wanted, "/v1/meshes/m/query", body.text);
 
     bench_reply r = bench_send(b, "POST", "/v1/meshes/m/query", octets, body.text);
     assert_int_equal(r.status, 200);
@@ -344,9 +353,9 @@ static void try_dense_relation(api_bench *b, const pg_mesh *pg, int kind, const 
 static void try_dense(api_bench *b, const pg_mesh *pg)
 {
     for (int kind = 0; kind < KINDS; kind++) {
-        for (int r = 0; kinds[kind].relations[r] != NULL; r++) {
-            try_dense_relation(b, pg, kind, kinds[kind].relations[r], false);
-            try_dense_relation(b, pg, kind, kinds[kind].relations[r], true);
+        for (int r = 0; specimen_kinds[kind].relations[r] != NULL; r++) {
+            try_dense_relation(b, pg, kind, specimen_kinds[kind].relations[r], false);
+            try_dense_relation(b, pg, kind, specimen_kinds[kind].relations[r], true);
         }
     }
 }

@@ -24,7 +24,7 @@ static bench_reply post(api_bench *b, const char *query, const char *type, const
     char target[200];
     const char *const headers[] = {"Content-Type", type, "Prefer", "wait=600", NULL};
     snprintf(target, sizeof target, "/v1/meshes%s", query);
-    return bench_send_bytes(b, "POST", target, headers, body, length);
+    return bench_send_bytes(b, &(bench_request){"POST", target, headers, body, length});
 }
 
 static bench_reply post_json(api_bench *b, const char *query, const char *body)
@@ -58,9 +58,10 @@ static void expect_valid(api_bench *b, const bench_reply *created)
 
 /* Requires that the body is refused with this code, that the refusal names exactly `repairs`, and
  * that the body is accepted with these. */
-static void expect_mended(api_bench *b, const char *type, const char *body, size_t length,
-                          const char *code, const char *repairs)
+static void expect_mended(api_bench *b, const char *type, const char *body, const char *code,
+                          const char *repairs)
 {
+    size_t length = strlen(body);
     char query[120];
     bench_reply r = post(b, "", type, body, length);
     if (r.status != 422 || !named_repairs(&r, query)) {
@@ -181,16 +182,16 @@ static void the_repairs_named_let_it_pass(void **state)
         for (size_t f = 0; f < sizeof formats / sizeof *formats; f++) {
             char text[2000];
             write_file(text, sizeof text, formats[f], &specimens[i]);
-            expect_mended(b, types[f], text, strlen(text), specimens[i].code, specimens[i].repairs);
+            expect_mended(b, types[f], text, specimens[i].code, specimens[i].repairs);
         }
     }
     static const char few[] = "{\"vertices\":[[0,0,0],[1,0,0],[0,1,0]],\"faces\":[[0,1],[0,1,2]]}";
-    expect_mended(b, types[0], few, strlen(few), "too_few_corners", "drop_degenerate");
+    expect_mended(b, types[0], few, "too_few_corners", "drop_degenerate");
     static const char stl[] = "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\n"
                               "facet\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 1 0\nendfacet\n"
                               "facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendfacet\n"
                               "endsolid\n";
-    expect_mended(b, "model/stl", stl, strlen(stl), "repeated_corner", "drop_degenerate,orient");
+    expect_mended(b, "model/stl", stl, "repeated_corner", "drop_degenerate,orient");
     bench_free(b);
 }
 
@@ -439,11 +440,17 @@ static char *broken_file(size_t *length)
     return text;
 }
 
-/* Uploads the file, with `tell` called for progress; returns the status, and for a 422 the number
- * of defects. */
-static int upload_broken(api_bench *b, const char *text, size_t length,
-                         bool (*tell)(void *context, const char *phase, double done), void *context,
-                         int *total)
+/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
+static bool count_down(void *context, const char *phase, double done)
+{
+    (void)phase;
+    (void)done;
+    return *(int *)context == 0 || --*(int *)context > 0;
+}
+
+/* Uploads the file, with `left` counted down at each message of progress; returns the status, and
+ * for a 422 the number of defects. */
+static int upload_broken(api_bench *b, const char *text, size_t length, int *left, int *total)
 {
     const api_request request = {
         .method = "POST",
@@ -465,7 +472,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {
-        api_watch(x, tell, context);
+        api_watch(x, count_down, left);
         step = api_work(x);
     }
     assert_int_equal(step, API_READY);
@@ -479,14 +486,6 @@ static int upload_broken(api_bench *b, const char *text, size_t length,
     return status;
 }
 
-/* Asks to cancel in the n-th call, by returning false, and in all later ones; with n = 0 never. */
-static bool count_down(void *context, const char *phase, double done)
-{
-    (void)phase;
-    (void)done;
-    return *(int *)context == 0 || --*(int *)context > 0;
-}
-
 static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
 {
     (void)state;
@@ -496,7 +495,7 @@ static void what_is_given_up_does_not_tell_the_defects_so_far(void **state)
     int status, total, given_up = 0;
     for (int n = 1;; n++) {
         int left = n;
-        status = upload_broken(b, text, length, count_down, &left, &total);
+        status = upload_broken(b, text, length, &left, &total);
         if (left > 0) {
             break; /* the work ended before the n-th call */
         }
@@ -517,10 +516,10 @@ static void what_lacks_memory_does_not_tell_the_defects_so_far(void **state)
     char *text = broken_file(&length);
     api_bench *b = bench_new();
     int never = 0, all, total;
-    assert_int_equal(upload_broken(b, text, length, count_down, &never, &all), 422);
+    assert_int_equal(upload_broken(b, text, length, &never, &all), 422);
     failing f = {.may_succeed = true};
     while (failing_next(&f)) {
-        int status = upload_broken(b, text, length, count_down, &never, &total);
+        int status = upload_broken(b, text, length, &never, &total);
         failing_end(&f, status == 422);
         assert_true(status == 507 || (status == 422 && total == all));
     }

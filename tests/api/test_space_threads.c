@@ -59,7 +59,9 @@ static void *ask(void *context)
     double revision = 0;
     for (int i = 0; i < QUESTIONS && r->strange == NULL; i++) {
         bench_reply reply;
-        if (!bench_try(r->b, "POST", "/v1/meshes/m/query", NULL, r->question, strlen(r->question),
+        if (!bench_try(r->b,
+                       &(bench_request){"POST", "/v1/meshes/m/query", NULL, r->question,
+                                        strlen(r->question)},
                        &reply) ||
             reply.status != 200) {
             r->strange = "no answer";

@@ -305,12 +305,13 @@ static bool holds(const int *statuses, int status)
     return false;
 }
 
-static void take(api_bench *b, const char *method, const char *target, int status,
-                 const char *const *headers, const char *body, size_t length)
+/* Sends a request, whose answer must have this status. */
+static void take(api_bench *b, int status, const bench_request *request)
 {
-    bench_reply r = bench_send_bytes(b, method, target, headers, body, length);
+    const char *method = request->method;
+    bench_reply r = bench_send_bytes(b, request);
     if (r.status != status) {
-        fail_msg("%s %s: %d instead of %d: %s", method, target, r.status, status, r.body);
+        fail_msg("%s %s: %d instead of %d: %s", method, request->target, r.status, status, r.body);
     }
     if (status >= 400) {
         assert_string_equal(bench_header(&r, "Content-Type"), "application/problem+json");
@@ -340,12 +341,12 @@ static void take_stale_cursor(api_bench *b, const char *collection)
     assert_true(cJSON_IsString(next));
     snprintf(target, sizeof target, "/v1/meshes/m/%s?cursor=%s", collection, next->valuestring);
     bench_reply_free(&r);
-    take(b, "DELETE", "/v1/meshes/m", 204, NULL, NULL, 0);
-    take(b, "PUT", "/v1/meshes/m", 201, NULL, CUBE, sizeof CUBE - 1);
+    take(b, 204, &(bench_request){"DELETE", "/v1/meshes/m", NULL, NULL, 0});
+    take(b, 201, &(bench_request){"PUT", "/v1/meshes/m", NULL, CUBE, sizeof CUBE - 1});
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":1}";
-    take(b, "POST", "/v1/meshes/m/edits", 200, NULL, poke, sizeof poke - 1);
-    take(b, "POST", "/v1/meshes/m/undo", 200, NULL, NULL, 0);
-    take(b, "GET", target, 410, NULL, NULL, 0);
+    take(b, 200, &(bench_request){"POST", "/v1/meshes/m/edits", NULL, poke, sizeof poke - 1});
+    take(b, 200, &(bench_request){"POST", "/v1/meshes/m/undo", NULL, NULL, 0});
+    take(b, 410, &(bench_request){"GET", target, NULL, NULL, 0});
 }
 
 /* The routes of elements differ only in kind and relation, so their statuses are produced in a
@@ -355,8 +356,8 @@ static void take_elements(api_bench *b)
     static const char mesh[] = "/v1/meshes/{mesh}/", id[] = "/{id}";
     static const char *const any[] = {ANY, NULL}, *const async[] = {ASYNC, NULL};
     char path[100], past[120];
-    take(b, "PUT", "/v1/meshes/r", 201, NULL, CUBE, sizeof CUBE - 1);
-    take(b, "PUT", "/v1/meshes/r", 200, NULL, CUBE, sizeof CUBE - 1);
+    take(b, 201, &(bench_request){"PUT", "/v1/meshes/r", NULL, CUBE, sizeof CUBE - 1});
+    take(b, 200, &(bench_request){"PUT", "/v1/meshes/r", NULL, CUBE, sizeof CUBE - 1});
     for (size_t i = 0; i < api_routes().count; i++) {
         const char *template = api_routes().rows[i].path, *at = strstr(template, id);
         if (at == NULL && api_routes().rows[i].run != api_elements_list) {
@@ -366,11 +367,11 @@ static void take_elements(api_bench *b)
         snprintf(path, sizeof path, "/v1/meshes/r/%.*s%s%s", (int)strcspn(kind, "/"), kind,
                  at == NULL ? "" : "/0", at == NULL ? "" : at + sizeof id - 1);
         snprintf(past, sizeof past, "%s?revision=1", path);
-        take(b, "GET", path, 200, NULL, NULL, 0);
-        take(b, "GET", path, 304, any, NULL, 0);
-        take(b, "GET", past, 410, NULL, NULL, 0);
+        take(b, 200, &(bench_request){"GET", path, NULL, NULL, 0});
+        take(b, 304, &(bench_request){"GET", path, any, NULL, 0});
+        take(b, 410, &(bench_request){"GET", past, NULL, NULL, 0});
         if (at == NULL) {
-            take(b, "GET", path, 202, async, NULL, 0);
+            take(b, 202, &(bench_request){"GET", path, async, NULL, 0});
         }
     }
 }
@@ -402,13 +403,13 @@ static void take_keyed(api_bench *b, const char *method, const char *path, const
     size_t used;
     assert_int_equal(api_body(x, body, LONG, &used), API_MORE);
     assert_int_equal(api_end(x), API_WORK);
-    take(b, method, path, 409, keyed, body, LONG);
+    take(b, 409, &(bench_request){method, path, keyed, body, LONG});
     api_work(x);
     int status = api_answer_of(x)->status;
     assert_true(status == 200 || status == 201);
     api_free(x);
-    take(b, method, path, status, keyed, body, LONG);
-    take(b, method, path, 422, keyed, body, LONG - 1);
+    take(b, status, &(bench_request){method, path, keyed, body, LONG});
+    take(b, 422, &(bench_request){method, path, keyed, body, LONG - 1});
     free(body);
 }
 
@@ -416,7 +417,7 @@ static void take_keyed_edits(api_bench *b)
 {
     static const char *const steps_of_keyed[] = {"edits", "undo", "redo"};
     static const char *const bodies[] = {"{\"op\":\"face_poke\",\"face\":0}", "{}", "{}"};
-    take(b, "PUT", "/v1/meshes/k", 201, NULL, CUBE, sizeof CUBE - 1);
+    take(b, 201, &(bench_request){"PUT", "/v1/meshes/k", NULL, CUBE, sizeof CUBE - 1});
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/k/%s", steps_of_keyed[i]);
@@ -432,10 +433,10 @@ static void take_job(api_bench *b)
     const char *path = bench_header(&r, "Location");
     char events[80];
     snprintf(events, sizeof events, "%s/events", path);
-    take(b, "GET", path, 200, NULL, NULL, 0);
-    take(b, "GET", events, 200, NULL, NULL, 0);
-    take(b, "DELETE", path, 202, NULL, NULL, 0);
-    take(b, "DELETE", path, 204, NULL, NULL, 0);
+    take(b, 200, &(bench_request){"GET", path, NULL, NULL, 0});
+    take(b, 200, &(bench_request){"GET", events, NULL, NULL, 0});
+    take(b, 202, &(bench_request){"DELETE", path, NULL, NULL, 0});
+    take(b, 204, &(bench_request){"DELETE", path, NULL, NULL, 0});
     bench_reply_free(&r);
 }
 
@@ -446,18 +447,19 @@ static void take_result(api_bench *b)
         bench_send(b, "GET", "/v1/meshes/m/content", (const char *const[]){ASYNC, NULL}, NULL);
     assert_int_equal(r.status, 202);
     snprintf(path, sizeof path, "%s/result", bench_header(&r, "Location"));
-    take(b, "GET", path, 202, NULL, NULL, 0);
+    take(b, 202, &(bench_request){"GET", path, NULL, NULL, 0});
     bench_run_jobs(b, BENCH_JOBS);
-    take(b, "GET", path, 200, NULL, NULL, 0);
-    take(b, "GET", path, 304, (const char *const[]){ANY, NULL}, NULL, 0);
-    take(b, "GET", "/v1/jobs/none/result", 404, NULL, NULL, 0);
+    take(b, 200, &(bench_request){"GET", path, NULL, NULL, 0});
+    take(b, 304, &(bench_request){"GET", path, (const char *const[]){ANY, NULL}, NULL, 0});
+    take(b, 404, &(bench_request){"GET", "/v1/jobs/none/result", NULL, NULL, 0});
     bench_reply_free(&r);
 }
 
 static void take_costly_check(api_bench *b)
 {
-    put_fan(b, "/v1/meshes/fan", 3001, 1201);
-    take(b, "GET", "/v1/meshes/fan/check?self_intersections=true", 413, NULL, NULL, 0);
+    fan_put(b, "/v1/meshes/fan", 3001, 1201);
+    take(b, 413,
+         &(bench_request){"GET", "/v1/meshes/fan/check?self_intersections=true", NULL, NULL, 0});
 }
 
 static void routes_answer_each_status_they_declare_and_no_other(void **state)
@@ -472,7 +474,8 @@ static void routes_answer_each_status_they_declare_and_no_other(void **state)
         const step *s = &steps[i];
         bool is_big = s->body != NULL && strcmp(s->body, BIG) == 0;
         size_t length = is_big ? TOO_BIG : s->body == NULL ? 0 : strlen(s->body);
-        take(b, s->method, s->target, s->status, s->headers, is_big ? big : s->body, length);
+        take(b, s->status,
+             &(bench_request){s->method, s->target, s->headers, is_big ? big : s->body, length});
     }
     take_elements(b);
     take_stale_cursor(b, "vertices");
@@ -481,22 +484,25 @@ static void routes_answer_each_status_they_declare_and_no_other(void **state)
     take_keyed(b, "PATCH", "/v1/meshes/m", "{\"name\":\"z\"}");
     take_keyed(b, "POST", "/v1/meshes/m/copy", "{}");
     static const char flag[] = "{\"type\":\"bool\"}";
-    take(b, "PUT", "/v1/meshes/m/attributes/faces/a", 201, NULL, flag, sizeof flag - 1);
+    take(b, 201,
+         &(bench_request){"PUT", "/v1/meshes/m/attributes/faces/a", NULL, flag, sizeof flag - 1});
     take_keyed(b, "PATCH", "/v1/meshes/m/attributes/faces/a", "{\"ids\":[0],\"value\":true}");
     take_keyed_edits(b);
     take_job(b);
     take_result(b);
     take_costly_check(b);
-    take(b, "POST", "/v1/admin/backup", 409, NULL, NULL, 0);
+    take(b, 409, &(bench_request){"POST", "/v1/admin/backup", NULL, NULL, 0});
     bench_keep(b, "bytes");
-    take(b, "POST", "/v1/admin/backup", 200, (const char *const[]){"Prefer", "wait=10", NULL}, NULL,
-         0);
-    take(b, "POST", "/v1/admin/backup", 202, NULL, NULL, 0);
+    take(b, 200,
+         &(bench_request){"POST", "/v1/admin/backup",
+                          (const char *const[]){"Prefer", "wait=10", NULL}, NULL, 0});
+    take(b, 202, &(bench_request){"POST", "/v1/admin/backup", NULL, NULL, 0});
     bench_run_jobs(b, BENCH_JOBS);
-    take(b, "POST", "/v1/admin/backup", 409, (const char *const[]){"Prefer", "wait=10", NULL}, NULL,
-         0);
+    take(b, 409,
+         &(bench_request){"POST", "/v1/admin/backup",
+                          (const char *const[]){"Prefer", "wait=10", NULL}, NULL, 0});
     bench_change_tokens(b, "nothing");
-    take(b, "POST", "/v1/admin/reload", 409, NULL, NULL, 0);
+    take(b, 409, &(bench_request){"POST", "/v1/admin/reload", NULL, NULL, 0});
     size_t missing = 0;
     for (size_t i = 0; i < api_routes().count; i++) {
         const api_route *route = &api_routes().rows[i];

@@ -206,7 +206,7 @@ static bench_reply send_file(api_bench *b, const char *format, const file *f, co
     char target[100];
     snprintf(target, sizeof target, "/v1/meshes?format=%s%s%s", format,
              repair == NULL ? "" : "&repair=", repair == NULL ? "" : repair);
-    return bench_send_bytes(b, "POST", target, headers, f->bytes, f->length);
+    return bench_send_bytes(b, &(bench_request){"POST", target, headers, f->bytes, f->length});
 }
 
 static void expect_words(const bench_reply *r, const char *words)

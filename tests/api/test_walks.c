@@ -15,14 +15,23 @@ static void traverse(api_bench *b, const page *wanted, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(body, sizeof body, format, arguments);
     va_end(arguments);
-    expect_post(b, wanted, "/v1/meshes/m/traverse", body);
+    page_expect_post(b, wanted, "/v1/meshes/m/traverse", body);
 }
 
-/* Requests a walk along next, prev and twin, and compares the answer with the walk along the
- * polygons. `until` NULL: only the number of repetitions ends the walk. */
-static void try_path(api_bench *b, const pg_mesh *pg, unsigned from, const char *letters,
-                     unsigned repeat, const char *until)
+/* A walk from a half-edge along next, prev and twin, each of them given by its first letter.
+ * `until` NULL: only the number of repetitions ends the walk. */
+typedef struct step_walk {
+    unsigned from;
+    const char *letters;
+    unsigned repeat;
+    const char *until;
+} step_walk;
+
+/* Requests a walk, and compares the answer with the walk along the polygons. */
+static void try_path(api_bench *b, const pg_mesh *pg, const step_walk *walk)
 {
+    const unsigned from = walk->from, repeat = walk->repeat;
+    const char *letters = walk->letters, *until = walk->until;
     page body = {.used = 0}, wanted = {.used = 0};
     pg_list on = {.ids = {from}, .count = 1};
     bool ended = false;
@@ -35,23 +44,23 @@ static void try_path(api_bench *b, const pg_mesh *pg, unsigned from, const char 
         }
         ended = ended || (until != NULL && h == from);
     }
-    say(&body, "\"walk\":\"path\",\"from\":{\"halfedge\":%u},\"path\":[", from);
+    page_say(&body, "\"walk\":\"path\",\"from\":{\"halfedge\":%u},\"path\":[", from);
     for (const char *p = letters; *p != '\0'; p++) {
-        say(&body, "%s\"%s\"", p == letters ? "" : ",",
-            *p == 'n'   ? "next"
-            : *p == 'p' ? "prev"
-                        : "twin");
+        page_say(&body, "%s\"%s\"", p == letters ? "" : ",",
+                 *p == 'n'   ? "next"
+                 : *p == 'p' ? "prev"
+                             : "twin");
     }
-    say(&body, "]");
+    page_say(&body, "]");
     if (repeat != PG_HALFEDGES) {
-        say(&body, ",\"repeat\":%u", repeat);
+        page_say(&body, ",\"repeat\":%u", repeat);
     }
     if (until != NULL) {
-        say(&body, ",\"until\":\"%s\"", until);
+        page_say(&body, ",\"until\":\"%s\"", until);
     }
-    say(&wanted, "{\"revision\":1,%s,\"halfedges\":", body.text);
-    say_list(&wanted, &on);
-    say(&wanted, ",\"end\":%u}", h);
+    page_say(&wanted, "{\"revision\":1,%s,\"halfedges\":", body.text);
+    page_say_list(&wanted, &on);
+    page_say(&wanted, ",\"end\":%u}", h);
     traverse(b, &wanted, "{%s}", body.text);
 }
 
@@ -60,12 +69,12 @@ static void try_paths(api_bench *b, const pg_mesh *pg)
     static const char *const words[] = {"n", "p", "t", "ntn", "pt", "nntp"};
     for (unsigned h = 0; h < pg->halfedges; h += 3) {
         for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-            try_path(b, pg, h, words[i], 1, NULL);
-            try_path(b, pg, h, words[i], 0, NULL);
-            try_path(b, pg, h, words[i], 5, NULL);
-            try_path(b, pg, h, words[i], 2, "start");
-            try_path(b, pg, h, words[i], PG_HALFEDGES, "start");
-            try_path(b, pg, h, words[i], PG_HALFEDGES, "boundary");
+            try_path(b, pg, &(step_walk){h, words[i], 1, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 0, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 5, NULL});
+            try_path(b, pg, &(step_walk){h, words[i], 2, "start"});
+            try_path(b, pg, &(step_walk){h, words[i], PG_HALFEDGES, "start"});
+            try_path(b, pg, &(step_walk){h, words[i], PG_HALFEDGES, "boundary"});
         }
     }
 }
@@ -81,17 +90,17 @@ static void try_loops(api_bench *b, const pg_mesh *pg)
     for (unsigned h = 0; h < pg->halfedges; h++) {
         pg_list loop;
         page wanted = {.used = 0};
-        pg_relation(pg, "halfedge", h, "loop", false, &loop);
-        say(&wanted,
-            "{\"revision\":1,\"walk\":\"loop\",\"from\":{\"halfedge\":%u},\"halfedges\":", h);
-        say_list(&wanted, &loop);
-        say(&wanted, ",\"vertices\":[");
+        pg_relation(pg, (pg_element){"halfedge", h}, "loop", false, &loop);
+        page_say(&wanted,
+                 "{\"revision\":1,\"walk\":\"loop\",\"from\":{\"halfedge\":%u},\"halfedges\":", h);
+        page_say_list(&wanted, &loop);
+        page_say(&wanted, ",\"vertices\":[");
         for (unsigned i = 0; i < loop.count; i++) {
-            say(&wanted, "%s%u", i == 0 ? "" : ",", pg->origin[loop.ids[i]]);
+            page_say(&wanted, "%s%u", i == 0 ? "" : ",", pg->origin[loop.ids[i]]);
         }
-        say(&wanted, "],\"face\":");
-        say_id(&wanted, pg->face[h]);
-        say(&wanted, "}");
+        page_say(&wanted, "],\"face\":");
+        page_say_id(&wanted, pg->face[h]);
+        page_say(&wanted, "}");
         traverse(b, &wanted, "{\"walk\":\"loop\",\"from\":{\"halfedge\":%u}}", h);
     }
 }
@@ -100,42 +109,42 @@ static void try_rings(api_bench *b, const pg_mesh *pg, unsigned v, unsigned dept
 {
     pg_list ids, depths;
     page wanted = {.used = 0};
-    pg_breadth_first(pg, "vertex", v, depth, 0, &ids, &depths);
-    say(&wanted,
-        "{\"revision\":1,\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u,"
-        "\"rings\":[",
-        v, depth);
+    pg_breadth_first(pg, &(pg_flood){{"vertex", v}, depth, 0}, &ids, &depths);
+    page_say(&wanted,
+             "{\"revision\":1,\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u,"
+             "\"rings\":[",
+             v, depth);
     for (unsigned i = 0, end; i < ids.count; i = end) {
         for (end = i; end < ids.count && depths.ids[end] == depths.ids[i];) {
             end++;
         }
-        say(&wanted, i == 0 ? "" : ",");
-        say_ids(&wanted, ids.ids + i, end - i);
+        page_say(&wanted, i == 0 ? "" : ",");
+        page_say_ids(&wanted, ids.ids + i, end - i);
     }
-    say(&wanted, "]}");
+    page_say(&wanted, "]}");
     traverse(b, &wanted, "{\"walk\":\"rings\",\"from\":{\"vertex\":%u},\"depth\":%u}", v, depth);
 }
 
 /* Compares a breadth-first walk; depth PG_NONE means no depth in the request, limit 0 means no
  * limit. */
-static void try_flood(api_bench *b, const pg_mesh *pg, int kind, unsigned from, unsigned depth,
-                      unsigned limit)
+static void try_flood(api_bench *b, const pg_mesh *pg, const pg_flood *flood)
 {
     pg_list ids, depths;
     page body = {.used = 0}, wanted = {.used = 0};
-    pg_breadth_first(pg, kinds[kind].name, from, depth, limit, &ids, &depths);
-    say(&body, "\"walk\":\"breadth_first\",\"from\":{\"%s\":%u}", kinds[kind].name, from);
-    if (depth != PG_NONE) {
-        say(&body, ",\"depth\":%u", depth);
+    pg_breadth_first(pg, flood, &ids, &depths);
+    page_say(&body, "\"walk\":\"breadth_first\",\"from\":{\"%s\":%u}", flood->from.kind,
+             flood->from.id);
+    if (flood->depth != PG_NONE) {
+        page_say(&body, ",\"depth\":%u", flood->depth);
     }
-    if (limit != 0) {
-        say(&body, ",\"limit\":%u", limit);
+    if (flood->limit != 0) {
+        page_say(&body, ",\"limit\":%u", flood->limit);
     }
-    say(&wanted, "{\"revision\":1,%s,\"ids\":", body.text);
-    say_list(&wanted, &ids);
-    say(&wanted, ",\"depths\":");
-    say_list(&wanted, &depths);
-    say(&wanted, "}");
+    page_say(&wanted, "{\"revision\":1,%s,\"ids\":", body.text);
+    page_say_list(&wanted, &ids);
+    page_say(&wanted, ",\"depths\":");
+    page_say_list(&wanted, &depths);
+    page_say(&wanted, "}");
     traverse(b, &wanted, "{%s}", body.text);
 }
 
@@ -144,14 +153,14 @@ static void try_floods(api_bench *b, const pg_mesh *pg)
     for (unsigned v = 0; v < pg->vertices; v++) {
         for (unsigned depth = 0; depth < 4; depth++) {
             try_rings(b, pg, v, depth);
-            try_flood(b, pg, VERTEX, v, depth, 0);
+            try_flood(b, pg, &(pg_flood){{specimen_kinds[VERTEX].name, v}, depth, 0});
         }
-        try_flood(b, pg, VERTEX, v, PG_NONE, 0);
-        try_flood(b, pg, VERTEX, v, PG_NONE, 3);
+        try_flood(b, pg, &(pg_flood){{specimen_kinds[VERTEX].name, v}, PG_NONE, 0});
+        try_flood(b, pg, &(pg_flood){{specimen_kinds[VERTEX].name, v}, PG_NONE, 3});
     }
     for (unsigned f = 0; f < pg->faces; f++) {
-        try_flood(b, pg, FACE, f, 1, 2);
-        try_flood(b, pg, FACE, f, PG_NONE, 0);
+        try_flood(b, pg, &(pg_flood){{specimen_kinds[FACE].name, f}, 1, 2});
+        try_flood(b, pg, &(pg_flood){{specimen_kinds[FACE].name, f}, PG_NONE, 0});
     }
     try_loops(b, pg);
 }
@@ -167,16 +176,24 @@ static unsigned at(const cJSON *list, int i)
     return (unsigned)cJSON_GetArrayItem(list, i)->valuedouble;
 }
 
+/* The length of the shortest paths between two vertices, in edges or as the sum of the lengths of
+ * the edges; HUGE_VAL if there is no path. */
+typedef struct distance {
+    unsigned from, to;
+    bool by_length;
+    double value;
+} distance;
+
 /* There can be several shortest paths, and each of them is correct, so the test checks that the
  * answer is a path of the shortest length. */
-static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigned to, bool length,
-                         double wanted)
+static void try_shortest(api_bench *b, const pg_mesh *pg, const distance *d)
 {
+    const double wanted = d->value;
     char body[256];
     snprintf(body, sizeof body,
              "{\"walk\":\"shortest_path\",\"from\":{\"vertex\":%u},\"to\":{\"vertex\":%u},"
              "\"by\":\"%s\"}",
-             from, to, length ? "length" : "edges");
+             d->from, d->to, d->by_length ? "length" : "edges");
     bench_reply r = bench_send(b, "POST", "/v1/meshes/m/traverse", NULL, body);
     assert_int_equal(r.status, 200);
     const cJSON *vertices = cJSON_GetObjectItemCaseSensitive(r.json, "vertices");
@@ -190,13 +207,13 @@ static void try_shortest(api_bench *b, const pg_mesh *pg, unsigned from, unsigne
     int steps = cJSON_GetArraySize(edges);
     double total = 0;
     assert_int_equal(cJSON_GetArraySize(vertices), steps + 1);
-    assert_int_equal(at(vertices, 0), from);
-    assert_int_equal(at(vertices, steps), to);
+    assert_int_equal(at(vertices, 0), d->from);
+    assert_int_equal(at(vertices, steps), d->to);
     for (int i = 0; i < steps; i++) {
         unsigned e = at(edges, i), p = at(vertices, i), q = at(vertices, i + 1);
         assert_true((pg->origin[2 * e] == p && pg->origin[2 * e + 1] == q) ||
                     (pg->origin[2 * e] == q && pg->origin[2 * e + 1] == p));
-        total += length ? pg_length(pg, e) : 1;
+        total += d->by_length ? pg_length(pg, e) : 1;
     }
     assert_true(fabs(total - wanted) < 1e-9 && fabs(sum->valuedouble - wanted) < 1e-9);
     bench_reply_free(&r);
@@ -209,7 +226,7 @@ static void try_all_shortest(api_bench *b, const pg_mesh *pg)
         pg_distances(pg, length == 1, distances);
         for (unsigned i = 0; i < pg->vertices; i++) {
             for (unsigned j = 0; j < pg->vertices; j++) {
-                try_shortest(b, pg, i, j, length == 1, distances[i][j]);
+                try_shortest(b, pg, &(distance){i, j, length == 1, distances[i][j]});
             }
         }
     }
@@ -230,10 +247,10 @@ static void try_edges(api_bench *b, const pg_mesh *pg)
             page wanted = {.used = 0};
             const char *name = ring == 1 ? "edge_ring" : "edge_loop";
             pg_edges(pg, ring == 1, e, &edges, &closed);
-            say(&wanted, "{\"revision\":1,\"walk\":\"%s\",\"from\":{\"edge\":%u},\"edges\":", name,
-                e);
-            say_list(&wanted, &edges);
-            say(&wanted, ",\"closed\":%s}", closed ? "true" : "false");
+            page_say(&wanted,
+                     "{\"revision\":1,\"walk\":\"%s\",\"from\":{\"edge\":%u},\"edges\":", name, e);
+            page_say_list(&wanted, &edges);
+            page_say(&wanted, ",\"closed\":%s}", closed ? "true" : "false");
             traverse(b, &wanted, "{\"walk\":\"%s\",\"from\":{\"edge\":%u}}", name, e);
         }
     }
@@ -252,19 +269,19 @@ static void try_boundaries(api_bench *b, const pg_mesh *pg)
     static pg_list loops[PG_FACES];
     page wanted = {.used = 0};
     unsigned count = pg_boundaries(pg, loops);
-    say(&wanted, "{\"revision\":1,\"loops\":[");
+    page_say(&wanted, "{\"revision\":1,\"loops\":[");
     for (unsigned i = 0; i < count; i++) {
-        say(&wanted, "%s{\"halfedge\":%u,\"length\":%u,\"halfedges\":", i == 0 ? "" : ",",
-            loops[i].ids[0], loops[i].count);
-        say_list(&wanted, &loops[i]);
-        say(&wanted, ",\"vertices\":[");
+        page_say(&wanted, "%s{\"halfedge\":%u,\"length\":%u,\"halfedges\":", i == 0 ? "" : ",",
+                 loops[i].ids[0], loops[i].count);
+        page_say_list(&wanted, &loops[i]);
+        page_say(&wanted, ",\"vertices\":[");
         for (unsigned j = 0; j < loops[i].count; j++) {
-            say(&wanted, "%s%u", j == 0 ? "" : ",", pg->origin[loops[i].ids[j]]);
+            page_say(&wanted, "%s%u", j == 0 ? "" : ",", pg->origin[loops[i].ids[j]]);
         }
-        say(&wanted, "]}");
+        page_say(&wanted, "]}");
     }
-    say(&wanted, "]}");
-    expect_get(b, &wanted, "/v1/meshes/m/boundaries");
+    page_say(&wanted, "]}");
+    page_expect_get(b, &wanted, "/v1/meshes/m/boundaries");
 }
 
 static void say_component(page *p, const pg_mesh *pg, const unsigned *lowest, unsigned face)
@@ -278,8 +295,8 @@ static void say_component(page *p, const pg_mesh *pg, const unsigned *lowest, un
             seen[pg->corners[f][i]] = true;
         }
     }
-    say(p, "%s{\"faces\":%u,\"vertices\":%u,\"face\":%u}", face == 0 ? "" : ",", faces, vertices,
-        face);
+    page_say(p, "%s{\"faces\":%u,\"vertices\":%u,\"face\":%u}", face == 0 ? "" : ",", faces,
+             vertices, face);
 }
 
 static void try_components(api_bench *b, const pg_mesh *pg)
@@ -289,14 +306,15 @@ static void try_components(api_bench *b, const pg_mesh *pg)
         unsigned lowest[PG_FACES];
         page wanted = {.used = 0};
         pg_components(pg, i == 2, lowest);
-        say(&wanted, "{\"revision\":1,\"by\":\"%s\",\"components\":[", i == 2 ? "vertex" : "edge");
+        page_say(&wanted, "{\"revision\":1,\"by\":\"%s\",\"components\":[",
+                 i == 2 ? "vertex" : "edge");
         for (unsigned f = 0; f < pg->faces; f++) {
             if (lowest[f] == f) {
                 say_component(&wanted, pg, lowest, f);
             }
         }
-        say(&wanted, "]}");
-        expect_get(b, &wanted, "/v1/meshes/m/components%s", queries[i]);
+        page_say(&wanted, "]}");
+        page_expect_get(b, &wanted, "/v1/meshes/m/components%s", queries[i]);
     }
 }
 
@@ -331,11 +349,11 @@ static unsigned say_inside_out(page *wanted, const pg_mesh *pg, const char *comm
         if (volumes < 0) {
             char value[HE_NUMBER_TEXT + 1];
             value[he_double_print(volumes / 6, value)] = '\0';
-            say(wanted,
-                "%s{\"code\":\"inside_out_component\",\"kind\":\"face\",\"id\":%u,"
-                "\"detail\":\"the component of face %u is closed, and its faces look inward\","
-                "\"value\":%s}",
-                comma, f, f, value);
+            page_say(wanted,
+                     "%s{\"code\":\"inside_out_component\",\"kind\":\"face\",\"id\":%u,"
+                     "\"detail\":\"the component of face %u is closed, and its faces look inward\","
+                     "\"value\":%s}",
+                     comma, f, f, value);
             comma = ",";
             count++;
         }
@@ -348,23 +366,23 @@ static void try_check(api_bench *b, const pg_mesh *pg)
     page wanted = {.used = 0};
     unsigned bowties = 0, isolated = 0, flat = 0;
     const char *comma = "";
-    say(&wanted, "{\"revision\":1,\"valid\":true,\"problems\":[],\"defects\":[");
+    page_say(&wanted, "{\"revision\":1,\"valid\":true,\"problems\":[],\"defects\":[");
     for (unsigned v = 0; v < pg->vertices; v++) {
         if (pg_fans(pg, v) > 1) {
-            say(&wanted,
-                "%s{\"code\":\"bowtie\",\"kind\":\"vertex\",\"id\":%u,"
-                "\"detail\":\"vertex %u has %u fans\"}",
-                comma, v, v, pg_fans(pg, v));
+            page_say(&wanted,
+                     "%s{\"code\":\"bowtie\",\"kind\":\"vertex\",\"id\":%u,"
+                     "\"detail\":\"vertex %u has %u fans\"}",
+                     comma, v, v, pg_fans(pg, v));
             bowties++;
             comma = ",";
         }
     }
     for (unsigned v = 0; v < pg->vertices; v++) {
         if (pg_is_isolated(pg, v)) {
-            say(&wanted,
-                "%s{\"code\":\"isolated_vertex\",\"kind\":\"vertex\",\"id\":%u,"
-                "\"detail\":\"vertex %u has no edge\"}",
-                comma, v, v);
+            page_say(&wanted,
+                     "%s{\"code\":\"isolated_vertex\",\"kind\":\"vertex\",\"id\":%u,"
+                     "\"detail\":\"vertex %u has no edge\"}",
+                     comma, v, v);
             isolated++;
             comma = ",";
         }
@@ -372,22 +390,22 @@ static void try_check(api_bench *b, const pg_mesh *pg)
     for (unsigned f = 0; f < pg->faces; f++) {
         double area[3];
         if (pg_area(pg, f, area) == 0) {
-            say(&wanted,
-                "%s{\"code\":\"degenerate_face\",\"kind\":\"face\",\"id\":%u,"
-                "\"detail\":\"face %u has no area\",\"value\":0}",
-                comma, f, f);
+            page_say(&wanted,
+                     "%s{\"code\":\"degenerate_face\",\"kind\":\"face\",\"id\":%u,"
+                     "\"detail\":\"face %u has no area\",\"value\":0}",
+                     comma, f, f);
             flat++;
             comma = ",";
         }
     }
     unsigned inside_out = say_inside_out(&wanted, pg, comma);
-    say(&wanted,
-        "],\"totals\":{\"problems\":0,\"bowtie\":%u,\"isolated_vertex\":%u,"
-        "\"duplicate_position\":0,\"zero_length_edge\":0,\"degenerate_face\":%u,"
-        "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":%u},"
-        "\"thresholds\":{\"merge\":0,\"flat\":1000,\"small\":0},\"complete\":true}",
-        bowties, isolated, flat, inside_out);
-    expect_get(b, &wanted, "/v1/meshes/m/check?merge=0&flat=1000&small=0");
+    page_say(&wanted,
+             "],\"totals\":{\"problems\":0,\"bowtie\":%u,\"isolated_vertex\":%u,"
+             "\"duplicate_position\":0,\"zero_length_edge\":0,\"degenerate_face\":%u,"
+             "\"nonplanar_face\":0,\"small_component\":0,\"inside_out_component\":%u},"
+             "\"thresholds\":{\"merge\":0,\"flat\":1000,\"small\":0},\"complete\":true}",
+             bowties, isolated, flat, inside_out);
+    page_expect_get(b, &wanted, "/v1/meshes/m/check?merge=0&flat=1000&small=0");
 }
 
 static void try_topology(api_bench *b, const pg_mesh *pg)

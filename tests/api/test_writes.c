@@ -16,13 +16,6 @@
 
 #include <cmocka.h>
 
-static const char *text_of(const bench_reply *r, const char *member)
-{
-    const cJSON *value = cJSON_GetObjectItem(r->json, member);
-    assert_true(cJSON_IsString(value));
-    return value->valuestring;
-}
-
 /* --- memory --- */
 
 typedef struct write {
@@ -173,8 +166,9 @@ static void expect_done_once(api_bench *b, const write *w, const char *const *he
                              const bench_reply *first)
 {
     char *before = state_of(b);
-    bench_reply again = bench_send_bytes(b, w->method, w->target, headers, w->body,
-                                         w->body == NULL ? 0 : strlen(w->body));
+    bench_reply again =
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body,
+                                             w->body == NULL ? 0 : strlen(w->body)});
     char *after = state_of(b);
     assert_string_equal(before, after);
     assert_true(again.status == w->status || again.status == first->status ||
@@ -201,12 +195,13 @@ static void try_write(const write *w, failing *f)
                              NULL};
     size_t length = w->body == NULL ? 0 : strlen(w->body);
     if (w->how == BEFORE) {
-        bench_done(bench_send_bytes(b, w->method, w->target, headers, w->body, length));
+        bench_done(
+            bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length}));
     }
     char *before = state_of(b);
     failing_resume();
     bench_reply r = {0};
-    bool sent = bench_try(b, w->method, w->target, headers, w->body, length, &r);
+    bool sent = bench_try(b, &(bench_request){w->method, w->target, headers, w->body, length}, &r);
     failing_end(f, sent && r.status < 300);
     char *after = state_of(b);
     bool same = strcmp(before, after) == 0;
@@ -262,12 +257,13 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     char *before = state_of(b);
     uint64_t groups = journal.groups;
     journal.refuse = refusal;
-    bench_reply r = bench_send_bytes(b, w->method, w->target, headers, w->body, length);
+    bench_reply r =
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length});
     char *after = state_of(b);
     if (r.status != status || strcmp(before, after) != 0) {
         fail_msg("%s %s: %d where the journal has no place", w->method, w->target, r.status);
     }
-    assert_string_equal(text_of(&r, "code"), code);
+    assert_string_equal(bench_text(&r, "code"), code);
     assert_string_equal(bench_header(&r, "Retry-After"), status == 503 ? "1" : "");
     /* The refusal does not wait for the disk; otherwise, when a lost change is noticed, another
      * refusal could replace it. */
@@ -276,8 +272,9 @@ static void refuse_write(const write *w, st_status refusal, int status, const ch
     assert_int_equal(journal.out, 0);
     bench_reply_free(&r);
     journal.refuse = ST_OK;
-    bench_done(bench_expect(w->status,
-                            bench_send_bytes(b, w->method, w->target, headers, w->body, length)));
+    bench_done(bench_expect(
+        w->status,
+        bench_send_bytes(b, &(bench_request){w->method, w->target, headers, w->body, length})));
     free(before);
     free(after);
     bench_free(b);
@@ -413,7 +410,7 @@ static void a_stale_write_shows_a_state(void **state)
     bench_reply r =
         bench_expect(412, bench_post(b, "/v1/meshes/m/undo", "{\"expected_revision\":2}"));
     assert_int_equal(cJSON_GetObjectItem(r.json, "revision")->valueint, 7);
-    assert_non_null(strstr(text_of(&r, "detail"), "not at revision 2"));
+    assert_non_null(strstr(bench_text(&r, "detail"), "not at revision 2"));
     assert_true(api_answer_of(r.exchange)->shown.incarnation != 0);
     assert_true(api_answer_of(r.exchange)->shown.position >= 7);
     bench_reply_free(&r);
@@ -466,10 +463,10 @@ static void lists_of_operations_have_a_price(void **state)
     }
     api_text_add(&body, "]}", sizeof "]}");
     bench_reply r = bench_expect(413, post_and_wait(b, "/v1/meshes/m/edits", body.bytes));
-    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
     int at_most = API_MAX_EDITS_ELEMENTS / (SIDE * SIDE * 4);
     int refused = 0;
-    assert_int_equal(sscanf(text_of(&r, "pointer"), "/ops/%d", &refused), 1);
+    assert_int_equal(sscanf(bench_text(&r, "pointer"), "/ops/%d", &refused), 1);
     assert_true(refused > at_most - 100 && refused <= at_most + 1);
     bench_reply_free(&r);
 
@@ -485,7 +482,7 @@ static void lists_of_operations_have_a_price(void **state)
     api_text_add(&body, "]}]}", sizeof "]}]}");
     assert_false(body.failed);
     r = bench_expect(413, post_and_wait(b, "/v1/meshes/m/edits", body.bytes));
-    assert_string_equal(text_of(&r, "code"), "limit_exceeded");
+    assert_string_equal(bench_text(&r, "code"), "limit_exceeded");
     bench_reply_free(&r);
 
     r = bench_expect(200, bench_get(b, "/v1/meshes/m"));
@@ -546,7 +543,7 @@ static void a_list_about_one_hub_becomes_a_job(void **state)
     bench_done(bench_expect(409, bench_post(b, "/v1/meshes/m/undo", "{}")));
     bench_run_jobs(b, 1);
     r = bench_expect(200, bench_get(b, job));
-    assert_string_equal(text_of(&r, "state"), "done");
+    assert_string_equal(bench_text(&r, "state"), "done");
     bench_reply_free(&r);
     bench_reply one = bench_expect(200, bench_get(b, "/v1/meshes/waited/content?format=obj"));
     r = bench_expect(200, bench_get(b, "/v1/meshes/m/content?format=obj"));
@@ -696,19 +693,19 @@ static void refusals_name_the_value_and_the_limit(void **state)
     char target[400] = "/v1/meshes?name=";
     memset(target + strlen(target), 'n', 257);
     bench_reply r = bench_expect(400, bench_post(b, target, "{\"shape\":\"cube\"}"));
-    assert_string_equal(text_of(&r, "code"), "bad_parameter");
-    assert_non_null(strstr(text_of(&r, "detail"), "256"));
+    assert_string_equal(bench_text(&r, "code"), "bad_parameter");
+    assert_non_null(strstr(bench_text(&r, "detail"), "256"));
     bench_reply_free(&r);
     r = bench_expect(400, bench_get(b, "/v1/meshes/m/vertices?limit=10001"));
-    assert_string_equal(text_of(&r, "detail"),
+    assert_string_equal(bench_text(&r, "detail"),
                         "\"limit\" cannot be \"10001\": a whole number from 1 to 10000");
     bench_reply_free(&r);
     r = bench_expect(400, bench_get(b, "/v1/meshes/m/components?by=face"));
-    assert_string_equal(text_of(&r, "detail"), "\"by\" cannot be \"face\": vertex, edge");
+    assert_string_equal(bench_text(&r, "detail"), "\"by\" cannot be \"face\": vertex, edge");
     bench_reply_free(&r);
     r = bench_expect(422,
                      bench_post(b, "/v1/meshes", "{\"vertices\":[[0,0,0]],\"faces\":[[0,1,2]]}"));
-    assert_string_equal(text_of(&r, "pointer"), "/faces/0/1");
+    assert_string_equal(bench_text(&r, "pointer"), "/faces/0/1");
     bench_reply_free(&r);
     has_supported(
         bench_expect(406, bench_send(b, "GET", "/v1/meshes/m/content",
@@ -722,7 +719,7 @@ static void refusals_name_the_value_and_the_limit(void **state)
         "model/x-off");
     r = bench_expect(200, bench_get(b, "/v1/meshes/m/edits?limit=1"));
     assert_non_null(strstr(bench_header(&r, "Link"), "rel=\"next\""));
-    assert_non_null(strstr(bench_header(&r, "Link"), text_of(&r, "next")));
+    assert_non_null(strstr(bench_header(&r, "Link"), bench_text(&r, "next")));
     bench_reply_free(&r);
     bench_free(b);
 }
@@ -742,8 +739,8 @@ static void whole_numbers_have_no_fraction(void **state)
     api_bench *b = begin();
     for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
         bench_reply r = bench_expect(400, bench_post(b, "/v1/meshes/m/edits", refused[i][0]));
-        assert_string_equal(text_of(&r, "code"), "bad_value");
-        assert_string_equal(text_of(&r, "pointer"), refused[i][1]);
+        assert_string_equal(bench_text(&r, "code"), "bad_value");
+        assert_string_equal(bench_text(&r, "pointer"), refused[i][1]);
         bench_reply_free(&r);
     }
     bench_reply r = bench_expect(200, bench_get(b, "/v1/operations"));

@@ -110,8 +110,8 @@ static struct curl_slist *header_list(const char *const *headers, bool has_body)
     return list;
 }
 
-static void record(const char *method, const char *path, const struct curl_slist *list,
-                   const char *body, size_t length, const reply *r)
+/* Writes a request, with the headers that were sent, and its answer to the recorded traffic. */
+static void record(const client_request *sent, const struct curl_slist *list, const reply *r)
 {
     bytes head = {0};
     add(&head, "", 0);
@@ -119,14 +119,15 @@ static void record(const char *method, const char *path, const struct curl_slist
         add(&head, list->data, strlen(list->data));
         add(&head, "\r\n", 2);
     }
-    traffic_record(method, path, &(traffic_message){head.data, body == NULL ? "" : body, length},
-                   r->status, &(traffic_message){r->headers, r->body, r->length});
+    const traffic_message asked = {head.data, sent->body == NULL ? "" : sent->body, sent->length};
+    traffic_record(sent->method, sent->path, &asked, r->status,
+                   &(traffic_message){r->headers, r->body, r->length});
     free(head.data);
 }
 
-reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,
-                  const char *const *headers)
+reply client_send_bytes(client *c, const client_request *request)
 {
+    const char *method = request->method, *path = request->path;
     char url[9000];
     bytes received = {0}, head = {0};
     add(&received, "", 0);
@@ -143,7 +144,7 @@ reply client_send(client *c, const char *method, const char *path, const void *b
     } else if (transport_get() == TRANSPORT_TLS) {
         curl_easy_setopt(c->curl, CURLOPT_CAINFO, transport_certificate());
     }
-    struct curl_slist *list = header_list(headers, body != NULL);
+    struct curl_slist *list = header_list(request->headers, request->body != NULL);
     curl_easy_setopt(c->curl, CURLOPT_URL, url);
     curl_easy_setopt(c->curl, CURLOPT_PATH_AS_IS, 1L);
     curl_easy_setopt(c->curl, CURLOPT_CUSTOMREQUEST, method);
@@ -157,9 +158,9 @@ reply client_send(client *c, const char *method, const char *path, const void *b
     if (strcmp(method, "HEAD") == 0) {
         curl_easy_setopt(c->curl, CURLOPT_NOBODY, 1L);
     }
-    if (body != NULL) {
-        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDS, body);
-        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)length);
+    if (request->body != NULL) {
+        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDS, request->body);
+        curl_easy_setopt(c->curl, CURLOPT_POSTFIELDSIZE_LARGE, (curl_off_t)request->length);
     }
     CURLcode code = curl_easy_perform(c->curl);
     reply r = {.body = received.data, .length = received.length, .headers = head.data};
@@ -168,16 +169,23 @@ reply client_send(client *c, const char *method, const char *path, const void *b
     }
     curl_easy_getinfo(c->curl, CURLINFO_RESPONSE_CODE, &r.status);
     if (code == CURLE_OK) {
-        record(method, path, list, body, length, &r);
+        record(request, list, &r);
     }
     curl_slist_free_all(list);
     r.json = cJSON_ParseWithLength(r.body, r.length);
     return r;
 }
 
+reply client_send(client *c, const char *method, const char *path, const char *const *headers,
+                  const char *body)
+{
+    const size_t length = body == NULL ? 0 : strlen(body);
+    return client_send_bytes(c, &(client_request){method, path, headers, body, length});
+}
+
 reply client_get(client *c, const char *path)
 {
-    return client_send(c, "GET", path, NULL, 0, NULL);
+    return client_send(c, "GET", path, NULL, NULL);
 }
 
 void client_await_running(client *c, const char *job)
@@ -193,7 +201,7 @@ void client_await_running(client *c, const char *job)
 
 reply client_post(client *c, const char *path, const char *json)
 {
-    return client_send(c, "POST", path, json, json == NULL ? 0 : strlen(json), NULL);
+    return client_send(c, "POST", path, NULL, json);
 }
 
 const char *reply_header(const reply *r, const char *name, char *value, size_t size)

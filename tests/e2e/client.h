@@ -36,10 +36,19 @@ void client_free(client *c);
 /* Makes the client trust the certificate in this file, and no other, when the daemon speaks TLS.
  * The name is borrowed. */
 void client_trust(client *c, const char *certificate);
-/* Sends a request. `body` NULL: no body. `headers` are lines "Name: value", ended by NULL; the
- * pointer may be NULL. A body without a Content-Type is sent as application/json. */
-reply client_send(client *c, const char *method, const char *path, const void *body, size_t length,
-                  const char *const *headers);
+/* Sends a request with a body of text. `headers` are lines "Name: value", ended by NULL; the
+ * pointer may be NULL. `body` NULL: no body. A body without a Content-Type is sent as
+ * application/json. */
+reply client_send(client *c, const char *method, const char *path, const char *const *headers,
+                  const char *body);
+/* A request whose body may hold any bytes; the members are as in client_send(). */
+typedef struct client_request {
+    const char *method, *path;
+    const char *const *headers;
+    const void *body;
+    size_t length; /* bytes of the body; 0 if there is none */
+} client_request;
+reply client_send_bytes(client *c, const client_request *request);
 /* Send a GET, and a POST with a JSON body. */
 reply client_get(client *c, const char *path);
 /* Waits until the job at this path runs; it must not have ended before. Among jobs that wait, a

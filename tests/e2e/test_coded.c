@@ -35,18 +35,24 @@ static void done(reply r)
 static void put_grid(client *c, const char *path, int side)
 {
     char body[128];
-    int length =
-        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
-    done(expect(201, client_send(c, "PUT", path, body, (size_t)length, NULL)));
+    snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    done(expect(201, client_send(c, "PUT", path, NULL, body)));
 }
 
-static reply send_coded(client *c, const char *method, const char *path, const char *coding,
-                        const char *type, const void *body, size_t length)
+/* A compressed body, and the type of what is compressed. */
+typedef struct coded_body {
+    const char *coding, *type;
+    const char *bytes;
+    size_t length;
+} coded_body;
+
+static reply send_coded(client *c, const char *method, const char *path, const coded_body *body)
 {
     char encoding[60], content[60];
-    snprintf(encoding, sizeof encoding, "Content-Encoding: %s", coding);
-    snprintf(content, sizeof content, "Content-Type: %s", type);
-    return client_send(c, method, path, body, length, ARGUMENTS(encoding, content));
+    snprintf(encoding, sizeof encoding, "Content-Encoding: %s", body->coding);
+    snprintf(content, sizeof content, "Content-Type: %s", body->type);
+    return client_send_bytes(c, &(client_request){method, path, ARGUMENTS(encoding, content),
+                                                  body->bytes, body->length});
 }
 
 static void unfold(reply *r, const char *coding)
@@ -63,19 +69,18 @@ static void unfold(reply *r, const char *coding)
 
 /* Sends a request all at once, without looking for an early answer, and requires this status even
  * if the daemon closes the connection before it has read the body. */
-static void refused(daemon_process *d, const char *target, const char *coding, const char *type,
-                    const char *body, size_t length, int status)
+static void refused(daemon_process *d, const char *target, const coded_body *body, int status)
 {
-    char *request = malloc(length + 400);
+    char *request = malloc(body->length + 400);
     assert_non_null(request);
     int head = snprintf(request, 400,
                         "%s HTTP/1.1\r\nHost: localhost\r\nContent-Type: %s\r\n"
                         "Content-Encoding: %s\r\nContent-Length: %zu\r\n\r\n",
-                        target, type, coding, length);
-    memcpy(request + head, body, length);
-    char *answer = client_raw(d, request, (size_t)head + length, 1, false);
+                        target, body->type, body->coding, body->length);
+    memcpy(request + head, body->bytes, body->length);
+    char *answer = client_raw(d, request, (size_t)head + body->length, 1, false);
     if (client_raw_status(answer) != status) {
-        fail_msg("%s in %s: %.500s", target, coding, answer);
+        fail_msg("%s in %s: %.500s", target, body->coding, answer);
     }
     free(answer);
     free(request);
@@ -126,18 +131,23 @@ static void bombs_stay_small(void **state)
     for (size_t i = 0; i < 2; i++) {
         size_t length, before = daemon_peak(d);
         char *zeros = bomb_of(both[i], '\0', &length);
-        refused(d, "POST /v1/meshes", both[i], "model/obj", zeros, length, 422); /* for its NULs */
-        refused(d, "POST /v1/meshes", both[i], "application/json", zeros, length, 400);
-        refused(d, "POST /v1/meshes/m/edits", both[i], "application/json", zeros, length, 413);
+        refused(d, "POST /v1/meshes", &(coded_body){both[i], "model/obj", zeros, length},
+                422); /* for its NULs */
+        refused(d, "POST /v1/meshes", &(coded_body){both[i], "application/json", zeros, length},
+                400);
+        refused(d, "POST /v1/meshes/m/edits",
+                &(coded_body){both[i], "application/json", zeros, length}, 413);
         free(zeros);
         char *blanks = bomb_of(both[i], ' ', &length);
-        refused(d, "PUT /v1/meshes/b", both[i], "application/json", blanks, length, 413);
-        refused(d, "PUT /v1/meshes/b", both[i], "model/obj", blanks, length, 413);
-        refused(d, "PUT /v1/meshes/b", both[i], "model/x-off", blanks, length, 413);
+        refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "application/json", blanks, length},
+                413);
+        refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/obj", blanks, length}, 413);
+        refused(d, "PUT /v1/meshes/b", &(coded_body){both[i], "model/x-off", blanks, length}, 413);
         /* A bomb inside another bomb is decompressed once only, so its bytes are simply no mesh. */
         size_t folded;
         char *nested = coding_pack(both[1 - i], blanks, length, &folded);
-        reply r = send_coded(c, "PUT", "/v1/meshes/b", both[1 - i], "model/obj", nested, folded);
+        reply r = send_coded(c, "PUT", "/v1/meshes/b",
+                             &(coded_body){both[1 - i], "model/obj", nested, folded});
         assert_true(r.status == 400 || r.status == 413);
         reply_free(&r);
         free(nested);
@@ -259,7 +269,7 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
         for (size_t k = 0; k < 2; k++) {
             char accept[60];
             snprintf(accept, sizeof accept, "Accept-Encoding: %s", both[k]);
-            reply r = expect(200, client_send(c, "GET", targets[i], NULL, 0, ARGUMENTS(accept)));
+            reply r = expect(200, client_send(c, "GET", targets[i], ARGUMENTS(accept), NULL));
             assert_true(r.length < plain.length);
             assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), "");
             unfold(&r, both[k]);
@@ -274,12 +284,12 @@ static void large_answers_are_coded_as_they_are_sent(void **state)
      * HEAD has the same one. */
     const char *const zstd[] = {"Accept-Encoding: gzip;q=0.5, zstd", NULL};
     char length[40];
-    reply r = expect(200, client_send(c, "GET", "/v1/meshes/m/faces?limit=50", NULL, 0, zstd));
+    reply r = expect(200, client_send(c, "GET", "/v1/meshes/m/faces?limit=50", zstd, NULL));
     snprintf(length, sizeof length, "%zu", r.length);
     assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), length);
     unfold(&r, "zstd");
     reply_free(&r);
-    r = expect(200, client_send(c, "HEAD", "/v1/meshes/m/faces?limit=50", NULL, 0, zstd));
+    r = expect(200, client_send(c, "HEAD", "/v1/meshes/m/faces?limit=50", zstd, NULL));
     assert_string_equal(reply_header(&r, "Content-Length", value, sizeof value), length);
     reply_free(&r);
     client_free(c);
@@ -343,7 +353,7 @@ static void an_upload_that_breaks_off_leaves_nothing(void **state)
     client *c = client_new(d);
     put_grid(c, "/v1/meshes/m", SIDE);
     reply file = expect(200, client_get(c, targets[0]));
-    done(expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
+    done(expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, NULL)));
     double before = counted(c);
     static const char *const codings[] = {"identity", "gzip", "zstd"};
     for (size_t i = 0; i < 3; i++) {
@@ -394,20 +404,23 @@ static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
         char first[80], jobs[2][80], events[100];
         snprintf(encoding, sizeof encoding, "Content-Encoding: %s", both[i]);
         reply r = expect(
-            202, client_send(c, "PUT", "/v1/meshes/before", lasting, sizeof lasting - 1,
-                             ARGUMENTS("Prefer: respond-async", "Content-Type: application/json")));
+            202, client_send(c, "PUT", "/v1/meshes/before",
+                             ARGUMENTS("Prefer: respond-async", "Content-Type: application/json"),
+                             lasting));
         reply_header(&r, "Location", first, sizeof first);
         reply_free(&r);
         client_await_running(c, first);
         for (int k = 0; k < 2; k++) {
-            r = expect(202, client_send(c, "PUT", ids[k], packed, length,
-                                        ARGUMENTS("Prefer: respond-async",
-                                                  "Content-Type: model/ply", encoding)));
+            r = expect(202, client_send_bytes(
+                                c, &(client_request){"PUT", ids[k],
+                                                     ARGUMENTS("Prefer: respond-async",
+                                                               "Content-Type: model/ply", encoding),
+                                                     packed, length}));
             reply_header(&r, "Location", jobs[k], sizeof jobs[k]);
             reply_free(&r);
         }
-        done(expect(202, client_send(c, "DELETE", jobs[1], NULL, 0, NULL)));
-        done(expect(202, client_send(c, "DELETE", first, NULL, 0, NULL)));
+        done(expect(202, client_send(c, "DELETE", jobs[1], NULL, NULL)));
+        done(expect(202, client_send(c, "DELETE", first, NULL, NULL)));
         snprintf(events, sizeof events, "%s/events", jobs[0]);
         r = expect(200, client_get(c, events));
         assert_non_null(strstr(r.body, "\"progress\":1,"));
@@ -420,7 +433,7 @@ static void jobs_of_coded_uploads_end_and_are_cancelled(void **state)
         assert_string_equal(reply_string(&r, "state"), "cancelled");
         reply_free(&r);
         done(expect(404, client_get(c, "/v1/meshes/never")));
-        done(expect(204, client_send(c, "DELETE", ids[0], NULL, 0, NULL)));
+        done(expect(204, client_send(c, "DELETE", ids[0], NULL, NULL)));
         free(packed);
     }
     reply_free(&file);
@@ -436,15 +449,15 @@ static void it_can_be_switched_off(void **state)
     char value[40];
     put_grid(c, "/v1/meshes/m", 30);
     reply r = expect(
-        200, client_send(c, "GET", targets[0], NULL, 0, ARGUMENTS("Accept-Encoding: gzip, zstd")));
+        200, client_send(c, "GET", targets[0], ARGUMENTS("Accept-Encoding: gzip, zstd"), NULL));
     assert_string_equal(reply_header(&r, "Content-Encoding", value, sizeof value), "");
     reply_free(&r);
     /* A short body whose coding is x-gzip, the old name of gzip, must be read, too. */
     static const char body[] = "{\"shape\":\"cube\"}";
     size_t length;
     char *packed = coding_pack("gzip", body, sizeof body - 1, &length);
-    done(expect(201,
-                send_coded(c, "POST", "/v1/meshes", "x-gzip", "application/json", packed, length)));
+    done(expect(201, send_coded(c, "POST", "/v1/meshes",
+                                &(coded_body){"x-gzip", "application/json", packed, length})));
     free(packed);
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);

@@ -26,8 +26,8 @@ static void *come_and_go(void *context)
     for (int i = 0; i < REQUESTS; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/x%d", i % MESHES);
-        reply r = v->removes ? client_send(c, "DELETE", path, NULL, 0, NULL)
-                             : client_send(c, "PUT", path, cube, sizeof cube - 1, NULL);
+        reply r = v->removes ? client_send(c, "DELETE", path, NULL, NULL)
+                             : client_send(c, "PUT", path, NULL, cube);
         bool good =
             v->removes ? r.status == 204 || r.status == 404 : r.status == 200 || r.status == 201;
         if (!good && v->strange == 0) {
@@ -78,7 +78,7 @@ static void each_edit_of_concurrent_writers_is_applied_once(void **state)
     (void)state;
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
     client *c = client_new(d);
-    reply r = client_send(c, "PUT", "/v1/meshes/shared", "{\"shape\":\"cube\"}", 16, NULL);
+    reply r = client_send(c, "PUT", "/v1/meshes/shared", NULL, "{\"shape\":\"cube\"}");
     assert_int_equal(r.status, 201);
     reply_free(&r);
     visitor visitors[CLIENTS];

@@ -10,6 +10,7 @@
 
 #include "op/op.h"
 #include "system/clock.h"
+#include "tests/seed.h"
 
 #include <dirent.h>
 #include <inttypes.h>
@@ -27,15 +28,9 @@
 
 #define EVENTS "/v1/meshes/m/events"
 
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
-}
-
 static void put_mesh(client *c, const char *body)
 {
-    reply r = client_send(c, "PUT", "/v1/meshes/m", body, strlen(body), NULL);
+    reply r = client_send(c, "PUT", "/v1/meshes/m", NULL, body);
     assert_true(r.status == 200 || r.status == 201);
     reply_free(&r);
 }
@@ -64,7 +59,7 @@ static void dump_kind(client *c, mirror *m, he_kind kind)
     static const char *const lines[] = {"Accept: application/x-ndjson", NULL};
     char target[64];
     (void)snprintf(target, sizeof target, "/v1/meshes/m/%s", he_kind_plural(kind));
-    reply r = client_send(c, "GET", target, NULL, 0, lines);
+    reply r = client_send(c, "GET", target, lines, NULL);
     assert_int_equal(r.status, 200);
     bool ended = false;
     char *rest = NULL;
@@ -224,8 +219,8 @@ static uint64_t random_request(copy *c, md_random *r)
 static void a_copy_stays_equal_through_random_edits(void **state)
 {
     (void)state;
-    uint64_t edits = number_from("EDITS", 2000), done = 0, asked = 0, last = 1;
-    md_random random = {number_from("SEED", (uint64_t)time(NULL))};
+    uint64_t edits = seed_setting("EDITS", 2000), done = 0, asked = 0, last = 1;
+    md_random random = {seed_setting("SEED", (uint64_t)time(NULL))};
     printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", random.state, edits);
     daemon_process *d = daemon_start((const char *const[]){"--log", "off", NULL});
     copy c = {.daemon = d, .client = client_new(d)};
@@ -273,7 +268,7 @@ static void an_id_of_another_incarnation_is_a_resync(void **state)
     assert_int_equal(post(c, "/v1/meshes/m/edits", POKE), 2);
     assert_string_equal(listener_next(l, true), "edit");
     (void)snprintf(id, sizeof id, "%s", l->events.id);
-    reply r = client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL);
+    reply r = client_send(c, "DELETE", "/v1/meshes/m", NULL, NULL);
     assert_int_equal(r.status, 204);
     reply_free(&r);
     assert_string_equal(listener_next(l, true), "bye");
@@ -411,7 +406,7 @@ static void send_until_done(const daemon_process *d, const char *method, const c
     long status = 0;
     for (int tries = 0; tries < 20 && status != 200 && status != 201; tries++) {
         client *c = client_new(d);
-        reply r = client_send(c, method, path, body, strlen(body), NULL);
+        reply r = client_send(c, method, path, NULL, body);
         status = r.status;
         reply_free(&r);
         client_free(c);
@@ -495,7 +490,7 @@ static void closed_listeners_free_their_descriptors(void **state)
         daemon_start((const char *const[]){"--log", "off", "--heartbeat", "3600", NULL});
     client *c = client_new(d);
     reply_done(
-        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}", 16, NULL)));
+        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", NULL, "{\"shape\":\"cube\"}")));
     size_t before = open_descriptors(d);
     for (int i = 0; i < GONE; i++) {
         gone[i] = listener_open(d, "/v1/meshes/m/events", NULL, 0);

@@ -46,7 +46,7 @@ static char *dump(uint64_t revision)
         snprintf(which, sizeof which, "?revision=%" PRIu64, revision);
     }
     snprintf(path, sizeof path, "/v1/meshes/m/halfedges%s", which);
-    reply links = reply_expect(200, client_send(http, "GET", path, NULL, 0, lines));
+    reply links = reply_expect(200, client_send(http, "GET", path, lines, NULL));
     snprintf(path, sizeof path, "/v1/meshes/m/content%s", which);
     reply content = reply_expect(200, client_get(http, path));
     char *text = malloc(links.length + content.length + 1);
@@ -92,7 +92,7 @@ static void every_depth_is_what_it_was(void **state)
     (void)state;
     md_random random = {seed_of_run()};
     static const char ball[] = "{\"shape\":\"icosphere\",\"subdivisions\":1}";
-    reply r = client_send(http, "PUT", "/v1/meshes/m", ball, sizeof ball - 1, NULL);
+    reply r = client_send(http, "PUT", "/v1/meshes/m", NULL, ball);
     r = reply_expect(201, r);
     reply_free(&r);
     char *dumps[REVISIONS + 1] = {NULL};

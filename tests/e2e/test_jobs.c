@@ -23,7 +23,7 @@ static const char *const async[] = {"Prefer: respond-async", "Content-Type: appl
 static void submit(client *c, const char *method, const char *target, const char *body,
                    char path[80])
 {
-    reply r = client_send(c, method, target, body, strlen(body), async);
+    reply r = client_send(c, method, target, async, body);
     if (r.status != 202) {
         fail_msg("%s %s: %ld %s", method, target, r.status, r.body);
     }
@@ -51,8 +51,10 @@ static int hear_an_import(client *c, const reply *file)
 {
     char first[80], second[80], events[100];
     submit(c, "PUT", "/v1/meshes/before", TORUS("700"), first);
-    reply r = client_send(c, "PUT", "/v1/meshes/copy", file->body, file->length,
-                          ARGUMENTS("Prefer: respond-async", "Content-Type: model/ply"));
+    reply r = client_send_bytes(
+        c, &(client_request){"PUT", "/v1/meshes/copy",
+                             ARGUMENTS("Prefer: respond-async", "Content-Type: model/ply"),
+                             file->body, file->length});
     assert_int_equal(r.status, 202);
     reply_header(&r, "Location", second, sizeof second);
     reply_free(&r);
@@ -84,7 +86,7 @@ static void an_import_tells_how_far_it_is(void **state)
     (void)state;
     daemon_process *d = daemon_start(ARGUMENTS("--log", "off", "--jobs", "1"));
     client *c = client_new(d);
-    reply r = client_send(c, "PUT", "/v1/meshes/t", TORUS("1000"), strlen(TORUS("1000")), NULL);
+    reply r = client_send(c, "PUT", "/v1/meshes/t", NULL, TORUS("1000"));
     assert_int_equal(r.status, 201);
     reply_free(&r);
     reply file = client_get(c, "/v1/meshes/t/content?format=ply");
@@ -107,7 +109,7 @@ static void a_job_is_cancelled(void **state)
     client *c = client_new(d);
     char path[80];
     submit(c, "PUT", "/v1/meshes/huge", TORUS("4000"), path);
-    reply r = client_send(c, "DELETE", path, NULL, 0, NULL);
+    reply r = client_send(c, "DELETE", path, NULL, NULL);
     assert_int_equal(r.status, 202);
     reply_free(&r);
     r = await(c, path);
@@ -127,8 +129,7 @@ static void a_full_queue_refuses(void **state)
     client *c = client_new(d);
     int taken = 0;
     reply r;
-    while ((r = client_send(c, "POST", "/v1/meshes", TORUS("4000"), strlen(TORUS("4000")), async))
-               .status == 202) {
+    while ((r = client_send(c, "POST", "/v1/meshes", async, TORUS("4000"))).status == 202) {
         taken++;
         reply_free(&r);
     }
@@ -149,7 +150,7 @@ static void a_long_edit_is_busy_readable_and_undone(void **state)
     client *c = client_new(d);
     char path[80];
     static const char poke[] = "{\"op\":\"face_poke\",\"face\":0}";
-    reply r = client_send(c, "PUT", "/v1/meshes/m", TORUS("600"), strlen(TORUS("600")), NULL);
+    reply r = client_send(c, "PUT", "/v1/meshes/m", NULL, TORUS("600"));
     assert_int_equal(r.status, 201);
     reply_free(&r);
     reply before = client_get(c, "/v1/meshes/m/content?format=ply");
@@ -176,7 +177,7 @@ static void a_long_edit_is_busy_readable_and_undone(void **state)
     assert_int_equal((int)reply_number(&r, "result.revision"), 2);
     reply_free(&r);
     for (int i = 0; i < 2; i++) {
-        r = client_send(c, "POST", "/v1/meshes/m/undo", NULL, 0, NULL);
+        r = client_send(c, "POST", "/v1/meshes/m/undo", NULL, NULL);
         assert_int_equal(r.status, 200);
         reply_free(&r);
     }

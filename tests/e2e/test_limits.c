@@ -88,19 +88,17 @@ static void a_quota_counts_meshes_from_before_a_restart(void **state)
     client *c = client_new(d);
     for (int i = 0; i < 2; i++) {
         const char *id = i == 0 ? "/v1/meshes/a" : "/v1/meshes/b";
-        reply_done(reply_expect(201, client_send(c, "PUT", id, cube, sizeof cube - 1, headers)));
+        reply_done(reply_expect(201, client_send(c, "PUT", id, headers, cube)));
     }
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
     d = daemon_start(arguments);
     c = client_new(d);
-    reply r =
-        reply_expect(507, client_send(c, "POST", "/v1/meshes", cube, sizeof cube - 1, headers));
+    reply r = reply_expect(507, client_send(c, "POST", "/v1/meshes", headers, cube));
     assert_string_equal(reply_string(&r, "code"), "quota");
     reply_done(r);
-    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/a", NULL, 0, headers)));
-    reply_done(
-        reply_expect(201, client_send(c, "POST", "/v1/meshes", cube, sizeof cube - 1, headers)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/a", headers, NULL)));
+    reply_done(reply_expect(201, client_send(c, "POST", "/v1/meshes", headers, cube)));
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
     unlink(path);

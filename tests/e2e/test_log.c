@@ -198,8 +198,8 @@ static void a_level_says_no_more_than_asked_beside_the_requests(void **state)
 static void ask_in_trace(client *c, const char *header, const char *trace_id, char flag, char *span)
 {
     char answered[128], expected[64];
-    reply r = client_send(c, "GET", "/version", NULL, 0,
-                          (const char *const[]){header, "tracestate: a=b", NULL});
+    reply r = client_send(c, "GET", "/version",
+                          (const char *const[]){header, "tracestate: a=b", NULL}, NULL);
     assert_int_equal(r.status, 200);
     reply_header(&r, "traceparent", answered, sizeof answered);
     if (trace_id != NULL) {
@@ -247,16 +247,17 @@ static void a_page_of_another_origin_may_send_and_read_a_trace(void **state)
     daemon_process *d = daemon_start(ARGUMENTS("--allow-origin", "https://a.example"));
     client *c = client_new(d);
     reply r =
-        client_send(c, "OPTIONS", "/v1/meshes", NULL, 0,
+        client_send(c, "OPTIONS", "/v1/meshes",
                     ARGUMENTS("Origin: https://a.example", "Access-Control-Request-Method: POST",
-                              "Access-Control-Request-Headers: authorization,traceparent"));
+                              "Access-Control-Request-Headers: authorization,traceparent"),
+                    NULL);
     reply_header(&r, "Access-Control-Allow-Headers", text, sizeof text);
     assert_non_null(strstr(text, "Authorization"));
     assert_non_null(strstr(text, "traceparent"));
     reply_free(&r);
     r = client_send(
-        c, "GET", "/v1/meshes", NULL, 0,
-        ARGUMENTS("Origin: https://a.example", "traceparent: 00-" TRACE "-" PARENT "-01"));
+        c, "GET", "/v1/meshes",
+        ARGUMENTS("Origin: https://a.example", "traceparent: 00-" TRACE "-" PARENT "-01"), NULL);
     assert_int_equal(r.status, 200);
     reply_header(&r, "Access-Control-Expose-Headers", text, sizeof text);
     assert_non_null(strstr(text, "traceparent"));
@@ -323,11 +324,11 @@ static void no_token_and_no_ticket_is_ever_said(void **state)
                                    "--slow", "1", "--log-format", formats[i]));
         client *c = client_new(d);
         const char *const as_me[] = {bearer, "Content-Type: application/json", NULL};
-        reply r = client_send(c, "PUT", "/v1/meshes/m", "{\"shape\":\"cube\"}", 16, as_me);
+        reply r = client_send(c, "PUT", "/v1/meshes/m", as_me, "{\"shape\":\"cube\"}");
         assert_int_equal(r.status, 201);
         reply_free(&r);
         static const char wanted[] = "{\"path\":\"/v1/meshes/m\"}";
-        r = client_send(c, "POST", "/v1/tickets", wanted, sizeof wanted - 1, as_me);
+        r = client_send(c, "POST", "/v1/tickets", as_me, wanted);
         assert_int_equal(r.status, 200);
         char ticket[512];
         snprintf(ticket, sizeof ticket, "%s", reply_string(&r, "path"));

@@ -2,10 +2,9 @@
 #include "tests/e2e/client.h"
 #include "tests/e2e/daemon.h"
 #include "tests/e2e/listener.h"
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 
 #include <setjmp.h>
-#include <sqlite3.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -65,8 +64,8 @@ static void a_backup_is_made_beside_the_daemon_and_restored_without_it(void **st
 
 static reply back_up(client *c, const char *prefer)
 {
-    return client_send(c, "POST", "/v1/admin/backup", NULL, 0,
-                       prefer == NULL ? NULL : ARGUMENTS(prefer));
+    return client_send(c, "POST", "/v1/admin/backup", prefer == NULL ? NULL : ARGUMENTS(prefer),
+                       NULL);
 }
 
 static void save(const reply *r)
@@ -106,7 +105,7 @@ static void a_backup_is_asked_for_and_fetched(void **state)
     }
     (void)snprintf(left, sizeof left, "%s/sent.db", folder);
     assert_int_not_equal(access(left, F_OK), 0);
-    reply_done(reply_expect(204, client_send(c, "DELETE", job, NULL, 0, NULL)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", job, NULL, NULL)));
     r = reply_expect(200, back_up(c, "Prefer: wait=60"));
     save(&r);
     reply_done(r);
@@ -115,16 +114,6 @@ static void a_backup_is_asked_for_and_fetched(void **state)
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
     expect_run(ARGUMENTS("--store", store, "--restore", file), 0, "is restored from");
-}
-
-static void run_sql(const char *text)
-{
-    char path[FOLDER_PATH + 16];
-    sqlite3 *db;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
 static void assert_glb(const char *name, bool there)
@@ -159,8 +148,9 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     expect_run(ARGUMENTS("--verify", file), 0, "3 meshes whole, 0 not");
     expect_run(ARGUMENTS("--store", store, "--dump", dump), 0, "3 meshes written, 0 not");
     assert_glb("cube.glb", true);
-    run_sql("DELETE FROM record WHERE mesh = (SELECT key FROM mesh WHERE id = 'cube') "
-            "AND number = 3");
+    store_sql_run(folder,
+                  "DELETE FROM record WHERE mesh = (SELECT key FROM mesh WHERE id = 'cube') "
+                  "AND number = 3");
     expect_run(ARGUMENTS("--store", store, "--verify"), 1, "cube: DAMAGED: record 3 is missing");
     assert_non_null(strstr(output, "cube: whole up to then, revision 2"));
     assert_non_null(strstr(output, "2 meshes whole, 1 not"));
@@ -174,14 +164,15 @@ static void what_is_damaged_is_named_and_the_rest_is_saved(void **state)
     assert_glb("torus.glb", true);
     /* A damaged row has an id that is no valid id: it must not be used as a file name, which could
      * lead out of the folder. */
-    run_sql("UPDATE mesh SET id = '../torus' WHERE id = 'torus'");
+    store_sql_run(folder, "UPDATE mesh SET id = '../torus' WHERE id = 'torus'");
     expect_run(ARGUMENTS("--store", store, "--dump", dump), 1, "its id cannot be read");
     assert_glb("../torus.glb", false);
     /* The index of the mesh ids is damaged so that it lists none: the verification must still find
      * the meshes in the table. */
-    run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
-            "FROM sqlite_schema WHERE name = 'kept_by_time') "
-            "WHERE name = 'sqlite_autoindex_mesh_1'");
+    store_sql_run(
+        folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
+                "FROM sqlite_schema WHERE name = 'kept_by_time') "
+                "WHERE name = 'sqlite_autoindex_mesh_1'");
     expect_run(ARGUMENTS("--store", store, "--verify"), 1, "the file itself is damaged");
     assert_non_null(strstr(output, "cube: DAMAGED: record 3 is missing"));
     assert_non_null(strstr(output, "1 meshes whole, 2 not"));

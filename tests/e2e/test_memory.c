@@ -28,9 +28,8 @@ static double counted(client *c, const char *member)
 static void put_grid(client *c, const char *path, int side, long status)
 {
     char body[128];
-    int length =
-        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
-    reply_done(reply_expect(status, client_send(c, "PUT", path, body, (size_t)length, NULL)));
+    snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    reply_done(reply_expect(status, client_send(c, "PUT", path, NULL, body)));
 }
 
 static const char lift[] = "{\"op\":\"transform\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,1,0,0,0,1]}";
@@ -162,13 +161,12 @@ enum { MANY = 400, SIDE = 100, SMALLER_SIDE = 66 };
 static int fill_with_grids(client *c, char letter, int side)
 {
     char path[64], body[64];
-    int length =
-        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
     long status = 201;
     int made = 0;
     while (made < MANY && status == 201) {
         snprintf(path, sizeof path, "/v1/meshes/%c%d", letter, made);
-        reply r = client_send(c, "PUT", path, body, (size_t)length, NULL);
+        reply r = client_send(c, "PUT", path, NULL, body);
         status = r.status;
         reply_free(&r);
         made += status == 201;
@@ -182,7 +180,7 @@ static void delete_grids(client *c, char letter, int count)
     char path[64];
     for (int i = 0; i < count; i++) {
         snprintf(path, sizeof path, "/v1/meshes/%c%d", letter, i);
-        reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
+        reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, NULL)));
     }
 }
 

@@ -159,14 +159,14 @@ static void tori_are_refused_before_the_kernel_steps_in(void **state)
     for (; count < MANY && status == 201; count++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/t%d", count);
-        reply r = client_send(c, "PUT", path, body, sizeof body - 1, NULL);
+        reply r = client_send(c, "PUT", path, NULL, body);
         status = r.status;
         reply_free(&r);
     }
     assert_int_equal(status, 507);
     assert_true(count > 10 && count < MANY);
     for (int i = 0; i < count; i++) {
-        reply r = client_send(c, "PUT", "/v1/meshes/more", body, sizeof body - 1, NULL);
+        reply r = client_send(c, "PUT", "/v1/meshes/more", NULL, body);
         assert_int_equal(r.status, 507);
         reply_free(&r);
     }
@@ -174,11 +174,10 @@ static void tori_are_refused_before_the_kernel_steps_in(void **state)
     for (int i = 0; i < 4; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/t%d", i);
-        reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, 0, NULL)));
+        reply_done(reply_expect(204, client_send(c, "DELETE", path, NULL, NULL)));
     }
     reply_done(reply_expect(200, client_get(c, "/v1/meshes/t4/content?format=stl")));
-    reply_done(
-        reply_expect(201, client_send(c, "PUT", "/v1/meshes/more", body, sizeof body - 1, NULL)));
+    reply_done(reply_expect(201, client_send(c, "PUT", "/v1/meshes/more", NULL, body)));
     client_free(c);
     assert_int_equal(daemon_stop(d), 0);
     if (made) {

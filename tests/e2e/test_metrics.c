@@ -57,8 +57,8 @@ static void let_things_happen(client *c)
     reply_done(reply_expect(409, client_post(c, "/v1/meshes/m/redo", "{}")));
     reply_done(reply_expect(404, client_get(c, "/v1/meshes/none")));
     reply_done(reply_expect(404, client_get(c, "/nowhere/at/all")));
-    reply_done(reply_expect(405, client_send(c, "BREW", "/v1/meshes", NULL, 0, NULL)));
-    reply job = reply_expect(202, client_send(c, "GET", "/v1/meshes/m/content", NULL, 0, async));
+    reply_done(reply_expect(405, client_send(c, "BREW", "/v1/meshes", NULL, NULL)));
+    reply job = reply_expect(202, client_send(c, "GET", "/v1/meshes/m/content", async, NULL));
     char target[100], stream[120];
     reply_header(&job, "Location", target, sizeof target);
     snprintf(stream, sizeof stream, "%s/events", target);

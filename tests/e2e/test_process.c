@@ -133,11 +133,11 @@ static void it_offers_samples_keeps_request_ids_and_outlives_sighup(void **state
     assert_int_equal(r.status, 200);
     assert_true(cJSON_GetArraySize(reply_find(&r, "items")) >= 3);
     reply_free(&r);
-    r = client_send(c, "GET", "/livez", NULL, 0, ARGUMENTS("X-Request-Id: my-own.id_1"));
+    r = client_send(c, "GET", "/livez", ARGUMENTS("X-Request-Id: my-own.id_1"), NULL);
     char id[128];
     assert_string_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "my-own.id_1");
     reply_free(&r);
-    r = client_send(c, "GET", "/livez", NULL, 0, ARGUMENTS("X-Request-Id: bad\"id"));
+    r = client_send(c, "GET", "/livez", ARGUMENTS("X-Request-Id: bad\"id"), NULL);
     assert_string_not_equal(reply_header(&r, "X-Request-Id", id, sizeof id), "bad\"id");
     reply_free(&r);
     client_free(c);
@@ -251,7 +251,7 @@ static void sigterm_ends_the_daemon_while_clients_write(void **state)
     for (int i = 0; i < WORKERS; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/m%d", i);
-        reply r = client_send(c, "PUT", path, "{\"shape\":\"cube\"}", 16, NULL);
+        reply r = client_send(c, "PUT", path, NULL, "{\"shape\":\"cube\"}");
         assert_int_equal(r.status, 201);
         reply_free(&r);
         workers[i] = (worker){d, i, 0};

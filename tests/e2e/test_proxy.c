@@ -41,17 +41,20 @@ static void the_access_log_names_whom_a_trusted_proxy_names(void **state)
     daemon_process *d = daemon_start(ARGUMENTS(
         "--log", "access", "--trusted-proxy", "127.0.0.0/8,unix", "--trusted-proxy", "10.0.0.0/8"));
     client *c = client_new(d);
-    reply_done(reply_expect(200, client_send(c, "GET", "/livez", NULL, 0,
+    reply_done(reply_expect(200, client_send(c, "GET", "/livez",
                                              ARGUMENTS("X-Request-Id: the-first-one",
-                                                       "X-Forwarded-For: 6.6.6.6, 192.0.2.1"))));
+                                                       "X-Forwarded-For: 6.6.6.6, 192.0.2.1"),
+                                             NULL)));
     reply_done(reply_expect(
-        200, client_send(c, "GET", "/livez", NULL, 0,
+        200, client_send(c, "GET", "/livez",
                          ARGUMENTS("X-Request-Id: the-second-one",
-                                   "Forwarded: for=\"[2001:db8::7]:80\", for=10.0.0.9"))));
+                                   "Forwarded: for=\"[2001:db8::7]:80\", for=10.0.0.9"),
+                         NULL)));
     reply r = reply_expect(
-        400, client_send(c, "GET", "/livez", NULL, 0,
+        400, client_send(c, "GET", "/livez",
                          ARGUMENTS("X-Request-Id: the-third-one", "Forwarded: for=6.6.6.6",
-                                   "X-Forwarded-For: 192.0.2.1")));
+                                   "X-Forwarded-For: 192.0.2.1"),
+                         NULL));
     assert_string_equal(reply_string(&r, "code"), "bad_header");
     reply_done(r);
     client_free(c);
@@ -69,9 +72,10 @@ static void nobody_else_is_believed(void **state)
     client *c = client_new(d);
     char value[100];
     reply r = reply_expect(
-        200, client_send(c, "GET", "/livez", NULL, 0,
+        200, client_send(c, "GET", "/livez",
                          ARGUMENTS("X-Request-Id: the-first-one", "X-Forwarded-For: 192.0.2.1",
-                                   "Forwarded: for=\"", "X-Forwarded-Proto: https")));
+                                   "Forwarded: for=\"", "X-Forwarded-Proto: https"),
+                         NULL));
     reply_done(r);
     client_free(c);
     char *log = daemon_stop_and_tell(d);
@@ -107,9 +111,8 @@ static void the_scheme_is_the_one_that_the_proxy_tells(void **state)
         snprintf(host, sizeof host, "Host: %s", rows[i].host);
         snprintf(origin, sizeof origin, "Origin: %s", rows[i].origin);
         static const char body[] = "{\"shape\":\"cube\"}";
-        reply r =
-            reply_expect(rows[i].status, client_send(c, "POST", "/v1/meshes", body, sizeof body - 1,
-                                                     ARGUMENTS(proto, host, origin)));
+        reply r = reply_expect(rows[i].status, client_send(c, "POST", "/v1/meshes",
+                                                           ARGUMENTS(proto, host, origin), body));
         assert_string_equal(reply_header(&r, "Strict-Transport-Security", told, sizeof told),
                             rows[i].told);
         reply_done(r);

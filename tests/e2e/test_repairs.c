@@ -48,7 +48,7 @@ static reply run(client *c, const char *target, const char *body, size_t length,
 {
     static const char *const headers[] = {"Prefer: respond-async", "Content-Type: model/obj", NULL};
     char job[80], path[100];
-    reply r = client_send(c, "POST", target, body, length, headers);
+    reply r = client_send_bytes(c, &(client_request){"POST", target, headers, body, length});
     if (r.status != 202) {
         fail_msg("%s: %ld %s", target, r.status, r.body);
     }

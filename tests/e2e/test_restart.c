@@ -57,7 +57,7 @@ static void stop_and_start(void)
 
 static void send(const char *method, const char *path, const char *body, long status)
 {
-    reply_done(reply_expect(status, client_send(http, method, path, body, strlen(body), NULL)));
+    reply_done(reply_expect(status, client_send(http, method, path, NULL, body)));
 }
 
 /* Replaces values that differ between two processes although the content is equal, such as the
@@ -235,9 +235,9 @@ static void a_key_is_good_after_a_restart(void **state)
     for (int again = 0; again < 2; again++) {
         for (size_t i = 0; i < ROWS; i++) {
             const char *const headers[] = {rows[i].key, NULL};
-            reply r = reply_expect(again ? rows[i].again : rows[i].status,
-                                   client_send(http, rows[i].method, rows[i].path, rows[i].body,
-                                               strlen(rows[i].body), headers));
+            reply r = reply_expect(
+                again ? rows[i].again : rows[i].status,
+                client_send(http, rows[i].method, rows[i].path, headers, rows[i].body));
             assert_string_equal(reply_header(&r, "Idempotency-Replayed", tag, sizeof tag),
                                 again ? "true" : "");
             (void)reply_header(&r, "ETag", again ? tag : tags[i], sizeof tag);
@@ -249,7 +249,7 @@ static void a_key_is_good_after_a_restart(void **state)
         kill_and_start();
     }
     static const char *const other[] = {"Idempotency-Key: b", NULL};
-    reply_done(reply_expect(422, client_send(http, "POST", "/v1/meshes/m/edits", "{}", 2, other)));
+    reply_done(reply_expect(422, client_send(http, "POST", "/v1/meshes/m/edits", other, "{}")));
     reply r = reply_expect(200, client_get(http, "/v1/meshes/m"));
     assert_true(reply_number(&r, "revision") == 3);
     reply_free(&r);

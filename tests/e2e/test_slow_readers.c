@@ -44,35 +44,44 @@ static void begin_slowly(slow_client *s, const daemon_process *d, const char *pa
     assert_memory_equal(s->first, "HTTP/1.1 200", 12);
 }
 
-static bool next_byte(int fd, char *buffer, size_t *at, size_t *got, size_t size, char *out)
+/* A buffer between a socket and a reader of single bytes. */
+typedef struct incoming {
+    int fd;
+    size_t at, got; /* bytes that were read from the buffer, and received into it */
+    char bytes[1 << 16];
+} incoming;
+
+/* Reads a byte; returns false at the end of the stream. */
+static bool next_byte(incoming *in, char *out)
 {
-    if (*at == *got) {
-        ssize_t n = recv(fd, buffer, size, 0);
+    if (in->at == in->got) {
+        ssize_t n = recv(in->fd, in->bytes, sizeof in->bytes, 0);
         assert_true(n >= 0);
-        *at = 0;
-        *got = (size_t)n;
+        in->at = 0;
+        in->got = (size_t)n;
     }
-    if (*got == 0) {
+    if (in->got == 0) {
         return false;
     }
-    *out = buffer[(*at)++];
+    *out = in->bytes[in->at++];
     return true;
 }
 
 /* Reads the rest of a chunked answer, which must equal `whole` to its last byte. */
 static void end_quickly(slow_client *s, const char *whole, size_t length)
 {
-    enum { SIZE = 1 << 16 };
-    char *buffer = malloc(SIZE), line[64], c;
-    assert_non_null(buffer);
+    char line[64], c;
+    incoming *in = malloc(sizeof *in);
+    assert_non_null(in);
     char *body = strstr(s->first, "\r\n\r\n");
     assert_non_null(body);
     assert_non_null(strstr(s->first, "chunked"));
-    size_t got = (size_t)(s->first + FIRST - (body + 4)), at = 0, read = 0;
-    memcpy(buffer, body + 4, got);
+    size_t read = 0;
+    *in = (incoming){.fd = s->fd, .got = (size_t)(s->first + FIRST - (body + 4))};
+    memcpy(in->bytes, body + 4, in->got);
     for (;;) {
         size_t used = 0;
-        while (next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c != '\n' && used < 60) {
+        while (next_byte(in, &c) && c != '\n' && used < 60) {
             line[used++] = c;
         }
         line[used] = '\0';
@@ -81,16 +90,16 @@ static void end_quickly(slow_client *s, const char *whole, size_t length)
             break;
         }
         for (size_t i = 0; i < chunk; i++) {
-            assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c));
+            assert_true(next_byte(in, &c));
             assert_true(read < length && whole[read] == c);
             read++;
         }
-        assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c == '\r');
-        assert_true(next_byte(s->fd, buffer, &at, &got, SIZE, &c) && c == '\n');
+        assert_true(next_byte(in, &c) && c == '\r');
+        assert_true(next_byte(in, &c) && c == '\n');
     }
     assert_int_equal(read, length);
     close(s->fd);
-    free(buffer);
+    free(in);
 }
 
 /* There are more slow clients than workers. The requests between begin_slowly and end_quickly
@@ -103,10 +112,8 @@ static void slow_downloads_delay_nobody(void **state)
         "--log", "off", "--workers", "2", "--body-grace", "3600", "--idle-timeout", "3600", NULL});
     client *c = client_new(d);
     char body[128];
-    int length =
-        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE, SIDE);
-    reply_done(
-        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
+    snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", SIDE, SIDE);
+    reply_done(reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", NULL, body)));
     reply before = reply_expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
 
     static slow_client slow[SLOW];
@@ -127,7 +134,7 @@ static void slow_downloads_delay_nobody(void **state)
     reply after = reply_expect(200, client_get(c, "/v1/meshes/m/content?format=off"));
     assert_true(after.length != before.length ||
                 memcmp(after.body, before.body, after.length) != 0);
-    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, 0, NULL)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/m", NULL, NULL)));
 
     /* Each of the slow clients must get the mesh as it was when its request came. */
     for (int i = 0; i < SLOW; i++) {
@@ -155,10 +162,8 @@ enum {
 static void put_grid(client *c, int side)
 {
     char body[128];
-    int length =
-        snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
-    reply_done(
-        reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", body, (size_t)length, NULL)));
+    snprintf(body, sizeof body, "{\"shape\":\"grid\",\"columns\":%d,\"rows\":%d}", side, side);
+    reply_done(reply_expect(201, client_send(c, "PUT", "/v1/meshes/m", NULL, body)));
 }
 
 static void ask_and_wait(const daemon_process *d, int sockets[IDLERS])

@@ -73,7 +73,7 @@ static void end_and_begin(void)
 static reply ask(long status, const char *method, const char *path, const char *body,
                  const char *const *headers)
 {
-    return reply_expect(status, client_send(http, method, path, body, strlen(body), headers));
+    return reply_expect(status, client_send(http, method, path, headers, body));
 }
 
 static void send(const char *method, const char *path, const char *body, long status)

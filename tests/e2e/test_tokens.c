@@ -44,8 +44,7 @@ static void write_file(const char *first, const char *second)
 static reply ask(client *c, const made *who, const char *method, const char *target,
                  const char *body)
 {
-    return client_send(c, method, target, body, body == NULL ? 0 : strlen(body),
-                       who == NULL ? NULL : ARGUMENTS(who->header));
+    return client_send(c, method, target, who == NULL ? NULL : ARGUMENTS(who->header), body);
 }
 
 static void a_daemon_asks_for_tokens_and_reads_its_file_again(void **state)

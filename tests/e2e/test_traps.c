@@ -162,21 +162,30 @@ static char *bytes_of(const trap *t, size_t *length)
 /* The last result of time_ordinary(). */
 static double ordinary;
 
-static reply put_body(client *c, const daemon_process *d, const char *type, const char *coding,
-                      const char *body, size_t length, double *took)
+/* A body to send: `what` names it in messages, `coding` NULL means that it is not compressed, and
+ * `size` is its length when it is decompressed. */
+typedef struct upload {
+    const char *what, *type, *coding;
+    const char *bytes;
+    size_t length, size;
+} upload;
+
+/* Sends a body; `took` becomes the processor time of the daemon for it. */
+static reply put_body(client *c, const daemon_process *d, const upload *u, double *took)
 {
     char content[60], encoding[60];
-    snprintf(content, sizeof content, "Content-Type: %s", type);
-    snprintf(encoding, sizeof encoding, "Content-Encoding: %s", coding == NULL ? "" : coding);
-    const char *const headers[] = {content, coding == NULL ? NULL : encoding, NULL};
+    snprintf(content, sizeof content, "Content-Type: %s", u->type);
+    snprintf(encoding, sizeof encoding, "Content-Encoding: %s", u->coding == NULL ? "" : u->coding);
+    const char *const headers[] = {content, u->coding == NULL ? NULL : encoding, NULL};
+    const client_request request = {"PUT", "/v1/meshes/trap", headers, u->bytes, u->length};
     double start = daemon_cpu(d);
-    reply r = client_send(c, "PUT", "/v1/meshes/trap", body, length, headers);
+    reply r = client_send_bytes(c, &request);
     /* If the answer comes in the middle of a long body, the daemon waits a while for the rest and
      * then closes; a client that still sends may lose the answer, and sends the request again. */
     for (int tries = 0; tries < 10 && r.status < 200; tries++) {
         reply_free(&r);
         start = daemon_cpu(d);
-        r = client_send(c, "PUT", "/v1/meshes/trap", body, length, headers);
+        r = client_send_bytes(c, &request);
     }
     *took = daemon_cpu(d) - start;
     return r;
@@ -190,19 +199,21 @@ static double time_ordinary(client *c, const daemon_process *d)
     size_t length;
     char *bytes = bytes_of(&triangles, &length);
     double took;
-    reply_done(reply_expect(201, put_body(c, d, OBJ, NULL, bytes, length, &took)));
-    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/trap", NULL, 0, NULL)));
+    const upload u = {"triangles", OBJ, NULL, bytes, length, length};
+    reply_done(reply_expect(201, put_body(c, d, &u, &took)));
+    reply_done(reply_expect(204, client_send(c, "DELETE", "/v1/meshes/trap", NULL, NULL)));
     free(bytes);
     return took;
 }
 
-/* Sends a body, and fails the test if it takes more processor time or memory than a body of `size`
- * decompressed bytes may. */
-static reply send(client *c, const daemon_process *d, const char *what, const char *type,
-                  const char *coding, const char *body, size_t length, size_t size)
+/* Sends a body, and fails the test if it takes more processor time or memory than a body of its
+ * decompressed size may. */
+static reply send(client *c, const daemon_process *d, const upload *u)
 {
+    const char *what = u->what, *type = u->type;
+    const size_t size = u->size;
     double took, most;
-    reply r = put_body(c, d, type, coding, body, length, &took);
+    reply r = put_body(c, d, u, &took);
     for (int tries = 1;; tries++) {
         most = TIMES_ORDINARY * ordinary * (size > ONE ? (double)size / ONE : 1);
         if (took <= most) {
@@ -214,7 +225,7 @@ static reply send(client *c, const daemon_process *d, const char *what, const ch
         }
         reply_free(&r);
         ordinary = time_ordinary(c, d);
-        r = put_body(c, d, type, coding, body, length, &took);
+        r = put_body(c, d, u, &took);
     }
     size_t peak = daemon_peak(d);
     /* the daemon may hold the body, and the triangle soup or mesh made from it */
@@ -222,14 +233,14 @@ static reply send(client *c, const daemon_process *d, const char *what, const ch
         fail_msg("%s, %s: %zu MB", type, what, peak >> 20);
     }
     print_message("%s, %s, %s: %ld, %.3f s, %zu MB\n", type, what,
-                  coding == NULL ? "plain" : coding, r.status, took, peak >> 20);
+                  u->coding == NULL ? "plain" : u->coding, r.status, took, peak >> 20);
     return r;
 }
 
 static void try_trap(client *c, const daemon_process *d, const trap *t, const char *bytes,
                      size_t length)
 {
-    reply r = send(c, d, t->what, t->type, NULL, bytes, length, length);
+    reply r = send(c, d, &(upload){t->what, t->type, NULL, bytes, length, length});
     if (r.status != t->status || strstr(r.body, t->words) == NULL) {
         fail_msg("%s, %s: %ld instead of %ld with %s: %.300s", t->type, t->what, r.status,
                  t->status, t->words, r.body);
@@ -239,14 +250,14 @@ static void try_trap(client *c, const daemon_process *d, const trap *t, const ch
      * that reason instead. */
     size_t packed;
     char *coded = coding_pack("gzip", bytes, length, &packed);
-    r = send(c, d, t->what, t->type, "gzip", coded, packed, length);
+    r = send(c, d, &(upload){t->what, t->type, "gzip", coded, packed, length});
     if (r.status != t->status && !(r.status == 413 && length > 100 * packed)) {
         fail_msg("%s, %s in gzip: %ld instead of %ld: %.300s", t->type, t->what, r.status,
                  t->status, r.body);
     }
     reply_free(&r);
     free(coded);
-    r = client_send(c, "DELETE", "/v1/meshes/trap", NULL, 0, NULL);
+    r = client_send(c, "DELETE", "/v1/meshes/trap", NULL, NULL);
     assert_int_equal(r.status, t->status == 201 ? 204 : 404);
     reply_free(&r);
 }

@@ -86,7 +86,7 @@ static bool try_edit(writer *w, client *c, int mesh, int number, known *k)
         snprintf(header, sizeof header, "Idempotency-Key: %d-%d", w->index / 2, number);
         headers[0] = header;
     }
-    reply r = client_send(c, "POST", path, body, strlen(body), headers);
+    reply r = client_send(c, "POST", path, headers, body);
     bool good = r.status == 200,
          retry = r.status == 412 || (w->condition == KEYED && r.status == 409);
     int revision = good || r.status == 412 ? revision_of(&r) : 0;
@@ -182,7 +182,7 @@ static void write_at_once(const char *what, int meshes, condition first, conditi
     for (int i = 0; i < MESHES; i++) {
         char path[64];
         snprintf(path, sizeof path, "/v1/meshes/m%d", i);
-        reply r = client_send(c, "PUT", path, "{\"shape\":\"cube\"}", 16, NULL);
+        reply r = client_send(c, "PUT", path, NULL, "{\"shape\":\"cube\"}");
         assert_int_equal(r.status, 201);
         reply_free(&r);
         start[i] = position_of(c, i);

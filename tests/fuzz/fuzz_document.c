@@ -2,31 +2,25 @@
  * refusal; the advised repairs must make them acceptable; and a mesh that was read must be written
  * to a document that gives the same mesh again. */
 #include "fuzz/fuzz.h"
+#include "fuzz/pieces.h"
 
 #include "api/document/document_in.h"
 #include "api/document/document_out.h"
 #include "mesh/column.h"
-#include "model/random.h"
 #include "unit/fixture.h"
 #include "repair/repair.h"
 
-/* Reads the document in pieces of up to `most` bytes, each in a block of its own; 0: in one piece.
- * Returns NULL if it is refused. */
-static api_document_in *feed(const char *bytes, size_t size, uint32_t most, md_random *random,
-                             api_problem *problem)
+/* Reads a document in pieces. Returns NULL if it is refused. */
+static api_document_in *feed(fuzz_pieces pieces, api_problem *problem)
 {
     api_document_in *in = api_document_in_new(NULL);
     assert_non_null(in);
     bool good = true;
-    for (size_t at = 0; good && at < size;) {
-        size_t n = most == 0 ? size : md_from(random, 0, most);
-        n = n < size - at ? n : size - at;
-        char *piece = malloc(n == 0 ? 1 : n);
-        assert_non_null(piece);
-        memcpy(piece, bytes + at, n);
+    char *piece;
+    size_t n;
+    while (good && (piece = fuzz_pieces_next(&pieces, &n)) != NULL) {
         good = api_document_in_feed(in, piece, n, problem);
         free(piece);
-        at += n;
     }
     good = good && api_document_in_end(in, problem);
     FUZZ_REQUIRE(good == (problem->code == HE_OK), "code %d", problem->code);
@@ -102,7 +96,7 @@ static void write_and_read(const he_mesh *mesh, bool repaired, md_random *random
     unsigned advised;
     api_problem problem = {0};
     char *text = write_document(mesh, md_from(random, 1, 5000), &length);
-    api_document_in *in = feed(text, length, 1000, random, &problem);
+    api_document_in *in = feed((fuzz_pieces){text, length, 1000, random, 0}, &problem);
     FUZZ_REQUIRE(in != NULL, "%s: %s", problem.pointer, problem.detail);
     he_mesh *again = make(in, 0, &advised);
     assert_non_null(again);
@@ -128,8 +122,9 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     md_random random = {fuzz_hash(bytes, size)};
     api_problem problem = {0}, second = {0};
     const char *text = (const char *)bytes;
-    api_document_in *in = feed(text, size, 0, &random, &problem);
-    api_document_in *cut = feed(text, size, 1u << md_below(&random, 9), &random, &second);
+    api_document_in *in = feed((fuzz_pieces){text, size, 0, &random, 0}, &problem);
+    api_document_in *cut =
+        feed((fuzz_pieces){text, size, 1u << md_below(&random, 9), &random, 0}, &second);
     bool same = problem.code == second.code && strcmp(problem.detail, second.detail) == 0 &&
                 strcmp(problem.pointer, second.pointer) == 0;
     FUZZ_REQUIRE(same, "whole %s: %s, in pieces %s: %s", problem.pointer, problem.detail,

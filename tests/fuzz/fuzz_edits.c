@@ -11,11 +11,11 @@ static void edit(api_bench *b, const char *id, const char *body, size_t size)
     char target[64];
     he_mesh *before = fuzz_service_mesh(b, id);
     (void)snprintf(target, sizeof target, "/v1/meshes/%s/edits", id);
-    int status = fuzz_service_send(b, "POST", target, NULL, body, size);
+    int status = fuzz_service_send(b, &(bench_request){"POST", target, NULL, body, size});
     he_mesh *after = fuzz_service_mesh(b, id);
     FUZZ_REQUIRE(status == 200 || he_mesh_equal(before, after), "%d, and the mesh changed", status);
     (void)snprintf(target, sizeof target, "/v1/meshes/%s/undo", id);
-    status = fuzz_service_send(b, "POST", target, NULL, NULL, 0);
+    status = fuzz_service_send(b, &(bench_request){"POST", target, NULL, NULL, 0});
     he_mesh *undone = fuzz_service_mesh(b, id);
     /* if the list was refused, or contained compact, which ends the history, undo answers 409 and
      * changes nothing */

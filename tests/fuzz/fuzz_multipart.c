@@ -3,11 +3,11 @@
  * refused alike; names must be UTF-8 without control characters; and the parts, written with
  * another boundary, must be read back as they were. */
 #include "fuzz/fuzz.h"
+#include "fuzz/pieces.h"
 
 #include "api/header/multipart.h"
 #include "api/json/text.h"
 #include "base/utf8.h"
-#include "model/random.h"
 #include "unit/fixture.h"
 
 enum { MOST_TYPE = 200 };
@@ -52,20 +52,16 @@ static void begin(bodies *out, const api_part *part)
     out->parts++;
 }
 
-/* Reads a body. Returns the code of the refusal, or HE_OK. */
-static int read_in(const char *type, const uint8_t *bytes, size_t size, uint32_t most,
-                   md_random *random, bodies *out)
+/* Reads a body in pieces. Returns the code of the refusal, or HE_OK. */
+static int read_in(const char *type, fuzz_pieces pieces, bodies *out)
 {
     api_problem problem = {0};
     *out = (bodies){.parts = 0};
     api_multipart *m = api_multipart_new(type, &problem);
     bool good = m != NULL, inside = false;
-    for (size_t at = 0; at < size && good;) {
-        size_t n = most == 0 ? size : md_from(random, 0, most);
-        n = n < size - at ? n : size - at;
-        char *piece = malloc(n == 0 ? 1 : n);
-        assert_non_null(piece);
-        memcpy(piece, bytes + at, n);
+    char *piece;
+    size_t n;
+    while (good && (piece = fuzz_pieces_next(&pieces, &n)) != NULL) {
         const char *p = piece;
         for (bool more = true; more && good;) {
             api_multipart_piece got = {.bytes = NULL};
@@ -95,14 +91,13 @@ static int read_in(const char *type, const uint8_t *bytes, size_t size, uint32_t
             }
         }
         free(piece);
-        at += n;
     }
     good = good && api_multipart_end(m, &problem);
     api_multipart_free(m);
     api_text_add_string(&out->body, "--" BOUNDARY "--");
     assert_false(out->body.failed);
     assert_true(good == (problem.code == HE_OK));
-    assert_true(out->parts <= API_MAX_PARTS && out->bytes <= size);
+    assert_true(out->parts <= API_MAX_PARTS && out->bytes <= pieces.size);
     return problem.code;
 }
 
@@ -118,15 +113,15 @@ void fuzz_one(const uint8_t *bytes, size_t size)
         bytes = line + 1;
     }
     bodies whole, cut, again;
-    int code = read_in(type, bytes, size, 0, &random, &whole);
-    int second = read_in(type, bytes, size, 1u << md_below(&random, 9), &random, &cut);
+    int code = read_in(type, (fuzz_pieces){bytes, size, 0, &random, 0}, &whole);
+    int second =
+        read_in(type, (fuzz_pieces){bytes, size, 1u << md_below(&random, 9), &random, 0}, &cut);
     FUZZ_REQUIRE(code == second, "whole %d, in pieces %d", code, second);
     assert_int_equal(whole.body.length, cut.body.length);
     assert_memory_equal(whole.body.bytes, cut.body.bytes, cut.body.length);
     if (code == HE_OK) {
-        const uint8_t *made = (const uint8_t *)whole.body.bytes;
-        code = read_in("multipart/form-data; boundary=\"" BOUNDARY "\"", made, whole.body.length, 0,
-                       &random, &again);
+        code = read_in("multipart/form-data; boundary=\"" BOUNDARY "\"",
+                       (fuzz_pieces){whole.body.bytes, whole.body.length, 0, &random, 0}, &again);
         FUZZ_REQUIRE(code == HE_OK, "put together anew it is refused with %d", code);
         assert_int_equal(again.parts, whole.parts);
         assert_int_equal(again.body.length, whole.body.length);

@@ -57,7 +57,7 @@ static char *send(api_bench *b, char *text, const char *end)
     char *path = malloc(strlen(target) + 2);
     assert_non_null(path);
     (void)snprintf(path, strlen(target) + 2, "%s%s", *target == '/' ? "" : "/", target);
-    (void)fuzz_service_send(b, method, path, headers, body, length);
+    (void)fuzz_service_send(b, &(bench_request){method, path, headers, body, length});
     free(path);
     return next;
 }

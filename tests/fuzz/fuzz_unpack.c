@@ -3,11 +3,11 @@
  * to the bytes that zlib and libzstd make of them in one call. Any bytes that are compressed must
  * decompress to themselves. */
 #include "fuzz/fuzz.h"
+#include "fuzz/pieces.h"
 
 #include "api/header/pack.h"
 #include "api/header/unpack.h"
 #include "api/limits.h"
-#include "model/random.h"
 #include "tests/codings.h"
 #include "unit/fixture.h"
 
@@ -26,9 +26,8 @@ static bool take(void *context, const char *bytes, size_t length)
     return true;
 }
 
-/* Decompresses a body. Returns the code of the refusal, or HE_OK. */
-static int unfold(api_coding coding, const uint8_t *bytes, size_t size, uint32_t most,
-                  md_random *random, unfolded *out)
+/* Decompresses a body in pieces. Returns the code of the refusal, or HE_OK. */
+static int unfold(api_coding coding, fuzz_pieces pieces, unfolded *out)
 {
     api_problem problem = {0};
     *out = (unfolded){0, UINT64_C(0xCBF29CE484222325)};
@@ -36,22 +35,19 @@ static int unfold(api_coding coding, const uint8_t *bytes, size_t size, uint32_t
     api_unpack *u = api_unpack_new(coding, &room, take, out, &problem);
     assert_non_null(u);
     bool good = true;
-    for (size_t at = 0; good && at < size;) {
-        size_t n = most == 0 ? size : md_from(random, 0, most);
-        n = n < size - at ? n : size - at;
-        char *piece = malloc(n == 0 ? 1 : n);
-        assert_non_null(piece);
-        memcpy(piece, bytes + at, n);
+    char *piece;
+    size_t n;
+    while (good && (piece = fuzz_pieces_next(&pieces, &n)) != NULL) {
         size_t used = 0;
         good = api_unpack_feed(u, piece, n, &used, &problem);
         free(piece);
-        at += used;
+        pieces.at -= n - used; /* the bytes that were not taken come again */
     }
     good = good && api_unpack_end(u, &problem);
     api_unpack_free(u);
     assert_int_equal(room.lent, 0);
     assert_true(good == (problem.code == HE_OK));
-    assert_true(out->length <= API_UNPACK_FREE + API_UNPACK_RATIO * (uint64_t)size);
+    assert_true(out->length <= API_UNPACK_FREE + API_UNPACK_RATIO * (uint64_t)pieces.size);
     return problem.code;
 }
 
@@ -101,8 +97,9 @@ void fuzz_one(const uint8_t *bytes, size_t size)
     bool zstd = size >= 4 && (memcmp(bytes, frame, 4) == 0 || memcmp(bytes + 1, skipped, 3) == 0);
     api_coding coding = zstd ? API_ZSTD : API_GZIP;
     unfolded whole, cut;
-    int code = unfold(coding, bytes, size, 0, &random, &whole);
-    int second = unfold(coding, bytes, size, 1u << md_below(&random, 9), &random, &cut);
+    int code = unfold(coding, (fuzz_pieces){bytes, size, 0, &random, 0}, &whole);
+    int second =
+        unfold(coding, (fuzz_pieces){bytes, size, 1u << md_below(&random, 9), &random, 0}, &cut);
     FUZZ_REQUIRE(code == second, "whole %d, in pieces %d", code, second);
     assert_true(code != HE_NO_MEMORY);
     if (code == HE_OK) {

@@ -1,27 +1,23 @@
 #include "fuzz/reader.h"
 
 #include "fuzz/fuzz.h"
-#include "model/random.h"
+#include "fuzz/pieces.h"
 #include "query/topology.h"
 #include "repair/repair.h"
 #include "unit/format_fixture.h"
 
-/* Reads the bytes in pieces of random sizes, each in a block of its own. */
-static he_status read_cut(const char *format, const char *bytes, size_t size, md_random *random,
-                          he_import *out, he_error *err)
+/* Reads a file in pieces of random sizes. */
+static he_status read_cut(const format_file *file, md_random *random, he_import *out, he_error *err)
 {
     he_reader *reader = NULL;
-    he_status status = he_reader_new(he_format_find(format), NULL, &reader, err);
-    uint32_t most = 1u << md_below(random, 11);
-    for (size_t at = 0; at < size && status == HE_OK;) {
-        size_t n = md_from(random, 0, most);
-        n = n < size - at ? n : size - at;
-        char *piece = malloc(n == 0 ? 1 : n);
-        assert_non_null(piece);
-        memcpy(piece, bytes + at, n);
+    he_status status = he_reader_new(he_format_find(file->format), NULL, &reader, err);
+    const uint32_t most = 1u << md_below(random, 11);
+    fuzz_pieces pieces = {file->bytes, file->length, most, random, 0};
+    char *piece;
+    size_t n;
+    while (status == HE_OK && (piece = fuzz_pieces_next(&pieces, &n)) != NULL) {
         status = he_reader_feed(reader, piece, n, err);
         free(piece);
-        at += n;
     }
     if (status == HE_OK) {
         status = he_reader_finish(reader, out, err);
@@ -34,7 +30,8 @@ static he_import read_again(const char *format, const void *bytes, size_t size)
 {
     he_import import = {0};
     he_error err = {0};
-    he_status status = read_pieces(format, bytes, size, 0, NULL, &import, &err);
+    const format_file file = {format, bytes, size};
+    he_status status = read_pieces(&file, 0, NULL, &import, &err);
     FUZZ_REQUIRE(status == HE_OK, "%s: %s", format, err.text);
     return import;
 }
@@ -219,8 +216,9 @@ void fuzz_reader(const char *format, const void *bytes, size_t size)
     subject s = {format, bytes, size, {fuzz_hash(bytes, size)}};
     he_import import = {0}, other = {0};
     he_error err = {0}, second = {0};
-    he_status status = read_pieces(format, bytes, size, 0, NULL, &import, &err);
-    assert_int_equal(read_cut(format, bytes, size, &s.random, &other, &second), status);
+    const format_file file = {format, bytes, size};
+    he_status status = read_pieces(&file, 0, NULL, &import, &err);
+    assert_int_equal(read_cut(&file, &s.random, &other, &second), status);
     if (status != HE_OK) {
         bool same =
             strcmp(err.text, second.text) == 0 && err.place == second.place && err.at == second.at;

@@ -8,7 +8,8 @@ enum { UNDO_BUDGET = 8 << 20, UPLOAD = 64 << 10 };
 
 static void create(api_bench *b, const char *target, const char *body)
 {
-    assert_int_equal(fuzz_service_send(b, "PUT", target, NULL, body, strlen(body)), 201);
+    assert_int_equal(
+        fuzz_service_send(b, &(bench_request){"PUT", target, NULL, body, strlen(body)}), 201);
 }
 
 api_bench *fuzz_service_new(void)
@@ -54,11 +55,11 @@ bool fuzz_service_refines(const void *bytes, size_t size)
     return count(bytes, size, "subdivide") > 2 || count(bytes, size, "\"steps\"") > 0;
 }
 
-int fuzz_service_send(api_bench *b, const char *method, const char *target,
-                      const char *const *headers, const char *body, size_t length)
+int fuzz_service_send(api_bench *b, const bench_request *request)
 {
+    const char *method = request->method, *target = request->target;
     bench_reply r;
-    assert_true(bench_try(b, method, target, headers, body, length, &r));
+    assert_true(bench_try(b, request, &r));
     int status = r.status;
     FUZZ_REQUIRE(status >= 200 && status < 600 && status != 500 && status != 507,
                  "%s %s: %d %.300s", method, target, status, r.body);

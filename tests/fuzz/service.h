@@ -18,7 +18,6 @@ bool fuzz_service_refines(const void *bytes, size_t size);
 
 /* Sends a request, and runs jobs to their end. Returns the status of the answer; requires that the
  * answer is well-formed and that the status is not 500. */
-int fuzz_service_send(api_bench *b, const char *method, const char *target,
-                      const char *const *headers, const char *body, size_t length);
+int fuzz_service_send(api_bench *b, const bench_request *request);
 
 #endif

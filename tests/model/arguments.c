@@ -171,6 +171,14 @@ void md_give_plane(md_draft *d)
     }
 }
 
+or_plane md_plane(const md_call *c)
+{
+    const he_arg *tolerance = md_get(c, "tolerance");
+    return (or_plane){.point = md_get(c, "point")->points[0],
+                      .normal = md_get(c, "normal")->points[0],
+                      .tolerance = tolerance->given ? &tolerance->number : NULL};
+}
+
 uint64_t md_require_all(const or_mesh *o, he_kind kind, const he_arg *arg)
 {
     uint64_t refused = 0;

@@ -50,6 +50,8 @@ uint32_t md_boundary_halfedge(md_draft *d);
 /* Puts the arguments `point` and `normal`: random ones, or those of a plane through three
  * vertices. */
 void md_give_plane(md_draft *d);
+/* Returns the plane of a call, from its arguments point, normal and tolerance. */
+or_plane md_plane(const md_call *c);
 
 /* Returns what or_require refuses about any element of a list, and HE_REPEATED_ELEMENT if one is
  * repeated. */

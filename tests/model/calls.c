@@ -468,8 +468,10 @@ static uint64_t play_edge_collapse(const md_call *c, or_mesh *o, const he_mesh *
     }
     const or_edge *e = &o->edge[halfedge->given ? halfedge->id / 2 : edge->id];
     bool turned = halfedge->given && halfedge->id % 2 == 1;
-    return or_edge_collapse(o, turned ? e->b : e->a, turned ? e->a : e->b, md_get(c, "t")->number,
-                            to->given ? to->points : NULL);
+    return or_edge_collapse(o, &(or_collapse){.u = turned ? e->b : e->a,
+                                              .v = turned ? e->a : e->b,
+                                              .t = md_get(c, "t")->number,
+                                              .to = to->given ? to->points : NULL});
 }
 
 /* Draws a rotation about z, a translation, and sometimes a mirror: repeated many times, these keep
@@ -524,10 +526,8 @@ static bool draw_plane_split(md_draft *d)
     if (or_live_faces(d->o) > 40 || md_chance(d->r, 30)) {
         (void)md_pick_some(d, "face", "faces", HE_FACE, 5);
     }
-    const he_arg *tolerance = md_get(d->c, "tolerance");
-    or_plane_size size =
-        or_plane_measure(d->o, md_get(d->c, "point")->points[0], md_get(d->c, "normal")->points[0],
-                         tolerance->given ? &tolerance->number : NULL);
+    const or_plane plane = md_plane(d->c);
+    or_plane_size size = or_plane_measure(d->o, &plane);
     return !size.doubtful && d->o->vertices + size.crossed < OR_VERTICES &&
            d->o->edges + 3 * size.crossed + size.cut < OR_EDGES &&
            d->o->faces + size.crossed + size.cut < OR_FACES && size.cut < OR_LIST &&
@@ -546,14 +546,12 @@ static uint64_t play_plane_split(const md_call *c, or_mesh *o, const he_mesh *m)
             start[i] = he_origin(m, he_face_halfedge(m, (he_face){i})).i;
         }
     }
-    he_vec3 normal = md_get(c, "normal")->points[0];
+    const or_plane plane = md_plane(c);
     if (refused != 0) {
-        bool zero = fabs(normal.x) + fabs(normal.y) + fabs(normal.z) == 0;
+        bool zero = fabs(plane.normal.x) + fabs(plane.normal.y) + fabs(plane.normal.z) == 0;
         return refused | (zero || tolerance->number < 0 ? OR_BIT(HE_BAD_VALUE) : 0);
     }
-    return or_plane_split(o, md_get(c, "point")->points[0], normal,
-                          tolerance->given ? &tolerance->number : NULL, f->given ? f->ids : NULL,
-                          (uint32_t)f->count, start);
+    return or_plane_split(o, &plane, f->given ? f->ids : NULL, (uint32_t)f->count, start);
 }
 
 static bool draw_delaunay(md_draft *d)

@@ -64,7 +64,7 @@ static uint64_t play_decimate(const md_call *c, or_mesh *o, const he_mesh *m)
     for (size_t i = 0; i < delta->count && refused == 0; i++) {
         const he_record *r = &delta->records[i];
         if (r->column == HE_COL_MERGED && r->word == HE_VERTEX) {
-            refused = or_edge_collapse(o, r->row, r->before, 1, NULL);
+            refused = or_edge_collapse(o, &(or_collapse){r->row, r->before, 1, NULL});
             (void)or_derive(o);
         }
     }

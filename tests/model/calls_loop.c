@@ -149,7 +149,8 @@ static uint64_t play_loop_join(const md_call *c, or_mesh *o, const he_mesh *m)
     for (uint32_t i = 0; i < n; i++) {
         against[i] = y[(n + 1 - i) % n];
     }
-    return or_loop_join(o, x, o->left[x[0]][x[1]], against, o->left[y[0]][y[1]], n);
+    return or_loop_join(o, (or_loop){x, n, o->left[x[0]][x[1]]},
+                        (or_loop){against, n, o->left[y[0]][y[1]]});
 }
 
 /* --- loop_split --- */
@@ -215,8 +216,11 @@ static uint64_t play_loop_split(const md_call *c, or_mesh *o, const he_mesh *m)
 
 /* Returns whether some face is so nearly in the plane, or its part there is so small, that rounding
  * decides on which side it lies. */
-static bool is_doubtful(const or_mesh *o, he_vec3 point, he_vec3 normal, double within)
+static bool is_doubtful(const or_mesh *o, const or_plane *plane)
 {
+    he_vec3 point = plane->point;
+    he_vec3 normal = plane->normal;
+    double within = plane->tolerance == NULL ? 0 : *plane->tolerance;
     double length = sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     for (uint32_t f = 0; f < o->faces; f++) {
         const or_face *face = &o->face[f];
@@ -249,17 +253,13 @@ static bool draw_plane_cut(md_draft *d)
     if (md_chance(d->r, 30)) {
         md_give_number(d, "tolerance", md_chance(d->r, 5) ? -1 : md_unit(d->r) * 0.5);
     }
-    const he_arg *tolerance = md_get(d->c, "tolerance");
-    he_vec3 point = md_get(d->c, "point")->points[0];
-    he_vec3 normal = md_get(d->c, "normal")->points[0];
-    if (normal.x == 0 && normal.y == 0 && normal.z == 0) {
+    const or_plane plane = md_plane(d->c);
+    if (plane.normal.x == 0 && plane.normal.y == 0 && plane.normal.z == 0) {
         return true;
     }
-    or_plane_size size =
-        or_plane_measure(d->o, point, normal, tolerance->given ? &tolerance->number : NULL);
-    return !size.doubtful &&
-           !is_doubtful(d->o, point, normal, tolerance->given ? tolerance->number : 0) &&
-           size.crossed < OR_CORNERS / 2 && d->o->vertices + size.crossed < OR_VERTICES &&
+    or_plane_size size = or_plane_measure(d->o, &plane);
+    return !size.doubtful && !is_doubtful(d->o, &plane) && size.crossed < OR_CORNERS / 2 &&
+           d->o->vertices + size.crossed < OR_VERTICES &&
            d->o->edges + 3 * size.crossed + size.cut < OR_EDGES &&
            d->o->faces + 2 * size.crossed + size.cut < OR_FACES && size.cut < OR_LIST &&
            size.longest < OR_CORNERS;
@@ -271,8 +271,7 @@ static bool draw_plane_cut(md_draft *d)
 typedef struct cutting {
     or_mesh *o;
     he_mesh *copy;
-    he_vec3 point, normal;
-    const double *tolerance;
+    or_plane plane;
     bool above;
     uint32_t gone[OR_FACES], count;
     uint32_t rim[OR_FACES], rims;
@@ -295,12 +294,12 @@ static uint64_t cut_faces(cutting *c)
                        ? he_origin(c->copy, he_face_halfedge(c->copy, (he_face){f})).i
                        : OR_NONE;
     }
-    uint64_t refused = or_plane_split(c->o, c->point, c->normal, c->tolerance, NULL, 0, start);
+    uint64_t refused = or_plane_split(c->o, &c->plane, NULL, 0, start);
     if (refused != 0) {
         return refused;
     }
-    he_status status = he_plane_split(c->copy, &(he_plane){c->point, c->normal, c->tolerance}, NULL,
-                                      0, NULL, NULL);
+    const he_plane plane = {c->plane.point, c->plane.normal, c->plane.tolerance};
+    he_status status = he_plane_split(c->copy, &plane, NULL, 0, NULL, NULL);
     if (status == HE_DOUBLED_EDGE && (c->o->may & OR_BIT(HE_DOUBLED_EDGE)) != 0) {
         return OR_BIT(HE_DOUBLED_EDGE);
     }
@@ -313,7 +312,7 @@ static uint64_t delete_side(cutting *c)
 {
     or_mesh *o = c->o;
     for (uint32_t f = 0; f < o->faces; f++) {
-        if (o->face[f].alive && or_face_is_above(o, f, c->normal) != c->above) {
+        if (o->face[f].alive && or_face_is_above(o, f, c->plane.normal) != c->above) {
             c->gone[c->count++] = f;
         }
     }
@@ -321,8 +320,8 @@ static uint64_t delete_side(cutting *c)
         uint32_t f = o->edge[e].alive ? o->left[o->edge[e].a][o->edge[e].b] : OR_NONE;
         uint32_t g = o->edge[e].alive ? o->left[o->edge[e].b][o->edge[e].a] : OR_NONE;
         if (f != OR_NONE && g != OR_NONE &&
-            or_face_is_above(o, f, c->normal) != or_face_is_above(o, g, c->normal)) {
-            c->rim[c->rims++] = 2 * e + (or_face_is_above(o, f, c->normal) == c->above);
+            or_face_is_above(o, f, c->plane.normal) != or_face_is_above(o, g, c->plane.normal)) {
+            c->rim[c->rims++] = 2 * e + (or_face_is_above(o, f, c->plane.normal) == c->above);
         }
     }
     uint64_t refused = or_face_delete(o, c->gone, c->count, false);
@@ -380,12 +379,8 @@ static uint64_t play_plane_cut(const md_call *call, or_mesh *o, const he_mesh *m
     he_status status = he_mesh_copy(m, &c.copy, NULL);
     assert(status == HE_OK);
     (void)status;
-    c.point = md_get(call, "point")->points[0];
-    c.normal = md_get(call, "normal")->points[0];
+    c.plane = md_plane(call);
     c.above = md_get(call, "keep")->choice == 0;
-    if (md_get(call, "tolerance")->given) {
-        c.tolerance = &md_get(call, "tolerance")->number;
-    }
     uint64_t refused = cut_faces(&c);
     if (refused == 0) {
         refused = delete_side(&c);

@@ -18,6 +18,7 @@
 #include "model/net.h"
 #include "model/starts.h"
 #include "tests/failing.h"
+#include "tests/seed.h"
 
 #include <inttypes.h>
 #include <setjmp.h>
@@ -333,12 +334,6 @@ static void edit(world *w)
 
 /* --- the run --- */
 
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL && text[0] != '\0' ? strtoull(text, NULL, 10) : fallback;
-}
-
 /* Makes `edits` random edits of one mesh. */
 static void live(world *w, uint64_t edits)
 {
@@ -409,8 +404,8 @@ static void every_edit_agrees_with_the_oracle(void **state)
     assert_true(w != NULL && all != NULL && files != NULL);
     struct timespec now;
     (void)clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t edits = number_from("EDITS", 50000);
-    w->seed = number_from("SEED", (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec);
+    uint64_t edits = seed_setting("EDITS", 50000);
+    w->seed = seed_setting("SEED", (uint64_t)now.tv_sec * 1000003u + (uint64_t)now.tv_nsec);
     w->random.state = w->seed;
     w->oracle = or_new();
     printf("note: SEED=%" PRIu64 " EDITS=%" PRIu64 "\n", w->seed, edits);

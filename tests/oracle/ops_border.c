@@ -222,15 +222,10 @@ static bool is_beside(const or_mesh *o, uint32_t e, uint32_t v)
     return o->edge[e].a == v || o->edge[e].b == v;
 }
 
-static bool same_place(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* Returns whether an element around a vertex that is merged into another is locked. */
 static bool locked_at_end(const or_mesh *o, uint32_t goes, uint32_t stays, or_keep keep)
 {
-    bool moves = keep != OR_A && !same_place(o->vertex[goes].at, o->vertex[stays].at);
+    bool moves = keep != OR_A && !or_same_point(o->vertex[goes].at, o->vertex[stays].at);
     bool locked = o->vertex[goes].locked || (moves && o->vertex[stays].locked);
     for (uint32_t e = 0; e < o->edges; e++) {
         locked = locked || (o->edge[e].alive && is_beside(o, e, goes) && o->edge[e].locked);

@@ -107,15 +107,14 @@ static uint32_t corner_beyond(const or_mesh *o, uint32_t a, uint32_t b)
     return f == OR_NONE ? OR_NONE : or_after(&o->face[f], b);
 }
 
-/* Cuts the triangle w, b, c off the face a, w, b, c, ... The part that has the side `keeper` keeps
- * the id of the face. */
-static void cut_corner(or_mesh *o, uint32_t f, uint32_t w, uint32_t b, uint32_t c, uint32_t keeper)
+/* Cuts the triangle `corner` = w, b, c off the face a, w, b, c, ... The part that has the side
+ * `keeper` keeps the id of the face. */
+static void cut_corner(or_mesh *o, uint32_t f, const uint32_t corner[3], uint32_t keeper)
 {
     or_face rest = o->face[f];
-    remove_corner(&rest, b);
-    const uint32_t corner[3] = {w, b, c};
-    if (keeper == b) {
-        memcpy(o->face[f].v, corner, sizeof corner);
+    remove_corner(&rest, corner[1]);
+    if (keeper == corner[1]) {
+        memcpy(o->face[f].v, corner, 3 * sizeof *corner);
         o->face[f].count = 3;
         (void)or_add_face(o, rest.v, rest.count);
     } else {
@@ -137,10 +136,10 @@ uint64_t or_edge_split(or_mesh *o, uint32_t e, double t)
     }
     uint32_t w = cut_edge(o, e, t);
     if (f != OR_NONE) {
-        cut_corner(o, f, w, b, c, a);
+        cut_corner(o, f, (const uint32_t[3]){w, b, c}, a);
     }
     if (g != OR_NONE) {
-        cut_corner(o, g, w, a, d, a);
+        cut_corner(o, g, (const uint32_t[3]){w, a, d}, a);
     }
     return 0;
 }
@@ -259,11 +258,6 @@ static uint64_t marks_about(const or_mesh *o, uint32_t u, uint32_t v, bool moves
     return refused | (spoilt ? OR_BIT(HE_FEATURE_EDGE) : 0);
 }
 
-static bool same_point(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* Returns whether the point at t between u and v differs from v in any case, however it is
  * rounded. */
 static bool surely_off(double u, double v, double t)
@@ -277,35 +271,36 @@ static bool surely_moves(he_vec3 u, he_vec3 v, double t)
     return surely_off(u.x, v.x, t) || surely_off(u.y, v.y, t) || surely_off(u.z, v.z, t);
 }
 
-uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
-                           uint64_t *doubt)
+uint64_t or_check_collapse(const or_mesh *o, const or_collapse *c, uint64_t *doubt)
 {
-    he_vec3 from = o->vertex[u].at;
-    he_vec3 at = o->vertex[v].at;
-    bool apart = !same_point(from, at) || o->vertex[v].near;
-    bool can_move = to != NULL ? !same_point(*to, at) : t != 1 && apart;
-    bool moves = can_move && (to != NULL || surely_moves(from, at, t));
-    uint64_t refused = link_condition(o, u, v) | marks_about(o, u, v, moves);
-    *doubt |= marks_about(o, u, v, can_move) & ~refused;
+    he_vec3 from = o->vertex[c->u].at;
+    he_vec3 at = o->vertex[c->v].at;
+    bool apart = !or_same_point(from, at) || o->vertex[c->v].near;
+    bool can_move = c->to != NULL ? !or_same_point(*c->to, at) : c->t != 1 && apart;
+    bool moves = can_move && (c->to != NULL || surely_moves(from, at, c->t));
+    uint64_t refused = link_condition(o, c->u, c->v) | marks_about(o, c->u, c->v, moves);
+    *doubt |= marks_about(o, c->u, c->v, can_move) & ~refused;
     return refused;
 }
 
-uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
+uint64_t or_edge_collapse(or_mesh *o, const or_collapse *c)
 {
     uint64_t doubt = 0;
-    uint64_t refused = or_check_collapse(o, u, v, t, to, &doubt);
+    uint64_t refused = or_check_collapse(o, c, &doubt);
     if (refused != 0) {
         return refused | doubt;
     }
     if (doubt != 0) {
         or_doubt(o, or_save(o), doubt);
     }
-    or_draw_together(o, u, v, t, to);
+    or_draw_together(o, c);
     return 0;
 }
 
-void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to)
+void or_draw_together(or_mesh *o, const or_collapse *c)
 {
+    const uint32_t u = c->u, v = c->v;
+    const he_vec3 *to = c->to;
     he_vec3 from = o->vertex[u].at;
     he_vec3 at = o->vertex[v].at;
     o->edge[o->joined[u][v]].alive = false;
@@ -334,6 +329,6 @@ void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec
         }
     }
     o->vertex[u].alive = false;
-    o->vertex[v].near = to == NULL && (o->vertex[v].near || !same_point(from, at));
-    o->vertex[v].at = to != NULL ? *to : between(from, at, t);
+    o->vertex[v].near = to == NULL && (o->vertex[v].near || !or_same_point(from, at));
+    o->vertex[v].at = to != NULL ? *to : between(from, at, c->t);
 }

@@ -36,11 +36,6 @@ static bool overlap(const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m
     return false;
 }
 
-static bool same_point(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 /* --- loop_bridge --- */
 
 static double square_apart(const or_mesh *o, uint32_t v, uint32_t w)
@@ -169,49 +164,49 @@ bool or_strip_is_right(const or_mesh *o, uint32_t first_new)
 
 /* --- loop_join --- */
 
-/* Returns the vertex that v becomes when each b[i] is merged into a[i]. */
-static uint32_t becomes(const uint32_t *a, const uint32_t *b, uint32_t n, uint32_t v)
+/* Returns the vertex that v becomes when each b.v[i] is merged into a.v[i]. */
+static uint32_t becomes(or_loop a, or_loop b, uint32_t v)
 {
-    for (uint32_t i = 0; i < n; i++) {
-        if (b[i] == v) {
-            return a[i];
+    for (uint32_t i = 0; i < b.count; i++) {
+        if (b.v[i] == v) {
+            return a.v[i];
         }
     }
     return v;
 }
 
-static bool is_edge_of(const or_mesh *o, const uint32_t *loop, uint32_t n, uint32_t e)
+static bool is_edge_of(const or_mesh *o, or_loop loop, uint32_t e)
 {
-    for (uint32_t i = 0; i < n; i++) {
-        if (o->joined[loop[i]][loop[(i + 1) % n]] == e) {
+    for (uint32_t i = 0; i < loop.count; i++) {
+        if (o->joined[loop.v[i]][loop.v[(i + 1) % loop.count]] == e) {
             return true;
         }
     }
     return false;
 }
 
-static uint64_t join_clashes(const or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b,
-                             uint32_t fb, uint32_t n)
+static uint64_t join_clashes(const or_mesh *o, or_loop a, or_loop b)
 {
+    const uint32_t n = a.count;
     uint64_t refused = 0;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t k = (i + 1) % n;
-        if (o->left[a[k]][a[i]] == OR_NONE && o->left[b[i]][b[k]] == OR_NONE) {
+        if (o->left[a.v[k]][a.v[i]] == OR_NONE && o->left[b.v[i]][b.v[k]] == OR_NONE) {
             refused |= OR_BIT(HE_BOUNDARY_EDGE);
         }
         for (uint32_t f = 0; f < o->faces; f++) {
             const or_face *face = &o->face[f];
-            if (face->alive && f != fa && f != fb && or_place(face, a[i]) != OR_NONE &&
-                or_place(face, b[i]) != OR_NONE) {
+            if (face->alive && f != a.face && f != b.face && or_place(face, a.v[i]) != OR_NONE &&
+                or_place(face, b.v[i]) != OR_NONE) {
                 refused |= OR_BIT(HE_REPEATED_CORNER);
             }
         }
     }
     or_edge after[OR_EDGES];
     for (uint32_t e = 0; e < o->edges; e++) {
-        after[e].alive = o->edge[e].alive && !is_edge_of(o, b, n, e);
-        after[e].a = becomes(a, b, n, o->edge[e].a);
-        after[e].b = becomes(a, b, n, o->edge[e].b);
+        after[e].alive = o->edge[e].alive && !is_edge_of(o, b, e);
+        after[e].a = becomes(a, b, o->edge[e].a);
+        after[e].b = becomes(a, b, o->edge[e].b);
         for (uint32_t f = 0; f < e && after[e].alive; f++) {
             const or_edge *x = &after[e];
             const or_edge *y = &after[f];
@@ -223,57 +218,59 @@ static uint64_t join_clashes(const or_mesh *o, const uint32_t *a, uint32_t fa, c
     return refused;
 }
 
-static bool join_is_locked(const or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b,
-                           uint32_t fb, uint32_t n)
+static bool join_is_locked(const or_mesh *o, or_loop a, or_loop b)
 {
-    bool locked = (fa != OR_NONE && o->face[fa].locked) || (fb != OR_NONE && o->face[fb].locked);
+    const uint32_t n = a.count;
+    bool locked = (a.face != OR_NONE && o->face[a.face].locked) ||
+                  (b.face != OR_NONE && o->face[b.face].locked);
     for (uint32_t i = 0; i < n; i++) {
-        locked = locked || o->vertex[b[i]].locked ||
-                 (o->vertex[a[i]].locked && !same_point(o->vertex[a[i]].at, o->vertex[b[i]].at));
+        locked = locked || o->vertex[b.v[i]].locked ||
+                 (o->vertex[a.v[i]].locked &&
+                  !or_same_point(o->vertex[a.v[i]].at, o->vertex[b.v[i]].at));
     }
     for (uint32_t e = 0; e < o->edges; e++) {
         locked = locked || (o->edge[e].alive && o->edge[e].locked &&
-                            (holds(b, n, o->edge[e].a) || holds(b, n, o->edge[e].b)));
+                            (holds(b.v, n, o->edge[e].a) || holds(b.v, n, o->edge[e].b)));
     }
     for (uint32_t f = 0; f < o->faces; f++) {
         const or_face *face = &o->face[f];
-        locked = locked || (face->alive && face->locked && overlap(face->v, face->count, b, n));
+        locked = locked || (face->alive && face->locked && overlap(face->v, face->count, b.v, n));
     }
     return locked;
 }
 
-uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
-                      uint32_t n)
+uint64_t or_loop_join(or_mesh *o, or_loop a, or_loop b)
 {
+    const uint32_t n = a.count;
     uint64_t refused = 0;
-    refused |= repeats(a, n) || repeats(b, n) ? OR_BIT(HE_REPEATED_CORNER) : 0;
-    refused |= overlap(a, n, b, n) ? OR_BIT(HE_SHARED_VERTEX) : 0;
+    refused |= repeats(a.v, n) || repeats(b.v, n) ? OR_BIT(HE_REPEATED_CORNER) : 0;
+    refused |= overlap(a.v, n, b.v, n) ? OR_BIT(HE_SHARED_VERTEX) : 0;
     if (refused != 0) {
         return refused;
     }
-    refused = join_clashes(o, a, fa, b, fb, n);
-    refused |= join_is_locked(o, a, fa, b, fb, n) ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
+    refused = join_clashes(o, a, b);
+    refused |= join_is_locked(o, a, b) ? OR_BIT(HE_LOCKED_ELEMENT) : 0;
     if (refused != 0) {
         return refused;
     }
     for (uint32_t e = 0; e < o->edges; e++) {
-        o->edge[e].alive = o->edge[e].alive && !is_edge_of(o, b, n, e);
-        o->edge[e].a = becomes(a, b, n, o->edge[e].a);
-        o->edge[e].b = becomes(a, b, n, o->edge[e].b);
+        o->edge[e].alive = o->edge[e].alive && !is_edge_of(o, b, e);
+        o->edge[e].a = becomes(a, b, o->edge[e].a);
+        o->edge[e].b = becomes(a, b, o->edge[e].b);
     }
     for (uint32_t f = 0; f < o->faces; f++) {
         or_face *face = &o->face[f];
-        face->alive = face->alive && f != fa && f != fb;
+        face->alive = face->alive && f != a.face && f != b.face;
         for (uint32_t i = 0; i < face->count; i++) {
-            face->v[i] = becomes(a, b, n, face->v[i]);
+            face->v[i] = becomes(a, b, face->v[i]);
         }
     }
     for (uint32_t i = 0; i < n; i++) {
-        he_vec3 p = o->vertex[a[i]].at;
-        he_vec3 q = o->vertex[b[i]].at;
-        o->vertex[a[i]].at = (he_vec3){(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2};
-        o->vertex[a[i]].near = true;
-        o->vertex[b[i]].alive = false;
+        he_vec3 p = o->vertex[a.v[i]].at;
+        he_vec3 q = o->vertex[b.v[i]].at;
+        o->vertex[a.v[i]].at = (he_vec3){(p.x + q.x) / 2, (p.y + q.y) / 2, (p.z + q.z) / 2};
+        o->vertex[a.v[i]].near = true;
+        o->vertex[b.v[i]].alive = false;
     }
     return 0;
 }

@@ -37,10 +37,11 @@ static double tolerance_of(const or_mesh *o)
 
 /* Finds the distances of all vertices from the plane, 0 if within the tolerance. Returns false if a
  * distance is so close to the tolerance that rounding decides. */
-static bool find_distances(const or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
-                           double distance[OR_VERTICES])
+static bool find_distances(const or_mesh *o, const or_plane *plane, double distance[OR_VERTICES])
 {
-    double within = tolerance != NULL ? *tolerance : tolerance_of(o);
+    he_vec3 point = plane->point;
+    he_vec3 normal = plane->normal;
+    double within = plane->tolerance != NULL ? *plane->tolerance : tolerance_of(o);
     bool clear = true;
     memset(distance, 0, OR_VERTICES * sizeof *distance);
     for (uint32_t v = 0; v < o->vertices; v++) {
@@ -71,12 +72,11 @@ static bool is_cut(const double distance[], const or_face *f)
     return above && below;
 }
 
-or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
-                               const double *tolerance)
+or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane)
 {
     or_plane_size size = {0, 0, 0, false};
     double distance[OR_VERTICES];
-    size.doubtful = !find_distances(o, point, normal, tolerance, distance);
+    size.doubtful = !find_distances(o, plane, distance);
     for (uint32_t e = 0; e < o->edges; e++) {
         size.crossed += o->edge[e].alive && is_crossed(distance, o->edge[e].a, o->edge[e].b);
     }
@@ -157,13 +157,14 @@ static bool can_double(const or_mesh *o, uint32_t i, bool *certain)
     return can;
 }
 
-uint64_t or_plane_split(or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
-                        const uint32_t *faces, uint32_t count, const uint32_t *start)
+uint64_t or_plane_split(or_mesh *o, const or_plane *plane, const uint32_t *faces, uint32_t count,
+                        const uint32_t *start)
 {
-    if (dot(normal, normal) == 0 || (tolerance != NULL && *tolerance < 0)) {
+    if (dot(plane->normal, plane->normal) == 0 ||
+        (plane->tolerance != NULL && *plane->tolerance < 0)) {
         return OR_BIT(HE_BAD_VALUE);
     }
-    (void)find_distances(o, point, normal, tolerance, o->distance);
+    (void)find_distances(o, plane, o->distance);
     for (uint32_t f = 0; f < o->faces; f++) {
         o->chosen[f] = o->face[f].alive && (faces == NULL || holds(faces, count, f));
         if (o->chosen[f] && is_cut(o->distance, &o->face[f])) {

@@ -137,11 +137,6 @@ static he_vec3 direction_of(const or_mesh *o, const part *p, double *length, dou
     return (he_vec3){sum.x / *length, sum.y / *length, sum.z / *length};
 }
 
-static bool is_at(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 bool or_is_flat(const or_mesh *o, uint32_t f)
 {
     const or_face *face = &o->face[f];
@@ -149,10 +144,10 @@ bool or_is_flat(const or_mesh *o, uint32_t f)
     he_vec3 other = one;
     for (uint32_t i = 0; i < face->count; i++) {
         he_vec3 p = o->vertex[face->v[i]].at;
-        if (!is_at(p, one) && !is_at(other, one) && !is_at(p, other)) {
+        if (!or_same_point(p, one) && !or_same_point(other, one) && !or_same_point(p, other)) {
             return false;
         }
-        other = is_at(p, one) ? other : p;
+        other = or_same_point(p, one) ? other : p;
     }
     return true;
 }

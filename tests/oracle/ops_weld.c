@@ -119,11 +119,6 @@ static bool has_faces(const or_lists *was, uint32_t v)
     return false;
 }
 
-static bool is_at(he_vec3 a, he_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 static void weld_vertices(or_mesh *o, const or_lists *was, const uint32_t *to, bool mean)
 {
     for (uint32_t v = 0; v < o->vertices; v++) {
@@ -134,7 +129,7 @@ static void weld_vertices(or_mesh *o, const or_lists *was, const uint32_t *to, b
             if (was->vertex[x].alive && to[x] == v) {
                 he_vec3 p = was->vertex[x].at;
                 sum = (he_vec3){sum.x + p.x, sum.y + p.y, sum.z + p.z};
-                together &= is_at(p, was->vertex[v].at);
+                together &= or_same_point(p, was->vertex[v].at);
                 n++;
             }
         }
@@ -154,8 +149,8 @@ static uint64_t locked_by_weld(const or_mesh *o, const or_lists *was, const uint
     bool locked = false;
     for (uint32_t v = 0; v < o->vertices; v++) {
         const or_vertex *old = &was->vertex[v];
-        locked |=
-            old->alive && old->locked && (!o->vertex[v].alive || !is_at(old->at, o->vertex[v].at));
+        locked |= old->alive && old->locked &&
+                  (!o->vertex[v].alive || !or_same_point(old->at, o->vertex[v].at));
     }
     for (uint32_t e = 0; e < o->edges; e++) {
         const or_edge *old = &was->edge[e];
@@ -204,7 +199,7 @@ bool or_weld_near(const or_mesh *o, double tolerance, uint32_t to[OR_VERTICES])
             double d = sqrt((p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) +
                             (p.z - q.z) * (p.z - q.z));
             if (o->vertex[x].alive && to[x] == x) {
-                clear &= is_at(p, q) || fabs(d - tolerance) > 1e-9;
+                clear &= or_same_point(p, q) || fabs(d - tolerance) > 1e-9;
                 to[v] = d <= tolerance ? x : v;
             }
         }

@@ -11,10 +11,10 @@ uint64_t or_face_collapse(or_mesh *o, uint32_t f, uint32_t start)
     or_lists *before = or_save(o);
     for (uint32_t k = 1; k < was.count && refused == 0; k++) {
         uint32_t u = was.v[(shift + k) % was.count];
-        double t = (double)k / (k + 1);
-        refused = or_check_collapse(o, u, start, t, NULL, &doubt);
+        const or_collapse c = {u, start, (double)k / (k + 1), NULL};
+        refused = or_check_collapse(o, &c, &doubt);
         if (refused == 0) {
-            or_draw_together(o, u, start, t, NULL);
+            or_draw_together(o, &c);
             uint64_t wrong = or_derive(o);
             assert(wrong == 0);
             (void)wrong;

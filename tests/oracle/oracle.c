@@ -218,6 +218,11 @@ uint32_t or_live_faces(const or_mesh *o)
     return n;
 }
 
+bool or_same_point(he_vec3 a, he_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 uint32_t or_place(const or_face *f, uint32_t v)
 {
     for (uint32_t i = 0; i < f->count; i++) {

@@ -127,6 +127,7 @@ void or_set_joined(or_mesh *o, uint32_t e);
 uint32_t or_live_vertices(const or_mesh *o);
 uint32_t or_live_edges(const or_mesh *o);
 uint32_t or_live_faces(const or_mesh *o);
+bool or_same_point(he_vec3 a, he_vec3 b);
 /* or_place returns the position of v among the corners of f, OR_NONE if it is no corner; or_after
  * returns the next corner. */
 uint32_t or_place(const or_face *f, uint32_t v);
@@ -161,13 +162,18 @@ uint64_t or_edge_bisect(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_join(or_mesh *o, uint32_t v);
 uint64_t or_edge_split(or_mesh *o, uint32_t e, double t);
 uint64_t or_edge_flip(or_mesh *o, uint32_t e);
-/* The vertex u, the origin of the edge, is deleted; v stays, at `to` or at t between the two. */
-uint64_t or_edge_collapse(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
+/* An edge from u to v that is collapsed: u is deleted; v stays, at `to` or, if that is NULL, at t
+ * between the two. */
+typedef struct or_collapse {
+    uint32_t u, v;
+    double t;
+    const he_vec3 *to;
+} or_collapse;
+uint64_t or_edge_collapse(or_mesh *o, const or_collapse *c);
 /* The two steps of or_edge_collapse. Refusals that apply only if v moves, where rounding may decide
  * whether it does, are added to *doubt. */
-uint64_t or_check_collapse(const or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to,
-                           uint64_t *doubt);
-void or_draw_together(or_mesh *o, uint32_t u, uint32_t v, double t, const he_vec3 *to);
+uint64_t or_check_collapse(const or_mesh *o, const or_collapse *c, uint64_t *doubt);
+void or_draw_together(or_mesh *o, const or_collapse *c);
 
 uint64_t or_edge_delete(or_mesh *o, const uint32_t *e, uint32_t count, bool keep_isolated);
 uint64_t or_edge_cut(or_mesh *o, const uint32_t *e, uint32_t count);
@@ -210,9 +216,14 @@ void or_separate(or_mesh *o, uint32_t v, const uint32_t *starts, uint32_t count)
 uint64_t or_delete_isolated(or_mesh *o);
 /* `a` and `b` have the vertices of two holes in the order of hedge's boundary links. */
 uint64_t or_loop_bridge(or_mesh *o, const uint32_t *a, uint32_t n, const uint32_t *b, uint32_t m);
-/* Merges b[i] into a[i]; fa and fb are the faces of the loops, OR_NONE for holes. */
-uint64_t or_loop_join(or_mesh *o, const uint32_t *a, uint32_t fa, const uint32_t *b, uint32_t fb,
-                      uint32_t n);
+/* The vertices of a loop in order, and the face along it, OR_NONE for a hole. */
+typedef struct or_loop {
+    const uint32_t *v;
+    uint32_t count;
+    uint32_t face;
+} or_loop;
+/* Merges b.v[i] into a.v[i]; the loops must be equally long. */
+uint64_t or_loop_join(or_mesh *o, or_loop a, or_loop b);
 uint64_t or_loop_split(or_mesh *o, const uint32_t e[3]);
 /* Finds the vertices of a cycle of three edges, in the direction of the first one; returns false if
  * they form none. */
@@ -251,11 +262,17 @@ void or_compact(or_mesh *o);
 typedef enum or_scheme { OR_LOOP, OR_CATMULL_CLARK, OR_LINEAR, OR_SQRT3 } or_scheme;
 uint64_t or_subdivide(or_mesh *o, or_scheme scheme, const uint32_t *start);
 
-/* `tolerance` NULL stands for hedge's default, `faces` NULL for all faces; start[f] is the origin
- * of the stored half-edge of face f. If a face has more than two corners in the plane, hedge
- * chooses which of them are joined, as long as every part lies on one side of the plane. */
-uint64_t or_plane_split(or_mesh *o, he_vec3 point, he_vec3 normal, const double *tolerance,
-                        const uint32_t *faces, uint32_t count, const uint32_t *start);
+/* A plane through `point`. A vertex is in it if its distance is within the tolerance; NULL stands
+ * for hedge's default. */
+typedef struct or_plane {
+    he_vec3 point, normal;
+    const double *tolerance;
+} or_plane;
+/* `faces` NULL: all faces; start[f] is the origin of the stored half-edge of face f. If a face has
+ * more than two corners in the plane, hedge chooses which of them are joined, as long as every part
+ * lies on one side of the plane. */
+uint64_t or_plane_split(or_mesh *o, const or_plane *plane, const uint32_t *faces, uint32_t count,
+                        const uint32_t *start);
 /* The maximum size of the result of plane_split, and whether a vertex is so close to the limit of
  * the tolerance that rounding decides. */
 typedef struct or_plane_size {
@@ -263,8 +280,7 @@ typedef struct or_plane_size {
     uint32_t crossed, cut, longest;
     bool doubtful;
 } or_plane_size;
-or_plane_size or_plane_measure(const or_mesh *o, he_vec3 point, he_vec3 normal,
-                               const double *tolerance);
+or_plane_size or_plane_measure(const or_mesh *o, const or_plane *plane);
 
 /* or_delaunay_flip applies one flip that hedge's delaunay reports; hedge chooses the order. Returns
  * false, with a sentence, unless the edge lies between two triangles, the opposite angles require a

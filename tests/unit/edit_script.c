@@ -13,6 +13,7 @@
 #include "mesh/check.h"
 #include "mesh/write.h"
 #include "tests/failing.h"
+#include "geometry/geometry.h"
 
 enum { MAX_LIST = 64, MAX_TEXT = 256 };
 
@@ -409,4 +410,26 @@ he_mesh *copy_of(const he_mesh *m)
     he_mesh *copy = NULL;
     assert_int_equal(he_mesh_copy(m, &copy, NULL), HE_OK);
     return copy;
+}
+
+void assert_ids(const he_ids *list, const char *expected)
+{
+    char text[256] = "";
+    size_t at = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
+    }
+    assert_string_equal(text, expected);
+}
+
+int euler_of(const he_mesh *m)
+{
+    return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
+}
+
+double area_of(const he_mesh *m)
+{
+    he_measures measures;
+    assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
+    return measures.area;
 }

@@ -42,6 +42,11 @@ void assert_equal(const he_mesh *m, const he_mesh *other);
  * "345". */
 void assert_loops(const he_mesh *m, const char *lengths);
 he_mesh *copy_of(const he_mesh *m);
+/* Requires exactly these ids, written with blanks between them. */
+void assert_ids(const he_ids *list, const char *expected);
+
+int euler_of(const he_mesh *m); /* V - E + F */
+double area_of(const he_mesh *m);
 
 he_halfedge halfedge_between(const he_mesh *m, uint32_t a, uint32_t b);
 he_edge edge_between(const he_mesh *m, uint32_t a, uint32_t b);

@@ -1,5 +1,4 @@
-/* ply_file.h - builds a PLY file value by value, in any encoding. Include this header once per
- * program: its functions are static. */
+/* ply_file.h - builds a PLY file value by value, in any encoding. */
 #ifndef TESTS_UNIT_PLY_FILE_H
 #define TESTS_UNIT_PLY_FILE_H
 
@@ -11,89 +10,41 @@
 #define XYZ    "property float x\nproperty float y\nproperty float z\n"
 #define CORNER "property list uchar int vertex_indices\n"
 
-typedef enum encoding { TEXT, LEAST_FIRST, MOST_FIRST } encoding;
+typedef enum ply_encoding { TEXT, LEAST_FIRST, MOST_FIRST } ply_encoding;
 
-typedef struct file {
+typedef struct ply_file {
     char bytes[8192];
     size_t length;
-    encoding encoding;
-} file;
+    ply_encoding encoding;
+} ply_file;
 
-static inline void put_text(file *f, const char *text)
-{
-    size_t length = strlen(text);
-    assert_true(f->length + length <= sizeof f->bytes);
-    memcpy(f->bytes + f->length, text, length);
-    f->length += length;
-}
+/* Appends text. */
+void ply_put_text(ply_file *f, const char *text);
 
-static const struct {
+/* A type of PLY's numbers: its two names, and the type of an attribute that is read from it. */
+typedef struct ply_type {
     const char *names[2];
     size_t size;
     bool is_signed, is_float;
     he_type column;
-} types[] = {
-    {{"char", "int8"}, 1, true, false, HE_INT32},
-    {{"uchar", "uint8"}, 1, false, false, HE_UINT32},
-    {{"short", "int16"}, 2, true, false, HE_INT32},
-    {{"ushort", "uint16"}, 2, false, false, HE_UINT32},
-    {{"int", "int32"}, 4, true, false, HE_INT32},
-    {{"uint", "uint32"}, 4, false, false, HE_UINT32},
-    {{"float", "float32"}, 4, true, true, HE_FLOAT},
-    {{"double", "float64"}, 8, true, true, HE_DOUBLE},
-};
+} ply_type;
 
 enum { TYPES = 8, WHOLE_TYPES = 6, UCHAR = 1, INT = 4, UINT = 5, FLOAT = 6, DOUBLE = 7 };
+extern const ply_type ply_types[TYPES];
 
-static inline void put_value(file *f, size_t type, double value)
-{
-    char text[64];
-    uint64_t bits = (uint64_t)(int64_t)value;
-    float single = (float)value;
-    uint32_t half;
-    memcpy(&half, &single, sizeof half);
-    if (f->encoding == TEXT) {
-        snprintf(text, sizeof text, "%.17g ", value);
-        put_text(f, text);
-        return;
-    }
-    if (types[type].is_float && types[type].size == 4) {
-        bits = half;
-    } else if (types[type].is_float) {
-        memcpy(&bits, &value, sizeof bits);
-    }
-    assert_true(f->length + types[type].size <= sizeof f->bytes);
-    for (size_t i = 0; i < types[type].size; i++) {
-        size_t place = f->encoding == LEAST_FIRST ? i : types[type].size - 1 - i;
-        f->bytes[f->length++] = (char)(bits >> (8 * place));
-    }
-}
+/* Appends a value of this type in the encoding of the file. */
+void ply_put_value(ply_file *f, size_t type, double value);
 
-static inline void end_row(file *f)
-{
-    if (f->encoding == TEXT) {
-        put_text(f, "\n");
-    }
-}
+/* Ends a row: with a line break, if the encoding is text. */
+void ply_end_row(ply_file *f);
 
-static inline void begin(file *f, encoding e, const char *header)
-{
-    f->length = 0;
-    f->encoding = e;
-    put_text(f, e == TEXT ? ASCII : e == LEAST_FIRST ? LITTLE : BIG);
-    put_text(f, header);
-}
+/* Begins a file: its first two lines, and the rest of its header. */
+void ply_begin(ply_file *f, ply_encoding e, const char *header);
 
-static inline he_import read_file(const file *f)
-{
-    he_import import = {0};
-    he_error err = {0};
-    if (read_bytes("ply", f->bytes, f->length, &import, &err) != HE_OK) {
-        fail_msg("%.200s: %s", f->bytes, err.text);
-    }
-    return import;
-}
+/* Reads the file, which must succeed. */
+he_import ply_read(const ply_file *f);
 
-static const double square[4][3] = {{0, 0, 1}, {2, 0, 3}, {2, 5, 0}, {0, 5, 7}};
+/* Four corners whose coordinates are whole numbers. */
+extern const double ply_square[4][3];
 
 #endif

@@ -1,5 +1,4 @@
-/* repair_fixture.h - repairs soups, and checks what must hold for every repaired soup. Include this
- * header once per program: its functions are static. */
+/* repair_fixture.h - repairs soups, and checks what must hold for every repaired soup. */
 #ifndef TESTS_UNIT_REPAIR_FIXTURE_H
 #define TESTS_UNIT_REPAIR_FIXTURE_H
 
@@ -18,140 +17,29 @@ enum { ALL = (1 << HE_REPAIR_COUNT) - 1 };
 #define SPLIT      (1u << HE_REPAIR_SPLIT)
 #define FILL       (1u << HE_REPAIR_FILL)
 
-static inline he_repair_plan plan_of(unsigned which)
-{
-    return (he_repair_plan){.which = which, .hole_edges = 8};
-}
+/* Returns a plan of this set of repairs, which fills holes of up to 8 edges. */
+he_repair_plan repair_plan_of(unsigned which);
 
 /* Makes a soup with the faces of another one; the value of each attribute is the number of its row,
  * so that moved values can be recognized. */
-static inline void copy_soup(const he_soup *from, he_soup *to)
-{
-    static const he_kind domains[] = {HE_VERTEX, HE_FACE, HE_HALFEDGE};
-    const size_t rows[] = {from->vertex_count, from->face_count, from->corner_count};
-    he_soup_init(to, NULL);
-    for (size_t v = 0; v < from->vertex_count; v++) {
-        assert_int_equal(he_soup_add_vertex(to, from->positions[v], NULL), HE_OK);
-    }
-    for (size_t f = 0; f < from->face_count; f++) {
-        uint32_t begin = from->starts[f], end = he_soup_end(from, f);
-        assert_int_equal(he_soup_add_face(to, from->corners + begin, end - begin, NULL), HE_OK);
-    }
-    static const char *const names[] = {"vertex", "face", "corner"};
-    for (size_t i = 0; i < 3; i++) {
-        he_column *column;
-        assert_int_equal(
-            he_soup_column(to, &(he_column_schema){names[i], domains[i], HE_UINT32, 1, HE_COPY},
-                           &column, NULL),
-            HE_OK);
-        assert_int_equal(he_column_extend(column, rows[i], NULL), HE_OK);
-        for (uint32_t row = 0; row < rows[i]; row++) {
-            memcpy(he_column_row(column, row), &row, sizeof row);
-        }
-    }
-}
+void repair_copy_soup(const he_soup *from, he_soup *to);
 
-static inline uint32_t value(const he_soup *soup, size_t column, size_t row)
-{
-    uint32_t out;
-    memcpy(&out, he_column_value(soup->columns[column], row), sizeof out);
-    return out;
-}
-
-static inline const he_repair_account *account(const he_repaired *done, he_repair repair)
-{
-    return &done->accounts[repair];
-}
+/* Returns what a repair did. */
+const he_repair_account *repair_account_of(const he_repaired *done, he_repair repair);
 
 /* Requires that attributes stayed with their elements, and that every corner is at its old vertex,
  * or at the vertex into which that was welded. */
-static inline void expect_carried(const he_soup *before, const he_soup *after,
-                                  const he_repaired *done, bool welded)
-{
-    bool moved = after->columns[0]->domain == HE_HALFEDGE;
-    assert_true(welded || !moved);
-    for (uint32_t v = 0; v < after->vertex_count; v++) {
-        uint32_t from = done->vertex_from == NULL ? v : done->vertex_from[v];
-        if (!moved) {
-            assert_int_equal(value(after, 0, v), from);
-        }
-        assert_memory_equal(&after->positions[v], &before->positions[from], sizeof(he_vec3));
-    }
-    for (uint32_t f = 0; f < after->face_count; f++) {
-        uint32_t from = done->face_from == NULL ? f : done->face_from[f];
-        assert_int_equal(value(after, 1, f), from);
-        uint32_t degree = he_soup_end(after, f) - after->starts[f];
-        uint32_t read = he_soup_end(before, from) - before->starts[from];
-        if (degree == read) {
-            assert_int_equal(value(after, 2, after->starts[f]), before->starts[from]);
-        } else { /* the face was degenerate and has been dropped */
-            assert_true(degree < read && account(done, HE_REPAIR_DROP_DEGENERATE)->parts > 0);
-        }
-        for (uint32_t c = after->starts[f]; c < he_soup_end(after, f); c++) {
-            uint32_t corner = value(after, 2, c);
-            uint32_t v = after->corners[c];
-            assert_int_equal(he_soup_face_of(before, corner), from);
-            if (moved) {
-                assert_int_equal(value(after, 0, c), before->corners[corner]);
-            } else if (!welded) {
-                assert_int_equal(before->corners[corner],
-                                 done->vertex_from == NULL ? v : done->vertex_from[v]);
-            }
-        }
-    }
-}
+void repair_expect_carried(const he_soup *before, const he_soup *after, const he_repaired *done,
+                           bool welded);
 
 /* Repairs while the N-th allocation fails, for every N until none fails; no repair may succeed
  * without one of its first `least` allocations. */
-static inline void expect_failures_survived(const he_soup *soup, unsigned which, long least)
-{
-    failing f = {.may_succeed = true}; /* to shrink a block is optional */
-    while (failing_next(&f)) {
-        failing_pause();
-        he_soup copy;
-        he_repaired done = {0};
-        he_error err = {0};
-        he_repair_plan plan = plan_of(which);
-        copy_soup(soup, &copy);
-        failing_resume();
-        he_status status = he_repair_soup(&copy, &plan, &done, &err);
-        assert_true(!failing_status(&f, status) || f.n > least);
-        assert_int_equal(err.status, status);
-        he_repaired_clear(&done);
-        he_soup_clear(&copy);
-    }
-}
+void repair_expect_failures_survived(const he_soup *soup, unsigned which, long least);
 
 /* Repairs a soup, builds a mesh of it and checks the mesh, which the caller must free. */
-static inline he_mesh *mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done)
-{
-    he_soup copy;
-    he_mesh *mesh = NULL;
-    he_error err = {0};
-    copy_soup(soup, &copy);
-    if (he_repair_soup(&copy, plan, done, &err) != HE_OK) {
-        fail_msg("%s", err.text);
-    }
-    expect_carried(soup, &copy, done, (plan->which & WELD) != 0);
-    if (he_build(&copy, HE_BUILD_TAKE, &mesh, NULL, &err) != HE_OK) {
-        fail_msg("%s", err.text);
-    }
-    if (he_repair_mesh(mesh, plan, done, &err) != HE_OK) {
-        fail_msg("%s", err.text);
-    }
-    fixture_check(mesh);
-    he_soup_clear(&copy);
-    return mesh;
-}
+he_mesh *repair_mend(const he_soup *soup, const he_repair_plan *plan, he_repaired *done);
 
-static inline he_mesh *mend_faces(const char *faces, unsigned which, he_repaired *done)
-{
-    he_soup soup;
-    he_repair_plan plan = plan_of(which);
-    fixture_soup(&soup, faces);
-    he_mesh *mesh = mend(&soup, &plan, done);
-    he_soup_clear(&soup);
-    return mesh;
-}
+/* Repairs the soup of these faces (fixture.h) as repair_mend() does. */
+he_mesh *repair_mend_faces(const char *faces, unsigned which, he_repaired *done);
 
 #endif

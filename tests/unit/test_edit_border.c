@@ -434,17 +434,6 @@ static void values_of_new_elements_follow_the_rule_of_their_column(void **state)
     he_mesh_free(m);
 }
 
-/* Requires these pairs, given as text: "merged into" or "child parent". */
-static void assert_pairs(const he_ids *list, const char *expected)
-{
-    char text[256] = "";
-    size_t at = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
-    }
-    assert_string_equal(text, expected);
-}
-
 static void changes_name_parents_of_new_elements_and_survivors_of_welds(void **state)
 {
     (void)state;
@@ -464,11 +453,11 @@ static void changes_name_parents_of_new_elements_and_survivors_of_welds(void **s
         he_mesh_record(m, delta);
         script_prepare(m, cases[i].script);
         assert_int_equal(he_changes_find(m, delta, 0, delta->count, false, &changes, NULL), HE_OK);
-        assert_pairs(&changes.parents[HE_VERTEX], cases[i].vertices);
-        assert_pairs(&changes.parents[HE_EDGE], cases[i].edges);
-        assert_pairs(&changes.parents[HE_FACE], cases[i].faces);
-        assert_pairs(&changes.merged[HE_VERTEX], cases[i].merged_vertices);
-        assert_pairs(&changes.merged[HE_EDGE], cases[i].merged_edges);
+        assert_ids(&changes.parents[HE_VERTEX], cases[i].vertices);
+        assert_ids(&changes.parents[HE_EDGE], cases[i].edges);
+        assert_ids(&changes.parents[HE_FACE], cases[i].faces);
+        assert_ids(&changes.merged[HE_VERTEX], cases[i].merged_vertices);
+        assert_ids(&changes.merged[HE_EDGE], cases[i].merged_edges);
         he_changes_clear(&changes);
         he_mesh_record(m, NULL);
         he_delta_free(delta);

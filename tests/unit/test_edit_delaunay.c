@@ -20,19 +20,7 @@
 #include "mesh/write.h"
 #include "model/shapes.h"
 #include "tests/failing.h"
-
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL ? strtoull(text, NULL, 10) : fallback;
-}
-
-static double total_area(const he_mesh *m)
-{
-    he_measures measures;
-    assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
-    return measures.area;
-}
+#include "tests/seed.h"
 
 /* --- properties of edges, computed in another way than in the edit --- */
 
@@ -240,7 +228,7 @@ static he_mesh *random_points(md_random *r, uint32_t n)
 static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **state)
 {
     (void)state;
-    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 200);
+    uint64_t seed = seed_setting("SEED", 1), rounds = seed_setting("ROUNDS", 200);
     for (uint64_t round = 0; round < rounds; round++) {
         md_random r = {seed + round};
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)r.state);
@@ -253,7 +241,7 @@ static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **s
         he_mesh_record(m, NULL);
         assert_valid(m);
         assert_delaunay_in_plane(m);
-        assert_true(fabs(total_area(m) - 1) < 1e-9);
+        assert_true(fabs(area_of(m) - 1) < 1e-9);
         /* Applying the reported flips to the old mesh must give the new one. */
         he_mesh *replay = copy_of(before);
         for (size_t i = 0; i < flips.count; i++) {
@@ -282,7 +270,7 @@ static void random_points_become_delaunay_by_flips_that_can_be_repeated(void **s
 static void all_edges_but_features_become_delaunay(void **state)
 {
     (void)state;
-    uint64_t seed = number_from("SEED", 1);
+    uint64_t seed = seed_setting("SEED", 1);
     for (uint64_t round = 0; round < 50; round++) {
         md_random r = {seed + round};
         he_mesh *m = random_points(&r, 100), *before = copy_of(m);
@@ -315,7 +303,7 @@ static void all_edges_but_features_become_delaunay(void **state)
 static void flips_spread_from_the_listed_edges(void **state)
 {
     (void)state;
-    md_random r = {number_from("SEED", 1)};
+    md_random r = {seed_setting("SEED", 1)};
     static const he_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     he_mesh *m = script_mesh("012,023", square);
     size_t spread = 0;
@@ -382,7 +370,7 @@ static bool random_triangles(md_random *r, he_mesh **out)
 static void flips_in_space_end_and_never_enlarge_the_area(void **state)
 {
     (void)state;
-    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 2000), all = 0;
+    uint64_t seed = seed_setting("SEED", 1), rounds = seed_setting("ROUNDS", 2000), all = 0;
     for (uint64_t round = 0; round < rounds; round++) {
         md_random r = {seed + round};
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)r.state);
@@ -391,11 +379,11 @@ static void flips_in_space_end_and_never_enlarge_the_area(void **state)
         if (!random_triangles(&r, &m)) {
             continue;
         }
-        double area = total_area(m);
+        double area = area_of(m);
         assert_int_equal(he_delaunay(m, NULL, 0, &flips, NULL), HE_OK);
         assert_valid(m);
         /* The total area must not grow: by this bound delaunay.h proves that the flips end. */
-        assert_true(total_area(m) <= area * (1 + 1e-9));
+        assert_true(area_of(m) <= area * (1 + 1e-9));
         all += flips.count;
         for (uint32_t e = 0; e < he_mesh_issued(m, HE_EDGE); e++) {
             if (is_clearly_crooked(m, e)) {

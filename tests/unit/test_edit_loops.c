@@ -24,11 +24,6 @@
 /* Two open cylinders of six sides each: the vertices 0 to b and c to n. */
 #define CYLINDERS "0176,1287,2398,34a9,45ba,506b,cdji,dekj,eflk,fgml,ghnm,hcin"
 
-static int euler(const he_mesh *m)
-{
-    return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
-}
-
 /* Requires that the links of two meshes are equal, except that a vertex may store any of the
  * half-edges that it is allowed to. */
 static void assert_same_links(he_mesh *m, const he_mesh *other)
@@ -49,7 +44,7 @@ static void loop_join_makes_a_closed_mesh_of_two_open_tetrahedra(void **state)
     assert_valid(m);
     assert_counts(m, 5, 9, 6);
     assert_loops(m, "");
-    assert_int_equal(euler(m), 2);
+    assert_int_equal(euler_of(m), 2);
     he_mesh_free(m);
 }
 
@@ -73,7 +68,7 @@ static void a_bridge_and_a_join_make_a_torus_of_two_cylinders(void **state)
     assert_valid(m);
     assert_counts(m, 18, 36, 18);
     assert_loops(m, "");
-    assert_int_equal(euler(m), 0);
+    assert_int_equal(euler_of(m), 0);
     he_mesh_free(m);
 }
 
@@ -118,7 +113,7 @@ static void loop_split_reports_the_new_vertices_edges_and_faces(void **state)
     he_edge a = edge_between(m, 0, 1), b = edge_between(m, 1, 2), c = edge_between(m, 2, 0);
     assert_int_equal(he_loop_split(m, a, c, b, &parts, NULL), HE_OK);
     assert_valid(m);
-    assert_int_equal(euler(m), 4);
+    assert_int_equal(euler_of(m), 4);
     /* Half-edge 2a runs from 0 to 1 with face 0 on its left. */
     static const char *const faces[] = {"013", "123", "203", "654", "764", "574", "102", "567"};
     for (uint32_t f = 0; f < 8; f++) {
@@ -162,14 +157,14 @@ static void loop_join_undoes_loop_split(void **state)
         he_mesh *m = script_mesh(cases[i].mesh, NULL);
         script_add_columns(m);
         he_mesh *before = copy_of(m);
-        int was = euler(m);
+        int was = euler_of(m);
         he_loop_parts parts;
         he_edge a = edge_between(m, v[0], v[1]);
         assert_int_equal(he_loop_split(m, a, edge_between(m, v[1], v[2]),
                                        edge_between(m, v[2], v[0]), &parts, NULL),
                          HE_OK);
         assert_valid(m);
-        assert_int_equal(euler(m), was + 2);
+        assert_int_equal(euler_of(m), was + 2);
         he_halfedge there = he_edge_halfedge(a, 1), other = he_edge_halfedge(parts.edges[0], 0);
         assert_int_equal(he_face_of(m, there).i, parts.faces[0].i);
         assert_int_equal(he_face_of(m, other).i, parts.faces[1].i);
@@ -272,7 +267,7 @@ static double bridge_disks(he_mesh *m, uint32_t n, uint32_t k)
     assert_int_equal(bridge.edges.count, n == k ? n : n + k);
     assert_int_equal(bridge.faces.count, bridge.edges.count);
     assert_int_equal(he_mesh_boundary_halfedges(m), 0);
-    assert_int_equal(euler(m), 2);
+    assert_int_equal(euler_of(m), 2);
     for (size_t i = 0; i < bridge.edges.count; i++) {
         he_halfedge rung = {2 * bridge.edges.ids[i]};
         most = fmax(most, twist_of(m, bridge.edges.ids[i]));

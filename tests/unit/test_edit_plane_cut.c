@@ -27,24 +27,12 @@ static const he_vec3 STAIRS_LIE[] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 2},
                                      {2, 0, 2}, {2, 0, 0}, {0, 1, 0}, {0, 1, 1},
                                      {1, 1, 1}, {1, 1, 2}, {2, 1, 2}, {2, 1, 0}};
 
-static int euler(const he_mesh *m)
-{
-    return (int)he_mesh_vertices(m) - (int)he_mesh_edges(m) + (int)he_mesh_faces(m);
-}
-
 static double volume(const he_mesh *m)
 {
     he_measures measures;
     assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
     assert_true(measures.has_volume);
     return measures.volume;
-}
-
-static double area(const he_mesh *m)
-{
-    he_measures measures;
-    assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
-    return measures.area;
 }
 
 /* Makes a closed shape of triangles by its name. */
@@ -83,14 +71,14 @@ static he_mesh *part_of(const he_mesh *m, he_vec3 at, he_vec3 normal, he_cut_sid
 /* Cuts a closed mesh into two parts and checks them; returns the number of caps of each part. */
 static size_t check_halves(const he_mesh *m, he_vec3 at, he_vec3 normal)
 {
-    double whole = volume(m), around = area(m), volumes = 0, areas = 0;
+    double whole = volume(m), around = area_of(m), volumes = 0, areas = 0;
     size_t caps[2];
     uint32_t kept = 0, deleted = 0;
     for (int side = 0; side < 2; side++) {
         he_cut_parts parts;
         he_cut_side keep = side == 0 ? HE_CUT_ABOVE : HE_CUT_BELOW;
         he_mesh *part = part_of(m, at, normal, keep, false, &parts);
-        areas += area(part);
+        areas += area_of(part);
         kept += he_mesh_faces(part);
         deleted += parts.faces_deleted;
         assert_int_equal(parts.caps.count, 0);
@@ -190,13 +178,13 @@ static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **sta
     he_cut_parts parts;
     he_mesh *part = part_of(m, ORIGIN, hole, HE_CUT_ABOVE, true, &parts);
     assert_loops(part, "3");
-    assert_int_equal(euler(part), 1);
+    assert_int_equal(euler_of(part), 1);
     assert_int_equal(parts.caps.count, 1);
     he_cut_parts_clear(&parts);
     he_mesh_free(part);
     part = part_of(m, ORIGIN, hole, HE_CUT_BELOW, true, NULL);
     assert_loops(part, "");
-    assert_int_equal(euler(part), 2);
+    assert_int_equal(euler_of(part), 2);
     he_mesh_free(part);
 
     /* If the plane meets a hole, the cut is an open line: with caps the operation must be refused,
@@ -211,7 +199,7 @@ static void a_hole_off_the_plane_stays_and_one_across_it_forbids_caps(void **sta
     assert_equal(part, m);
     he_mesh_free(part);
     part = part_of(m, at, across, HE_CUT_ABOVE, false, NULL);
-    assert_int_equal(euler(part), 1);
+    assert_int_equal(euler_of(part), 1);
     he_mesh_free(part);
     he_mesh_free(m);
 }

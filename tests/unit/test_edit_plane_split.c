@@ -20,14 +20,9 @@
 #include "model/shapes.h"
 #include "query/topology.h"
 #include "tests/failing.h"
+#include "tests/seed.h"
 
 static const he_vec3 ORIGIN = {0, 0, 0}, UP = {0, 0, 1};
-
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL ? strtoull(text, NULL, 10) : fallback;
-}
 
 static he_mesh *shape(const char *name, double first, double second)
 {
@@ -43,13 +38,6 @@ static he_mesh *shape(const char *name, double first, double second)
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &m, NULL, NULL), HE_OK);
     he_soup_clear(&soup);
     return m;
-}
-
-static double total_area(const he_mesh *m)
-{
-    he_measures measures;
-    assert_int_equal(he_mesh_measure(m, &measures, NULL), HE_OK);
-    return measures.area;
 }
 
 /* Returns the side of the plane on which a vertex lies, with no tolerance except for rounding. */
@@ -491,7 +479,7 @@ static void random_profiles_have_one_part_for_each_rise_above_the_cut(void **sta
 {
     (void)state;
     static const double scales[] = {1, 1e300, 1e-300};
-    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 3000);
+    uint64_t seed = seed_setting("SEED", 1), rounds = seed_setting("ROUNDS", 3000);
     for (uint64_t round = 0; round < rounds; round++) {
         md_random r = {seed + round};
         print_message("SEED=%llu ROUNDS=1\n", (unsigned long long)r.state);
@@ -534,23 +522,23 @@ static void cut_shapes_keep_topology_and_area_with_faces_on_one_side(void **stat
     (void)state;
     static const char *const names[] = {"cube",      "dodecahedron", "icosahedron",
                                         "icosphere", "grid",         "torus"};
-    md_random r = {number_from("SEED", 1)};
+    md_random r = {seed_setting("SEED", 1)};
     for (unsigned i = 0; i < sizeof names / sizeof *names; i++) {
         for (unsigned k = 0; k < 20; k++) {
             print_message("%s, plane %u\n", names[i], k);
             he_mesh *m = shape(names[i], 0, 0);
             /* The quadrilaterals of the torus need not be planar, so its area may change. */
             bool flat = strcmp(names[i], "torus") != 0;
-            double area = total_area(m);
+            double area = area_of(m);
             he_vec3 normal = k == 0 ? UP : random_vector(&r);
             he_vec3 at = k < 2 ? ORIGIN : he_vec3_scale(random_vector(&r), 0.3);
             assert_true(split_and_check(m, at, normal, true));
-            assert_true(!flat || fabs(total_area(m) - area) < 1e-9 * area);
+            assert_true(!flat || fabs(area_of(m) - area) < 1e-9 * area);
             /* The mesh is cut repeatedly, as a sheet that is folded. */
             for (unsigned fold = 0; fold < 4; fold++) {
                 assert_true(split_and_check(m, at, random_vector(&r), flat));
             }
-            assert_true(!flat || fabs(total_area(m) - area) < 1e-9 * area);
+            assert_true(!flat || fabs(area_of(m) - area) < 1e-9 * area);
             he_mesh_free(m);
         }
     }
@@ -605,7 +593,7 @@ static void random_plane(const he_mesh *m, md_random *r, he_vec3 *at, he_vec3 *n
 static void random_meshes_are_cut_as_predicted_or_stay_unchanged(void **state)
 {
     (void)state;
-    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 1500);
+    uint64_t seed = seed_setting("SEED", 1), rounds = seed_setting("ROUNDS", 1500);
     uint64_t done = 0, refused = 0;
     for (uint64_t round = 0; round < rounds; round++) {
         md_random r = {seed + round};
@@ -615,10 +603,10 @@ static void random_meshes_are_cut_as_predicted_or_stay_unchanged(void **state)
         for (unsigned k = 0; k < 3; k++) {
             he_vec3 at, normal;
             random_plane(m, &r, &at, &normal);
-            double area = total_area(m);
+            double area = area_of(m);
             if (split_and_check(m, at, normal, triangles && k == 0)) {
                 done++;
-                assert_true(!triangles || fabs(total_area(m) - area) < 1e-7 * (1 + area));
+                assert_true(!triangles || fabs(area_of(m) - area) < 1e-7 * (1 + area));
             } else {
                 refused++;
             }

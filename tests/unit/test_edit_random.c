@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "mesh/walk.h"
+#include "tests/seed.h"
 
 enum { LONGEST = 12, MOST_VERTICES = 48 };
 
@@ -222,16 +223,10 @@ static const char *const starts[] = {
     "++++++",
 };
 
-static uint64_t number_from(const char *name, uint64_t fallback)
-{
-    const char *text = getenv(name);
-    return text != NULL ? strtoull(text, NULL, 10) : fallback;
-}
-
 static void random_edits_keep_every_promise_of_their_row(void **state)
 {
     (void)state;
-    uint64_t seed = number_from("SEED", 1), rounds = number_from("ROUNDS", 300);
+    uint64_t seed = seed_setting("SEED", 1), rounds = seed_setting("ROUNDS", 300);
     uint64_t done[128] = {0};
     other = script_mesh("012,034+", NULL);
     script_add_columns(other);

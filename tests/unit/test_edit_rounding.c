@@ -61,13 +61,13 @@ test_the_oracle_allows_both_where_rounding_decides_whether_the_target_moves(void
     he_mesh *m = kept(ORIGIN, "mark feature edge=1-2;mark locked vertex=1");
     or_mesh *o = oracle_of(m);
     uint64_t both = OR_BIT(HE_FEATURE_EDGE) | OR_BIT(HE_LOCKED_ELEMENT);
-    assert_true(or_edge_collapse(o, 0, 1, 0.25423450207060172, NULL) == 0);
+    assert_true(or_edge_collapse(o, &(or_collapse){0, 1, 0.25423450207060172, NULL}) == 0);
     assert_true(o->may == both);
     or_decline(o);
     assert_true(o->may == 0);
     assert_true(or_matches(o, m, text));
 
-    assert_true(or_edge_collapse(o, 0, 1, 1, NULL) == 0);
+    assert_true(or_edge_collapse(o, &(or_collapse){0, 1, 1, NULL}) == 0);
     assert_true(o->may == 0);
     script_prepare(m, "edge_collapse halfedge=0-1 t=1");
     assert_true(or_adopt(o, m, text));
@@ -99,7 +99,7 @@ static void the_oracle_refuses_where_the_target_surely_moves(void **state)
     char text[OR_TEXT] = "";
     he_mesh *m = kept(TARGET - 1e-12, "mark feature edge=1-2");
     or_mesh *o = oracle_of(m);
-    assert_true(or_edge_collapse(o, 0, 1, 0.5, NULL) == OR_BIT(HE_FEATURE_EDGE));
+    assert_true(or_edge_collapse(o, &(or_collapse){0, 1, 0.5, NULL}) == OR_BIT(HE_FEATURE_EDGE));
     assert_true(o->may == 0);
     assert_true(or_matches(o, m, text));
     or_free(o);

@@ -44,17 +44,6 @@ static void edit_end(edit *e)
     he_mesh_free(e->m);
 }
 
-/* Requires these ids, given as text: "3 5 7". */
-static void assert_ids(const he_ids *list, const char *expected)
-{
-    char text[256] = "";
-    size_t at = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
-    }
-    assert_string_equal(text, expected);
-}
-
 static void edge_bisect_keeps_the_id_for_the_part_at_the_origin(void **state)
 {
     (void)state;

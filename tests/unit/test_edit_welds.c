@@ -293,17 +293,6 @@ static void welds_and_bevels_of_huge_positions_leave_a_valid_mesh(void **state)
 
 /* --- surviving ids --- */
 
-/* Requires these ids, given as text: "3 5 7". */
-static void assert_ids(const he_ids *list, const char *expected)
-{
-    char text[256] = "";
-    size_t at = 0;
-    for (size_t i = 0; i < list->count; i++) {
-        at += (size_t)snprintf(text + at, sizeof text - at, i == 0 ? "%u" : " %u", list->ids[i]);
-    }
-    assert_string_equal(text, expected);
-}
-
 typedef struct edit {
     he_mesh *m;
     he_delta *delta;

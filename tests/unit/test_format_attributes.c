@@ -153,7 +153,7 @@ static void round_trip(const char *format, const char *encoding, const attribute
         assert_true(narrow || notes.count == 0);
         he_import import = {0};
         he_error err = {0};
-        if (read_pieces(format, bytes, length, 333, NULL, &import, &err) != HE_OK) {
+        if (read_pieces(&(format_file){format, bytes, length}, 333, NULL, &import, &err) != HE_OK) {
             fail_msg("%s", err.text);
         }
         assert_int_equal(import.notes.count, 0);

@@ -115,7 +115,8 @@ static void check_export(const he_format *format, const char *encoding, const he
     char *bytes = write_encoded(format->name, encoding, mesh, 4096, NULL, &length);
     he_import again = {0};
     he_error err = {0};
-    if (read_pieces(format->name, bytes, length, 1000, NULL, &again, &err) != HE_OK) {
+    if (read_pieces(&(format_file){format->name, bytes, length}, 1000, NULL, &again, &err) !=
+        HE_OK) {
         fail_msg("%s %s: %s", format->name, encoding, err.text);
     }
     const he_soup *s = &again.soup;
@@ -160,7 +161,8 @@ static void check_file(const char *line, const char *format)
     he_import import = {0};
     he_error err = {0};
     he_status status = length < 100000 ? read_bytes(format, bytes, length, &import, &err)
-                                       : read_pieces(format, bytes, length, 0, NULL, &import, &err);
+                                       : read_pieces(&(format_file){format, bytes, length}, 0, NULL,
+                                                     &import, &err);
     if (strcmp(action, "reject_422") == 0) {
         assert_int_not_equal(status, HE_OK);
         assert_int_not_equal(err.place, HE_PLACE_NONE);

@@ -8,10 +8,10 @@ static const uint32_t two[] = {0, 1, 2, 0, 2, 3};
 static void a_square_of_two_triangles(void **state)
 {
     (void)state;
-    he_import import = square_import("{" DATA "," MESHES "}");
+    he_import import = glb_square_import("{" DATA "," MESHES "}");
     expect_counts(&import, 4, 2, 6);
     expect_corners(&import, two, 6);
-    assert_memory_equal(import.soup.positions, square, sizeof square);
+    assert_memory_equal(import.soup.positions, glb_square, sizeof glb_square);
     assert_int_equal(import.notes.count, 0);
     assert_int_equal(import.soup.column_count, 0);
     uint64_t bin = he_places_find(&import.vertices, 0);
@@ -45,13 +45,13 @@ static void every_mode_and_every_type_of_index(void **state)
         snprintf(json, sizeof json,
                  "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},%s}]}]}",
                  rows[i].primitive);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         expect_counts(&import, 4, rows[i].faces, 3 * rows[i].faces);
         expect_corners(&import, rows[i].corners, 3 * rows[i].faces);
         he_import_clear(&import);
     }
     /* without indices, the first three corners form the triangle */
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[{'bufferView':0,'componentType':5126,"
         "'count':3,'type':'VEC3'}],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]}");
     expect_corners(&import, two, 3);
@@ -61,7 +61,7 @@ static void every_mode_and_every_type_of_index(void **state)
 static void points_and_lines_are_left_out(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},'mode':0},"
         "{'attributes':{'POSITION':0},'mode':1},{'attributes':{'POSITION':0},'mode':2},"
         "{'attributes':{'POSITION':0},'mode':3},{'attributes':{'COLOR_0':4}}," PRIMITIVE "]}]}");
@@ -112,7 +112,7 @@ static void nodes_move_what_they_place(void **state)
         char json[2500];
         snprintf(json, sizeof json, "{" DATA "," MESHES ",'scenes':[{'nodes':[0]}],'nodes':[%s]}",
                  rows[i].nodes);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         expect_counts(&import, 4, 2, 6);
         expect_position(&import, 2, rows[i].at[0], rows[i].at[1], rows[i].at[2]);
         expect_corners(&import, rows[i].mirrored ? turned : two, 6);
@@ -144,7 +144,7 @@ static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
                  "{" DATA "," MESHES
                  ",'scenes':[{'nodes':[0]}],'nodes':[{'mesh':0,'rotation':%s}]}",
                  rows[i].rotation);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         expect_position(&import, 2, -1, 1, 0);
         const he_note *note = find_note(&import.notes, "rotation_made_unit", "");
         assert_true((note != NULL) == rows[i].noted);
@@ -155,7 +155,7 @@ static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
 static void a_mesh_of_several_nodes_comes_several_times(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA "," MESHES ",'scene':0,'scenes':[{'nodes':[0,2]}],'nodes':[{'mesh':0,"
         "'children':[1]},{'mesh':0,'translation':[0,0,1]},{'mesh':0,'translation':[0,0,2]}]}");
     static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7, 8, 9, 10, 8, 10, 11};
@@ -187,7 +187,7 @@ static void the_scene_that_is_named_is_read(void **state)
         snprintf(json, sizeof json,
                  "{" DATA "," MESHES ",%s'nodes':[{'mesh':0},{'mesh':0,'translation':[0,0,1]}]}",
                  rows[i].rest);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         assert_int_equal(import.soup.vertex_count, rows[i].vertices);
         if (rows[i].vertices > 0) {
             expect_position(&import, 0, 0, 0, rows[i].z);
@@ -224,7 +224,7 @@ static void sparse_accessors(void **state)
                  "'count':2,'indices':{%s,'componentType':5123},'values':{'bufferView':4}}},"
                  "{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}]," MESHES "}",
                  rows[i].view, rows[i].indices);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         expect_counts(&import, 4, 2, 6);
         assert_memory_equal(import.soup.positions, rows[i].at, sizeof rows[i].at);
         he_import_clear(&import);
@@ -234,7 +234,7 @@ static void sparse_accessors(void **state)
 static void quantized_positions(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'extensionsUsed':['KHR_mesh_quantization'],"
         "'extensionsRequired':['KHR_mesh_quantization'],'accessors':["
         "{'bufferView':4,'componentType':5121,'count':4,'type':'VEC3','normalized':true},"
@@ -280,7 +280,7 @@ static void buffers_in_uris(void **state)
             fail_msg("%s", err.text);
         }
         expect_counts(&import, 3, 1, 3);
-        assert_memory_equal(import.soup.positions, square, 3 * sizeof *square);
+        assert_memory_equal(import.soup.positions, glb_square, 3 * sizeof *glb_square);
         /* the places of faces are offsets in the JSON text */
         assert_int_equal(he_places_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
@@ -327,11 +327,12 @@ static void buffers_in_uris_with_escapes(void **state)
 static void numbers_that_are_not_aligned(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
         ",{'bufferView':4,'byteOffset':1,'componentType':5123,'count':4,'type':'SCALAR'}],"
         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}");
-    expect_u32s(&import, HE_VERTEX, "A", 1, (uint32_t[]){0, 255, 0xFF00, 0xCC66}, 4);
+    expect_u32s(&import, &(attribute_shape){HE_VERTEX, "A", 1, 4},
+                (uint32_t[]){0, 255, 0xFF00, 0xCC66});
     assert_int_equal(find_note(&import.notes, "misaligned", "")->count, 1);
     he_import_clear(&import);
 }
@@ -342,19 +343,19 @@ static void attributes_of_vertices(void **state)
 {
     (void)state;
     static const unsigned char colors[] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':0,'COLOR_0':4,"
         "'_HEAT':3,'_':3,'other':3,'TEXCOORD_0':0,'COLOR_1':0,'COLOR_01':0,'TANGENT':0,"
         "'_position':0,'JOINTS_0':4,'_any\\u0041':4},'indices':1}]}]}");
     expect_bytes(&import, HE_VERTEX, 3, colors, 4);
-    expect_u32s(&import, HE_VERTEX, "HEAT", 1, (uint32_t[]){0, 1, 2, 3}, 4);
+    expect_u32s(&import, &(attribute_shape){HE_VERTEX, "HEAT", 1, 4}, (uint32_t[]){0, 1, 2, 3});
     const he_column *normal = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(normal->type, HE_FLOAT);
     assert_int_equal(normal->rule, HE_INTERPOLATE);
     for (size_t i = 0; i < 12; i++) {
         float value;
         memcpy(&value, normal->data + 4 * i, sizeof value);
-        assert_true((double)value == square[i / 3][i % 3]);
+        assert_true((double)value == glb_square[i / 3][i % 3]);
     }
     assert_int_equal(find_column(&import, HE_VERTEX, "color1")->type, HE_FLOAT);
     const he_column *any = find_column(&import, HE_VERTEX, "anyA");
@@ -388,7 +389,7 @@ static void directions_turn_with_their_node(void **state)
                  "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0,'NORMAL':0},"
                  "'indices':1}]}],'nodes':[{'mesh':0,%s}]}",
                  rows[i].node);
-        he_import import = square_import(json);
+        he_import import = glb_square_import(json);
         float n[3];
         memcpy(n, find_column(&import, HE_VERTEX, "normal")->data + 24, sizeof n);
         assert_true(fabs((double)n[0] - rows[i].x) < 1e-6 && fabs((double)n[1] - rows[i].y) < 1e-6);
@@ -399,7 +400,7 @@ static void directions_turn_with_their_node(void **state)
 static void attributes_of_some_primitives(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'meshes':[{'primitives':[" PRIMITIVE ",{'attributes':{'POSITION':0,"
         "'COLOR_0':4,'_HEAT':3},'indices':1}," PRIMITIVE ",{'attributes':{'POSITION':0,"
         "'_HEAT':0},'indices':1}]}]}");
@@ -414,7 +415,7 @@ static void attributes_of_some_primitives(void **state)
 static void names_are_attributes_of_faces(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'materials':[{'name':'St\\u00e4hl'},{}],'meshes':[{'name':'plate','primitives':["
         "{'attributes':{'POSITION':0},'indices':1,'material':0},{'attributes':{'POSITION':0},"
         "'indices':1,'material':1}," PRIMITIVE "]}],'nodes':[{'mesh':0},{'mesh':0,'name':'lid',"
@@ -447,7 +448,7 @@ static void expect_look(const he_materials *table, size_t slot, const char *name
 static void materials_are_rows_of_the_table(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'extensionsUsed':['KHR_materials_emissive_strength'],'materials':["
         "{'name':'red','pbrMetallicRoughness':{'baseColorFactor':[1,0,0,0.5],'metallicFactor':0.25,"
         "'roughnessFactor':0.75},'emissiveFactor':[0.5,0,1],'doubleSided':true,'alphaMode':'BLEND',"
@@ -477,7 +478,7 @@ static void materials_are_rows_of_the_table(void **state)
 static void what_has_no_place_is_noted(void **state)
 {
     (void)state;
-    he_import import = square_import(
+    he_import import = glb_square_import(
         "{" DATA ",'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1,"
         "'targets':[{'POSITION':0}]}]}],'images':[{'uri':'file:///etc/passwd'}],"
         "'skins':[{'joints':[0]}],'animations':[{}],'extensionsUsed':['KHR_materials_unlit',"
@@ -492,7 +493,7 @@ static void what_has_no_place_is_noted(void **state)
     he_import_clear(&import);
     unsigned char bin[SQUARE_BYTES];
     glb_file f;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
     glb_word(&f, 4);
     glb_word(&f, 0x12345678);
@@ -512,7 +513,7 @@ static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
     (void)state;
     unsigned char bin[SQUARE_BYTES];
     glb_file f;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = f.bin - 8 - f.json;
     while (f.bytes[f.json + json - 1] == ' ' || json % 4 == 0) {

@@ -8,14 +8,16 @@ static void containers(void **state)
     (void)state;
     unsigned char bin[SQUARE_BYTES];
     glb_file good;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&good, "{" DATA "," MESHES "}", bin, sizeof bin);
     size_t json = good.bin - 8 - 20, at = good.bin - 8;
     /* a file that is truncated at any length must be refused */
     for (size_t length = 0; length < good.length; length++) {
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(read_pieces("glb", good.bytes, length, 0, NULL, &import, &err), HE_SYNTAX);
+        assert_int_equal(
+            read_pieces(&(format_file){"glb", good.bytes, length}, 0, NULL, &import, &err),
+            HE_SYNTAX);
         assert_int_equal(err.place, HE_PLACE_BYTE);
         assert_int_equal(err.at, length);
     }
@@ -46,17 +48,17 @@ static void containers(void **state)
         glb_file f = good;
         f.length = rows[i].where;
         glb_word(&f, rows[i].word);
-        expect_refused_at_byte("glb", f.bytes, good.length, rows[i].status, rows[i].at,
-                               rows[i].words);
+        expect_refused_at_byte(&(format_file){"glb", f.bytes, good.length}, rows[i].status,
+                               rows[i].at, rows[i].words);
     }
     glb_file f = good;
     glb_word(&f, 0);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length,
+    expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
                            "the file is longer than the");
     /* the header of a chunk is invalid */
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length,
+    expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length,
                            "4 bytes follow the last chunk and are too few");
     /* there is a third chunk, and it is of the binary kind */
     f = good;
@@ -64,7 +66,7 @@ static void containers(void **state)
     glb_word(&f, 0x004E4942);
     f.bytes[8] = (unsigned char)f.length;
     f.bytes[9] = (unsigned char)(f.length >> 8);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, good.length + 4,
+    expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, good.length + 4,
                            "a BIN chunk must be the second chunk");
     /* the binary chunk is missing, or empty */
     glb_make(&f, "{" DATA "," MESHES "}", NULL, 0);
@@ -78,8 +80,9 @@ static void containers(void **state)
     assert_non_null(
         strstr(err.text, "buffers/0: the buffer should have 96 bytes, and only 0 were sent"));
     glb_make(&f, "", NULL, 0);
-    expect_refused_at_byte("glb", f.bytes, f.length, HE_SYNTAX, 20, "the text ends");
-    expect_refused_at_byte("gltf", "", 0, HE_SYNTAX, 0, "the text ends");
+    expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_SYNTAX, 20,
+                           "the text ends");
+    expect_refused_at_byte(&(format_file){"gltf", "", 0}, HE_SYNTAX, 0, "the text ends");
 }
 
 static void json_to_the_letter(void **state)
@@ -132,8 +135,8 @@ static void json_to_the_letter(void **state)
          "asset/minVersion: the file needs a reader of a later version"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        expect_refused_at_byte("gltf", rows[i].text, strlen(rows[i].text), rows[i].status,
-                               rows[i].at, rows[i].words);
+        expect_refused_at_byte(&(format_file){"gltf", rows[i].text, strlen(rows[i].text)},
+                               rows[i].status, rows[i].at, rows[i].words);
     }
     static const char fine[] =
         "{\"asset\":{\"version\":\"2.0\"},\"x\":[\"\\ud83d\\ude00\\n\\u00e4\","
@@ -177,7 +180,8 @@ static void base64_that_ends_too_early(void **state)
         length += (size_t)snprintf(text + length, 40, "%s", ends[i]);
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(read_pieces("gltf", text, length, 0, NULL, &import, &err), HE_SYNTAX);
+        assert_int_equal(read_pieces(&(format_file){"gltf", text, length}, 0, NULL, &import, &err),
+                         HE_SYNTAX);
         assert_non_null(strstr(err.text, "buffers/0/uri: the data: URI is not base64"));
         free(text);
     }
@@ -380,10 +384,10 @@ static void references_and_numbers(void **state)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (rows[i].status == HE_OK) {
-            he_import import = square_import(rows[i].json);
+            he_import import = glb_square_import(rows[i].json);
             he_import_clear(&import);
         } else {
-            expect_json_refused(rows[i].json, rows[i].status, rows[i].words);
+            glb_expect_refused(rows[i].json, rows[i].status, rows[i].words);
         }
     }
 }
@@ -395,23 +399,24 @@ static void numbers_in_the_buffer(void **state)
     static const uint32_t bits[] = {0x7FC00000, 0x7F800000, 0xFF800000};
     glb_file f;
     for (size_t i = 0; i < 3; i++) {
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 28, &bits[i], 4);
         glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
-        expect_refused_at_byte("glb", f.bytes, f.length, HE_NOT_FINITE, f.bin + 24, "not finite");
+        expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_NOT_FINITE, f.bin + 24,
+                               "not finite");
     }
     static const uint16_t bad[] = {4, 65535};
     for (size_t i = 0; i < 2; i++) {
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 56, &bad[i], 2);
         glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
-        expect_refused_at_byte("glb", f.bytes, f.length, HE_BAD_INDEX, f.bin + 56,
+        expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_BAD_INDEX, f.bin + 56,
                                "meshes/0/primitives/0: index");
     }
     /* a NaN in an attribute other than the position is read as 0, with a note */
     he_import import = {0};
     he_error err = {0};
-    square_bin(bin);
+    glb_square_bin(bin);
     memcpy(bin + 64, &bits[0], 4);
     glb_make(&f,
              "{" ASSET "," BUFFERS "," VIEWS ",'accessors':[" ACCESSOR_LIST
@@ -450,7 +455,8 @@ static void expect_bomb(writing *w, he_status wanted, const char *words)
     he_error err = {0};
     struct timespec from, to;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &from);
-    he_status status = read_pieces("gltf", w->text, w->length, 0, NULL, &import, &err);
+    he_status status =
+        read_pieces(&(format_file){"gltf", w->text, w->length}, 0, NULL, &import, &err);
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &to);
     if (status != wanted || strstr(err.text, words) == NULL) {
         fail_msg("%.200s: %s: %s", w->text, he_status_slug(status), err.text);
@@ -620,14 +626,15 @@ static void limits_of_the_caller(void **state)
     (void)state;
     unsigned char bin[SQUARE_BYTES];
     glb_file f;
-    square_bin(bin);
+    glb_square_bin(bin);
     glb_make(&f, "{" DATA "," MESHES "}", bin, sizeof bin);
     const he_limits rows[] = {{.vertices = 3}, {.faces = 1}, {.corners = 5}, {.bytes = 100}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(read_pieces("glb", f.bytes, f.length, 0, &rows[i], &import, &err),
-                         HE_LIMIT);
+        assert_int_equal(
+            read_pieces(&(format_file){"glb", f.bytes, f.length}, 0, &rows[i], &import, &err),
+            HE_LIMIT);
         assert_int_equal(err.place, HE_PLACE_BYTE);
     }
 }

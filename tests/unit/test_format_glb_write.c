@@ -134,7 +134,8 @@ static void many_vertices_have_long_indices(void **state)
         char *bytes = write_encoded("glb", "binary", mesh, 4096, NULL, &length);
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(read_pieces("glb", bytes, length, 1000, NULL, &import, &err), HE_OK);
+        assert_int_equal(
+            read_pieces(&(format_file){"glb", bytes, length}, 1000, NULL, &import, &err), HE_OK);
         expect_corners(&import, last, 3);
         const char *type = vertices < 65536 ? "\"componentType\":5123" : "\"componentType\":5125";
         bytes[20 + 600] = '\0';
@@ -177,7 +178,7 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(mark->rule, HE_DEFAULT);
     assert_memory_equal(mark->data, ((unsigned char[]){0, 1}), 2);
     const double uv[] = {0, 0, 1, 0, 1, 1, 0, 0};
-    expect_doubles(&import, HE_HALFEDGE, "uv", 2, uv, 4);
+    expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 2, 4}, uv);
     assert_true(import.soup.positions[3].y == (double)3e38f);
     he_import_clear(&import);
     free(bytes);
@@ -353,7 +354,7 @@ static void extras_are_not_believed(void **state)
         char json[3000];
         glb_file f;
         snprintf(json, sizeof json, PRIVATE("%s", "%s", "%s"), words, rows[i].hedge, rows[i].node);
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 80, &rows[i].degree, 4);
         memcpy(bin + 84, &rows[i].second, 4);
         glb_make(&f, json, bin, sizeof bin);
@@ -405,7 +406,7 @@ static void names_beside_names_in_extras(void **state)
                  "{'attributes':{'POSITION':0},'indices':1%s%s}]},{'primitives':[" PRIMITIVE
                  "]}],'nodes':[{'mesh':0},{'mesh':1}]}",
                  one, rows[i].second == NULL ? "" : ",", rows[i].second == NULL ? "" : two);
-        square_bin(bin);
+        glb_square_bin(bin);
         memcpy(bin + 80, (unsigned char[]){1, 0, 0, 0, 0, 0, 0, 0}, 8);
         glb_make(&f, json, bin, sizeof bin);
         he_import import = read_back((const char *)f.bytes, f.length);
@@ -420,7 +421,8 @@ static void names_beside_names_in_extras(void **state)
         while (failing_next(&each)) {
             he_import other = {0};
             he_error err = {0};
-            he_status status = read_pieces("glb", f.bytes, f.length, 0, NULL, &other, &err);
+            he_status status =
+                read_pieces(&(format_file){"glb", f.bytes, f.length}, 0, NULL, &other, &err);
             if (failing_status(&each, status)) {
                 he_import_clear(&other);
             }
@@ -465,7 +467,8 @@ static void extras_without_memory(void **state)
     while (failing_next(&f)) {
         he_import import = {0};
         he_error err = {0};
-        he_status status = read_pieces("glb", bytes, length, 0, NULL, &import, &err);
+        he_status status =
+            read_pieces(&(format_file){"glb", bytes, length}, 0, NULL, &import, &err);
         if (failing_status(&f, status)) {
             expect_counts(&import, 4, 1, 4);
             assert_string_equal(face_label(&import, "group", 0), "a");

@@ -108,7 +108,8 @@ static void readers_without_memory(void **state)
             he_import import = {0};
             he_error err = {0};
             he_status status =
-                read_pieces(files[i].name, files[i].text, files[i].length, 5, NULL, &import, &err);
+                read_pieces(&(format_file){files[i].name, files[i].text, files[i].length}, 5, NULL,
+                            &import, &err);
             if (failing_status(&f, status)) {
                 he_import_clear(&import);
             } else {
@@ -282,8 +283,9 @@ static void mutated_files(void **state)
         he_error err = {0}, second = {0};
         const char *name = files[file].name;
         size_t piece = 1 + next_random() % 40;
-        he_status status = read_pieces(name, bytes, length, 0, NULL, &import, &err);
-        assert_int_equal(read_pieces(name, bytes, length, piece, NULL, &other, &second), status);
+        he_status status = read_pieces(&(format_file){name, bytes, length}, 0, NULL, &import, &err);
+        assert_int_equal(
+            read_pieces(&(format_file){name, bytes, length}, piece, NULL, &other, &second), status);
         if (status != HE_OK) {
             assert_string_equal(err.text, second.text);
             assert_int_not_equal(err.place, HE_PLACE_NONE);
@@ -306,7 +308,8 @@ static void mutated_files(void **state)
             char *first = write_encoded(name, encoding, mesh, 999, NULL, &first_length);
             he_mesh *again = NULL;
             he_import third = {0};
-            if (read_pieces(name, first, first_length, 0, NULL, &third, &err) != HE_OK) {
+            if (read_pieces(&(format_file){name, first, first_length}, 0, NULL, &third, &err) !=
+                HE_OK) {
                 fail_msg("round %llu: %s\n%s", (unsigned long long)i, err.text, first);
             }
             assert_int_equal(he_build(&third.soup, 0, &again, NULL, NULL), HE_OK);

@@ -16,7 +16,8 @@ static void expect_foretold(const char *bytes, size_t length, const he_notes *no
     he_report *report = calloc(1, sizeof *report);
     const he_note *note = find_note(notes, "no_mesh_again", "");
     assert_non_null(report);
-    assert_int_equal(read_pieces("stl", bytes, length, 0, NULL, &import, &err), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"stl", bytes, length}, 0, NULL, &import, &err),
+                     HE_OK);
     he_status status = he_build(&import.soup, 0, &mesh, report, &err);
     assert_int_equal(status == HE_OK, note == NULL);
     assert_int_equal(report->total, note == NULL ? 0 : note->count);
@@ -105,7 +106,8 @@ static void an_stl_without_notes_comes_back_the_same(void **state)
         char *bytes = write_encoded("stl", "binary", mesh, 4096, &notes, &length);
         expect_foretold(bytes, length, &notes);
         if (notes.count == 0) {
-            assert_int_equal(read_pieces("stl", bytes, length, 0, NULL, &import, &err), HE_OK);
+            assert_int_equal(
+                read_pieces(&(format_file){"stl", bytes, length}, 0, NULL, &import, &err), HE_OK);
             he_mesh *again = build_import(&import);
             fixture_counts(again, he_mesh_vertices(mesh), he_mesh_edges(mesh), he_mesh_faces(mesh));
             he_mesh_free(again);

@@ -23,7 +23,7 @@ static he_import read_whole(const char *format, const char *bytes, size_t length
 {
     he_import import = {0};
     he_error err = {0};
-    if (read_pieces(format, bytes, length, 0, NULL, &import, &err) != HE_OK) {
+    if (read_pieces(&(format_file){format, bytes, length}, 0, NULL, &import, &err) != HE_OK) {
         fail_msg("%s", err.text);
     }
     return import;

@@ -81,15 +81,23 @@ static he_status read_packed(const bin *b, const char *of_corners, const char *o
     return read_bytes("glb", f.bytes, f.length, import, err);
 }
 
-/* Writes the extension of a view: `length` bytes from `at` on decode to `count` elements. */
-static const char *extension(char *text, size_t size, size_t at, size_t length, const char *mode,
-                             const char *filter, unsigned long long count, unsigned stride)
+/* A compressed view: `length` bytes from `at` on decode to `count` elements of `stride` bytes. */
+typedef struct packed_view {
+    size_t at, length;
+    const char *mode, *filter; /* filter "": the member is left out */
+    unsigned count, stride;
+} packed_view;
+
+enum { EXTENSION = 300 };
+
+/* Writes the extension of a view. */
+static const char *extension(char text[EXTENSION], const packed_view *v)
 {
-    snprintf(text, size,
-             "{'buffer':0,'byteOffset':%zu,'byteLength':%zu,'mode':'%s'%s%s%s,'count':%llu,"
+    snprintf(text, EXTENSION,
+             "{'buffer':0,'byteOffset':%zu,'byteLength':%zu,'mode':'%s'%s%s%s,'count':%u,"
              "'byteStride':%u}",
-             at, length, mode, filter[0] == '\0' ? "" : ",'filter':'", filter,
-             filter[0] == '\0' ? "" : "'", count, stride);
+             v->at, v->length, v->mode, v->filter[0] == '\0' ? "" : ",'filter':'", v->filter,
+             v->filter[0] == '\0' ? "" : "'", v->count, v->stride);
     return text;
 }
 
@@ -104,7 +112,7 @@ static bin square_packed(he_meshopt_mode mode, size_t stride)
 static void expect_square(const he_import *import)
 {
     expect_counts(import, 4, 2, 6);
-    assert_memory_equal(import->soup.positions, square, sizeof square);
+    assert_memory_equal(import->soup.positions, glb_square, sizeof glb_square);
     assert_int_equal(import->notes.count, 0);
 }
 
@@ -115,13 +123,13 @@ static void packed_views_are_read_as_plain_ones(void **state)
     for (size_t i = 0; i < 4; i++) {
         he_meshopt_mode mode = i < 2 ? HE_MESHOPT_TRIANGLES : HE_MESHOPT_INDICES;
         bin b = square_packed(mode, strides[i % 2]);
-        char first[300], second[300];
+        char first[EXTENSION], second[EXTENSION];
         he_import import = {0};
         he_error err = {0};
         he_status status = read_packed(
-            &b, extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "NONE", 4, 16),
-            extension(second, sizeof second, b.at, b.indices, he_meshopt_modes[mode], "", 6,
-                      (unsigned)strides[i % 2]),
+            &b, extension(first, &(packed_view){0, b.corners, "ATTRIBUTES", "NONE", 4, 16}),
+            extension(second, &(packed_view){b.at, b.indices, he_meshopt_modes[mode], "", 6,
+                                             (unsigned)strides[i % 2]}),
             &import, &err);
         if (status != HE_OK) {
             fail_msg("%zu: %s", i, err.text);
@@ -146,16 +154,16 @@ static void exponents_are_undone(void **state)
     he_meshopt_stream stream = {HE_MESHOPT_TRIANGLES, HE_MESHOPT_NONE, 6, 2};
     packed second = pack(&stream, triangles);
     bin b = join(&first, &second);
-    char of_corners[300], of_indices[300];
+    char of_corners[EXTENSION], of_indices[EXTENSION];
     he_import import = {0};
     he_error err = {0};
-    assert_int_equal(read_packed(&b,
-                                 extension(of_corners, sizeof of_corners, 0, b.corners,
-                                           "ATTRIBUTES", "EXPONENTIAL", 4, 16),
-                                 extension(of_indices, sizeof of_indices, b.at, b.indices,
-                                           "TRIANGLES", "NONE", 6, 2),
-                                 &import, &err),
-                     HE_OK);
+    assert_int_equal(
+        read_packed(
+            &b,
+            extension(of_corners, &(packed_view){0, b.corners, "ATTRIBUTES", "EXPONENTIAL", 4, 16}),
+            extension(of_indices, &(packed_view){b.at, b.indices, "TRIANGLES", "NONE", 6, 2}),
+            &import, &err),
+        HE_OK);
     expect_square(&import);
     he_import_clear(&import);
 }
@@ -272,9 +280,9 @@ static void what_the_extension_forbids_is_refused(void **state)
     };
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        char first[300], second[300];
-        extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
-        extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+        char first[EXTENSION], second[EXTENSION];
+        extension(first, &(packed_view){0, b.corners, "ATTRIBUTES", "", 4, 16});
+        extension(second, &(packed_view){b.at, b.indices, "TRIANGLES", "", 6, 2});
         if (rows[i].corners != NULL) {
             const char *number = strstr(rows[i].corners, "%zu");
             size_t before =
@@ -298,26 +306,26 @@ static void streams_that_are_cut_or_of_another_version_are_refused(void **state)
 {
     (void)state;
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
-    char first[300], second[300];
+    char first[EXTENSION], second[EXTENSION];
     for (size_t length = 1; length < b.corners; length++) {
         he_import import = {0};
         he_error err = {0};
         he_status status =
-            read_packed(&b, extension(first, sizeof first, 0, length, "ATTRIBUTES", "", 4, 16),
-                        extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2),
+            read_packed(&b, extension(first, &(packed_view){0, length, "ATTRIBUTES", "", 4, 16}),
+                        extension(second, &(packed_view){b.at, b.indices, "TRIANGLES", "", 6, 2}),
                         &import, &err);
         assert_true(status == HE_SYNTAX || status == HE_BAD_VALUE);
     }
-    extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
+    extension(first, &(packed_view){0, b.corners, "ATTRIBUTES", "", 4, 16});
     for (size_t length = 1; length < b.indices; length++) {
         he_import import = {0};
         he_error err = {0};
         he_status status = read_packed(
-            &b, first, extension(second, sizeof second, b.at, length, "TRIANGLES", "", 6, 2),
+            &b, first, extension(second, &(packed_view){b.at, length, "TRIANGLES", "", 6, 2}),
             &import, &err);
         assert_true(status == HE_SYNTAX || status == HE_BAD_VALUE);
     }
-    extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+    extension(second, &(packed_view){b.at, b.indices, "TRIANGLES", "", 6, 2});
     b.bytes[0] = 0xA1;
     expect_packed_refused(&b, first, second, HE_UNSUPPORTED,
                           "ATTRIBUTES were compressed by version 1 of their coding; "
@@ -337,14 +345,14 @@ static void streams_of_wrong_bytes_end_well(void **state)
     (void)state;
     static const char *const filters[] = {"NONE", "EXPONENTIAL"};
     bin whole = square_packed(HE_MESHOPT_TRIANGLES, 2);
-    char first[300], second[300];
+    char first[EXTENSION], second[EXTENSION];
     size_t read = 0, refused = 0;
-    extension(second, sizeof second, whole.at, whole.indices, "TRIANGLES", "", 6, 2);
+    extension(second, &(packed_view){whole.at, whole.indices, "TRIANGLES", "", 6, 2});
     for (size_t at = 0; at < whole.at + whole.indices; at++) {
         for (unsigned bit = 0; bit < 16; bit++) {
             bin b = whole;
             b.bytes[at] ^= (unsigned char)(1u << bit % 8);
-            extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", filters[bit / 8], 4, 16);
+            extension(first, &(packed_view){0, b.corners, "ATTRIBUTES", filters[bit / 8], 4, 16});
             he_import import = {0};
             he_error err = {0};
             if (read_packed(&b, first, second, &import, &err) == HE_OK) {
@@ -432,18 +440,18 @@ static void what_unpacks_to_too_much_is_refused(void **state)
 static void a_fallback_may_be_missing_unless_a_plain_view_needs_it(void **state)
 {
     (void)state;
-    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
-                        "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
-                        "," MESHES "}",
-                        HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
-    expect_json_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
-                        "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
-                        "," ACCESSORS "," MESHES "}",
-                        HE_UNSUPPORTED, "the buffer is in another file, 'x.bin'");
+    glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96,'extensions':{"
+                       "'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS "," ACCESSORS
+                       "," MESHES "}",
+                       HE_BAD_VALUE, "buffer 0 is a fallback without bytes");
+    glb_expect_refused("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                       "'extensions':{'EXT_meshopt_compression':{'fallback':false}}}]," VIEWS
+                       "," ACCESSORS "," MESHES "}",
+                       HE_UNSUPPORTED, "the buffer is in another file, 'x.bin'");
     he_import import =
-        square_import("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
-                      "'extensions':{'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS
-                      "," ACCESSORS "," MESHES "}");
+        glb_square_import("{" ASSET ",'buffers':[{'byteLength':96},{'byteLength':96,'uri':'x.bin',"
+                          "'extensions':{'EXT_meshopt_compression':{'fallback':true}}}]," VIEWS
+                          "," ACCESSORS "," MESHES "}");
     expect_square(&import);
     he_import_clear(&import);
 }
@@ -454,9 +462,9 @@ static void without_memory_nothing_is_read(void **state)
 {
     (void)state;
     bin b = square_packed(HE_MESHOPT_TRIANGLES, 2);
-    char first[300], second[300];
-    extension(first, sizeof first, 0, b.corners, "ATTRIBUTES", "", 4, 16);
-    extension(second, sizeof second, b.at, b.indices, "TRIANGLES", "", 6, 2);
+    char first[EXTENSION], second[EXTENSION];
+    extension(first, &(packed_view){0, b.corners, "ATTRIBUTES", "", 4, 16});
+    extension(second, &(packed_view){b.at, b.indices, "TRIANGLES", "", 6, 2});
     char json[4096];
     glb_file f;
     describe(json, sizeof json, first, second);
@@ -465,7 +473,8 @@ static void without_memory_nothing_is_read(void **state)
     while (failing_next(&each)) {
         he_import import = {0};
         he_error err = {0};
-        failing_status(&each, read_pieces("glb", f.bytes, f.length, 0, NULL, &import, &err));
+        failing_status(
+            &each, read_pieces(&(format_file){"glb", f.bytes, f.length}, 0, NULL, &import, &err));
         he_import_clear(&import);
     }
     assert_true(each.n > 4);
@@ -491,7 +500,7 @@ static he_import read_glb(const he_mesh *mesh, const char *encoding, size_t piec
     he_import import = {0};
     he_error err = {0};
     char *bytes = write_encoded("glb", encoding, mesh, piece, NULL, length);
-    if (read_pieces("glb", bytes, *length, 0, NULL, &import, &err) != HE_OK) {
+    if (read_pieces(&(format_file){"glb", bytes, *length}, 0, NULL, &import, &err) != HE_OK) {
         fail_msg("%s: %s", encoding, err.text);
     }
     free(bytes);

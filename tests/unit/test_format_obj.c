@@ -83,7 +83,8 @@ static void vertex_forms(void **state)
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0 1 0 0.5\nv 0 0 0 0 1 0\n");
-    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){1, 0, 0.5, 0, 1, 0}, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 2},
+                   (double[]){1, 0, 0.5, 0, 1, 0});
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0 255 0 7 128\nv 0 0 0 0 1 0\nv 0 0 0\n");
@@ -94,12 +95,14 @@ static void vertex_forms(void **state)
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0 1.5 0 1 1\nv 0 0 0 0 2 1 1\n");
-    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){1.5, 0, 1, 0, 2, 1}, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 2},
+                   (double[]){1.5, 0, 1, 0, 2, 1});
     assert_int_equal(import.notes.count, 0);
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0\nv 0 0 0\nv 0 0 0 1 1 1\n");
-    expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){0, 0, 0, 0, 0, 0, 1, 1, 1}, 3);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 3},
+                   (double[]){0, 0, 0, 0, 0, 0, 1, 1, 1});
     expect_note(&import, "vertices_without_color", "", 2, 0);
     he_import_clear(&import);
 }
@@ -131,11 +134,12 @@ static void corner_forms(void **state)
         assert_int_equal(find_column(&import, HE_HALFEDGE, "uv") != NULL, rows[i].uv);
         assert_int_equal(find_column(&import, HE_HALFEDGE, "normal") != NULL, rows[i].normal);
         if (rows[i].uv) {
-            expect_doubles(&import, HE_HALFEDGE, "uv", 2, (double[]){0.25, 0.5, 1, 0, 0.5, 0}, 3);
+            expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 2, 3},
+                           (double[]){0.25, 0.5, 1, 0, 0.5, 0});
         }
         if (rows[i].normal) {
-            expect_doubles(&import, HE_HALFEDGE, "normal", 3, (double[]){0, 0, 1, 0, 0, 1, 1, 0, 0},
-                           3);
+            expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "normal", 3, 3},
+                           (double[]){0, 0, 1, 0, 0, 1, 1, 0, 0});
         }
         if (!rows[i].uv) {
             expect_note(&import, "unused_uv", "", 3, 0);
@@ -151,13 +155,14 @@ static void corner_forms(void **state)
      * them */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/3 2/2 3/1\n"
                                         "vt 1 2 0\nvt 3 4 5\nvt 6\n");
-    expect_doubles(&import, HE_HALFEDGE, "uv", 3, (double[]){6, 0, 0, 3, 4, 5, 1, 2, 0}, 3);
+    expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 3, 3},
+                   (double[]){6, 0, 0, 3, 4, 5, 1, 2, 0});
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nvt 1 2\nvn 0 0 1\n"
                               "f 1 2 3\nf 1/1 2 4//1\n");
-    expect_doubles(&import, HE_HALFEDGE, "uv", 2, (double[]){0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0},
-                   6);
+    expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 2, 6},
+                   (double[]){0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0});
     expect_note(&import, "corners_without_uv", "", 5, 0);
     expect_note(&import, "corners_without_normal", "", 5, 0);
     he_import_clear(&import);
@@ -217,7 +222,8 @@ static void names_and_smoothing(void **state)
         assert_string_equal(face_label(&import, "group", f), groups[f]);
         assert_string_equal(face_label(&import, "material", f), materials[f]);
     }
-    expect_u32s(&import, HE_FACE, "smoothing", 1, (uint32_t[]){0, 3, 3, 0, 1}, 5);
+    expect_u32s(&import, &(attribute_shape){HE_FACE, "smoothing", 1, 5},
+                (uint32_t[]){0, 3, 3, 0, 1});
     assert_null(find_column(&import, HE_FACE, "smoothing")->labels);
     expect_note(&import, "library_missing", "a", 1, 6);
     expect_note(&import, "library_missing", "file.mtl", 1, 6);
@@ -294,7 +300,8 @@ static void notes_have_an_end(void **state)
     }
     he_import import = {0};
     he_error err = {0};
-    assert_int_equal(read_pieces("obj", text, length, 0, NULL, &import, &err), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"obj", text, length}, 0, NULL, &import, &err),
+                     HE_OK);
     assert_int_equal(import.notes.count, HE_NOTES);
     assert_int_equal(import.notes.more, 5000 - HE_NOTES);
     he_import_clear(&import);
@@ -463,16 +470,21 @@ static void other_encodings_are_refused(void **state)
     static const char big[] = "\xFE\xFF\0v\0 \0000\0 \0000\0 \0000\0\n";
     static const char unmarked[] = "v\0 \0000\0 \0000\0 \0000\0\n\0";
     static const char comment[] = "#\0 \0\n\0v\0 \0000\0\n\0";
-    expect_bytes_refused("obj", little, sizeof little - 1, HE_UNSUPPORTED, 1, "UTF-16");
-    expect_bytes_refused("obj", big, sizeof big - 1, HE_UNSUPPORTED, 1, "UTF-16");
-    expect_bytes_refused("obj", unmarked, sizeof unmarked - 1, HE_UNSUPPORTED, 1, "UTF-16");
-    expect_bytes_refused("obj", comment, sizeof comment - 1, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"obj", little, sizeof little - 1}, HE_UNSUPPORTED, 1,
+                         "UTF-16");
+    expect_bytes_refused(&(format_file){"obj", big, sizeof big - 1}, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"obj", unmarked, sizeof unmarked - 1}, HE_UNSUPPORTED, 1,
+                         "UTF-16");
+    expect_bytes_refused(&(format_file){"obj", comment, sizeof comment - 1}, HE_UNSUPPORTED, 1,
+                         "UTF-16");
     static const char zero[] = "v 0 0 0\nv 0 \0 0\n";
-    expect_bytes_refused("obj", zero, sizeof zero - 1, HE_SYNTAX, 2, "a NUL byte");
+    expect_bytes_refused(&(format_file){"obj", zero, sizeof zero - 1}, HE_SYNTAX, 2, "a NUL byte");
     static const char hidden[] = "v 0 0 0\n# a \\\n\0\nv 0 0 0\n";
-    expect_bytes_refused("obj", hidden, sizeof hidden - 1, HE_SYNTAX, 3, "a NUL byte");
+    expect_bytes_refused(&(format_file){"obj", hidden, sizeof hidden - 1}, HE_SYNTAX, 3,
+                         "a NUL byte");
     static const char empty[] = "\xFF\xFE\n\0v\0 \0";
-    expect_bytes_refused("obj", empty, sizeof empty - 1, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"obj", empty, sizeof empty - 1}, HE_UNSUPPORTED, 1,
+                         "UTF-16");
 }
 
 /* The reader accepts faces that no mesh can represent; he_build refuses them, and the refusal must
@@ -529,8 +541,8 @@ static void limits_are_kept(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        he_status status =
-            read_pieces("obj", text, strlen(text), 1, &rows[i].limits, &import, &err);
+        he_status status = read_pieces(&(format_file){"obj", text, strlen(text)}, 1,
+                                       &rows[i].limits, &import, &err);
         assert_int_equal(status, rows[i].status);
         if (status == HE_OK) {
             he_import_clear(&import);

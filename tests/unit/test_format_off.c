@@ -35,7 +35,8 @@ static void plain_files(void **state)
     expect_corners(&import, (uint32_t[]){0, 1, 0}, 3);
     he_import_clear(&import);
     import = read_text("off", "NOFF 2 0 0\n0 0 0 0 0 1\n1 0 0 nan 0 -inf\n");
-    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 0, 0}, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 2},
+                   (double[]){0, 0, 1, 0, 0, 0});
     expect_note(&import, "not_finite", "", 2, 3);
     he_import_clear(&import);
     import = read_text("off", "OFF\n0 0 0\n");
@@ -91,13 +92,16 @@ static void vertex_data_in_every_mix(void **state)
                          rows[i].normal + rows[i].uv + (rows[i].color != 0));
         assert_true(import.soup.positions[1].x == 1);
         if (rows[i].normal) {
-            expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 1, 0}, 2);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 2},
+                           (double[]){0, 0, 1, 0, 1, 0});
         }
         if (rows[i].uv) {
-            expect_doubles(&import, HE_VERTEX, "uv", 2, (double[]){0.5, 0.25, 1, 0}, 2);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "uv", 2, 2},
+                           (double[]){0.5, 0.25, 1, 0});
         }
         if (rows[i].color == 3) {
-            expect_doubles(&import, HE_VERTEX, "color", 3, (double[]){0.5, 0, 1, 1, 1, 0.25}, 2);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 2},
+                           (double[]){0.5, 0, 1, 1, 1, 0.25});
         }
         if (rows[i].color == 4) {
             const he_column *color = find_column(&import, HE_VERTEX, "color");
@@ -146,7 +150,8 @@ static void vertices_without_what_is_announced(void **state)
     (void)state;
     he_import import = read_text("off", "NOFF\n3 1 0\n0 0 0\n1 0 0 0 0 1\n1 1 0\n3 0 1 2\n");
     expect_counts(&import, 3, 1, 3);
-    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 0, 0, 0, 1}, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 2},
+                   (double[]){0, 0, 0, 0, 0, 1});
     expect_note(&import, "missing_numbers", "", 2, 3);
     he_mesh *mesh = build_import(&import);
     const he_column *column = he_mesh_find_column(mesh, HE_VERTEX, "normal");
@@ -168,13 +173,13 @@ static void vertices_without_what_is_announced(void **state)
                               "1 1 1 0 1 0 3\n");
     expect_bytes(&import, HE_VERTEX, 3, (const unsigned char[]){0, 0, 0, 7, 8, 9, 0, 0, 0, 0, 0, 0},
                  4);
-    expect_doubles(&import, HE_VERTEX, "normal", 3, (double[]){0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0},
-                   4);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 4},
+                   (double[]){0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0});
     expect_note(&import, "missing_numbers", "", 2, 3);
     expect_note(&import, "color_index", "", 1, 6);
     he_import_clear(&import);
     import = read_text("off", "STNOFF\n2 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 .5 .5\n");
-    expect_doubles(&import, HE_VERTEX, "uv", 2, (double[]){0, 0, .5, .5}, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "uv", 2, 2}, (double[]){0, 0, .5, .5});
     expect_note(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
 
@@ -199,7 +204,8 @@ static void face_colors(void **state)
 
     snprintf(text, sizeof text, "%s3 0 1 2\n3 0 2 3 1 .5 0 # c\n3 3 2 1 0 0 1\n", start);
     import = read_text("off", text);
-    expect_doubles(&import, HE_FACE, "color", 3, (double[]){0, 0, 0, 1, .5, 0, 0, 0, 1}, 3);
+    expect_doubles(&import, &(attribute_shape){HE_FACE, "color", 3, 3},
+                   (double[]){0, 0, 0, 1, .5, 0, 0, 0, 1});
     he_import_clear(&import);
 
     snprintf(text, sizeof text, "%s3 0 1 2 9\n3 0 2 3 1 2\n3 3 2 1 1 2 3 4 5\n", start);
@@ -291,7 +297,7 @@ static void wrong_text_names_its_line(void **state)
         expect_refused("off", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
     }
     static const char wide[] = "\xFF\xFEO\0F\0F\0\n\0";
-    expect_bytes_refused("off", wide, sizeof wide - 1, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"off", wide, sizeof wide - 1}, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
 static void limits_are_kept(void **state)
@@ -311,8 +317,8 @@ static void limits_are_kept(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        he_status status =
-            read_pieces("off", text, strlen(text), 0, &rows[i].limits, &import, &err);
+        he_status status = read_pieces(&(format_file){"off", text, strlen(text)}, 0,
+                                       &rows[i].limits, &import, &err);
         assert_int_equal(status, rows[i].status);
         if (status == HE_OK) {
             he_import_clear(&import);
@@ -336,7 +342,8 @@ static void a_count_allocates_nothing(void **state)
         he_import import = {0};
         he_error err = {0};
         failing_at(0);
-        he_status status = read_pieces("off", texts[i], strlen(texts[i]), 0, NULL, &import, &err);
+        he_status status =
+            read_pieces(&(format_file){"off", texts[i], strlen(texts[i])}, 0, NULL, &import, &err);
         assert_int_equal(status, HE_SYNTAX);
         assert_in_range(failing_count(), 1, 12);
         failing_off();
@@ -420,15 +427,15 @@ static void a_binary_body_is_read_with_a_note(void **state)
         expect_counts(&import, 4, 2, 6);
         expect_corners(&import, corners, 6);
         assert_true(import.soup.positions[2].x == 1 && import.soup.positions[2].y == 1);
-        expect_doubles(&import, HE_FACE, "color", 3, face_colors, 2);
+        expect_doubles(&import, &(attribute_shape){HE_FACE, "color", 3, 2}, face_colors);
         expect_note(&import, "binary_off", "", 1, header);
         expect_note(&import, "trailing_bytes", "", 1, b.length - 1);
         expect_note(&import, "extra_numbers", "", 1, b.length - 9);
         assert_int_equal(he_places_find(&import.vertices, 1), header + 12 + (i < 2 ? 12 : 48));
         if (i >= 2) {
-            expect_doubles(&import, HE_VERTEX, "uv", 2, uv, 4);
-            expect_doubles(&import, HE_VERTEX, "normal", 3, normal, 4);
-            expect_doubles(&import, HE_VERTEX, "color", 4, colors, 4);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "uv", 2, 4}, uv);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 4}, normal);
+            expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 4, 4}, colors);
             expect_note(&import, "not_finite", "", 1, header + 12 + 3 * 48 + 24);
         }
         he_mesh_free(build_import(&import));
@@ -467,13 +474,16 @@ static void a_wrong_binary_body_names_its_byte(void **state)
         size_t length = b.length;
         b.length = rows[i].where;
         put_whole(&b, rows[i].word);
-        expect_refused_at_byte("off", b.bytes, length, rows[i].status, rows[i].at, rows[i].words);
+        expect_refused_at_byte(&(format_file){"off", b.bytes, length}, rows[i].status, rows[i].at,
+                               rows[i].words);
     }
     body b = square_body(header);
     for (size_t length = H; length < b.length; length++) {
-        expect_refused_at_byte("off", b.bytes, length, HE_SYNTAX, length, "the file ends");
+        expect_refused_at_byte(&(format_file){"off", b.bytes, length}, HE_SYNTAX, length,
+                               "the file ends");
     }
-    expect_refused_at_byte("off", header, H - 1, HE_SYNTAX, H - 1, "before its counts");
+    expect_refused_at_byte(&(format_file){"off", header, H - 1}, HE_SYNTAX, H - 1,
+                           "before its counts");
 }
 
 static void it_is_recognised(void **state)

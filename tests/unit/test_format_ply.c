@@ -20,7 +20,7 @@ static void every_type_in_every_encoding(void **state)
 {
     (void)state;
     static const uint32_t corners[] = {0, 1, 2, 0, 2, 3};
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < TYPES * WHOLE_TYPES * TYPES; i++) {
             size_t type = i % TYPES, count = i / TYPES % WHOLE_TYPES;
             size_t index = i / TYPES / WHOLE_TYPES;
@@ -28,41 +28,43 @@ static void every_type_in_every_encoding(void **state)
             snprintf(header, sizeof header,
                      "element vertex 4\nproperty %s x\nproperty %s y\nproperty %s z\n"
                      "property %s quality\nelement face 2\nproperty list %s %s %s\nend_header\n",
-                     types[type].names[0], types[type].names[1], types[type].names[i & 1],
-                     types[type].names[0], types[count].names[i & 1], types[index].names[i & 1],
+                     ply_types[type].names[0], ply_types[type].names[1],
+                     ply_types[type].names[i & 1], ply_types[type].names[0],
+                     ply_types[count].names[i & 1], ply_types[index].names[i & 1],
                      i & 1 ? "vertex_index" : "vertex_indices");
-            file f;
-            begin(&f, e, header);
+            ply_file f;
+            ply_begin(&f, e, header);
             for (size_t v = 0; v < 4; v++) {
                 for (size_t k = 0; k < 3; k++) {
-                    put_value(&f, type, square[v][k]);
+                    ply_put_value(&f, type, ply_square[v][k]);
                 }
-                put_value(&f, type, types[type].is_signed ? -3 : 77);
-                end_row(&f);
+                ply_put_value(&f, type, ply_types[type].is_signed ? -3 : 77);
+                ply_end_row(&f);
             }
             for (size_t k = 0; k < 6; k++) {
                 if (k % 3 == 0) {
-                    put_value(&f, count, 3);
+                    ply_put_value(&f, count, 3);
                 }
-                put_value(&f, index, corners[k]);
+                ply_put_value(&f, index, corners[k]);
                 if (k % 3 == 2) {
-                    end_row(&f);
+                    ply_end_row(&f);
                 }
             }
             he_import import = {0};
             he_error err = {0};
-            if (read_pieces("ply", f.bytes, f.length, 1 + i % 9, NULL, &import, &err) != HE_OK) {
+            if (read_pieces(&(format_file){"ply", f.bytes, f.length}, 1 + i % 9, NULL, &import,
+                            &err) != HE_OK) {
                 fail_msg("%s: %s", header, err.text);
             }
-            expect_points(&import, square, 4);
+            expect_points(&import, ply_square, 4);
             expect_corners(&import, corners, 6);
-            assert_int_equal(import.notes.count, types[index].is_float);
-            if (types[index].is_float) {
-                expect_note(&import, "fraction_indices", types[index].names[0], 1, 9);
+            assert_int_equal(import.notes.count, ply_types[index].is_float);
+            if (ply_types[index].is_float) {
+                expect_note(&import, "fraction_indices", ply_types[index].names[0], 1, 9);
             }
             const he_column *column = find_column(&import, HE_VERTEX, "quality");
             assert_non_null(column);
-            assert_int_equal(column->type, types[type].column);
+            assert_int_equal(column->type, ply_types[type].column);
             assert_int_equal(column->rows, 4);
             he_import_clear(&import);
         }
@@ -79,22 +81,22 @@ static void extreme_values_arrive(void **state)
                 {2, 32767},      {3, 65535},    {4, -2147483648}, {4, 2147483647},
                 {5, 4294967295}, {6, -0.0},     {6, 0.1f},        {7, 0.1},
                 {7, 5e-324},     {7, -DBL_MAX}, {6, 16777216.0},  {7, 1e300}};
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             size_t type = rows[i].type;
             char header[300];
             snprintf(header, sizeof header,
                      "element vertex 1\nproperty %s q\nproperty double z\nproperty %s y\n"
                      "property %s x\nend_header\n",
-                     types[type].names[1], types[type].names[0], types[type].names[1]);
-            file f;
-            begin(&f, e, header);
-            put_value(&f, type, rows[i].value);
-            put_value(&f, DOUBLE, 1.5);
-            put_value(&f, type, rows[i].value);
-            put_value(&f, type, rows[i].value);
-            end_row(&f);
-            he_import import = read_file(&f);
+                     ply_types[type].names[1], ply_types[type].names[0], ply_types[type].names[1]);
+            ply_file f;
+            ply_begin(&f, e, header);
+            ply_put_value(&f, type, rows[i].value);
+            ply_put_value(&f, DOUBLE, 1.5);
+            ply_put_value(&f, type, rows[i].value);
+            ply_put_value(&f, type, rows[i].value);
+            ply_end_row(&f);
+            he_import import = ply_read(&f);
             he_vec3 wanted = {rows[i].value, rows[i].value, 1.5};
             assert_memory_equal(import.soup.positions, &wanted, sizeof wanted);
             const he_column *q = find_column(&import, HE_VERTEX, "q");
@@ -104,7 +106,7 @@ static void extreme_values_arrive(void **state)
                 assert_memory_equal(row, &value, sizeof value);
             } else if (type == DOUBLE) {
                 assert_memory_equal(row, &rows[i].value, sizeof rows[i].value);
-            } else if (types[type].is_signed) {
+            } else if (ply_types[type].is_signed) {
                 int32_t value = (int32_t)rows[i].value;
                 assert_memory_equal(row, &value, sizeof value);
             } else {
@@ -120,38 +122,38 @@ static void elements_and_properties_in_any_order(void **state)
 {
     (void)state;
     static const uint32_t corners[] = {0, 1, 2, 3, 0, 2, 3}, groups[] = {7, 9};
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
-        file f;
-        begin(&f, e,
-              "comment made by hand # not a comment sign\nobj_info anything at all\n"
-              "element face 2\nproperty float angle\n"
-              "property list ushort uchar vertex_index\nproperty uchar group\n\n"
-              "element vertex 4\nproperty double z\n  property\tshort  x\nproperty float y\n"
-              "element edge 0\nend_header\n");
-        put_value(&f, FLOAT, 0.5);
-        put_value(&f, 3, 4);
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
+        ply_file f;
+        ply_begin(&f, e,
+                  "comment made by hand # not a comment sign\nobj_info anything at all\n"
+                  "element face 2\nproperty float angle\n"
+                  "property list ushort uchar vertex_index\nproperty uchar group\n\n"
+                  "element vertex 4\nproperty double z\n  property\tshort  x\nproperty float y\n"
+                  "element edge 0\nend_header\n");
+        ply_put_value(&f, FLOAT, 0.5);
+        ply_put_value(&f, 3, 4);
         for (size_t k = 0; k < 4; k++) {
-            put_value(&f, UCHAR, corners[k]);
+            ply_put_value(&f, UCHAR, corners[k]);
         }
-        put_value(&f, UCHAR, 7);
-        end_row(&f);
-        put_value(&f, FLOAT, -0.5);
-        put_value(&f, 3, 3);
+        ply_put_value(&f, UCHAR, 7);
+        ply_end_row(&f);
+        ply_put_value(&f, FLOAT, -0.5);
+        ply_put_value(&f, 3, 3);
         for (size_t k = 4; k < 7; k++) {
-            put_value(&f, UCHAR, corners[k]);
+            ply_put_value(&f, UCHAR, corners[k]);
         }
-        put_value(&f, UCHAR, 9);
-        end_row(&f);
+        ply_put_value(&f, UCHAR, 9);
+        ply_end_row(&f);
         for (size_t v = 0; v < 4; v++) {
-            put_value(&f, DOUBLE, square[v][2]);
-            put_value(&f, 2, square[v][0]);
-            put_value(&f, FLOAT, square[v][1]);
-            end_row(&f);
+            ply_put_value(&f, DOUBLE, ply_square[v][2]);
+            ply_put_value(&f, 2, ply_square[v][0]);
+            ply_put_value(&f, FLOAT, ply_square[v][1]);
+            ply_end_row(&f);
         }
-        he_import import = read_file(&f);
-        expect_points(&import, square, 4);
+        he_import import = ply_read(&f);
+        expect_points(&import, ply_square, 4);
         expect_corners(&import, corners, 7);
-        expect_u32s(&import, HE_FACE, "group", 1, groups, 2);
+        expect_u32s(&import, &(attribute_shape){HE_FACE, "group", 1, 2}, groups);
         assert_int_equal(find_column(&import, HE_FACE, "angle")->type, HE_FLOAT);
         assert_int_equal(import.notes.count, 0);
         he_import_clear(&import);
@@ -181,7 +183,7 @@ static void properties_become_attributes(void **state)
     expect_points(&import, points, 2);
     expect_bytes(&import, HE_VERTEX, 4, colors, 2);
     expect_bytes(&import, HE_FACE, 3, faces, 1);
-    expect_doubles(&import, HE_VERTEX, "quality", 1, qualities, 2);
+    expect_doubles(&import, &(attribute_shape){HE_VERTEX, "quality", 1, 2}, qualities);
     const he_column *column = find_column(&import, HE_VERTEX, "normal");
     assert_int_equal(column->type, HE_FLOAT);
     assert_int_equal(column->components, 3);
@@ -267,47 +269,47 @@ static void colors_of_every_type_are_fractions(void **state)
 static void what_is_left_out_is_noted(void **state)
 {
     (void)state;
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
-        file f;
-        begin(&f, e,
-              "element material 2\nproperty float shine\nproperty int number\n"
-              "element vertex 3\n" XYZ "property list uchar float weights\n"
-              "element face 1\n" CORNER "property list int double heights\n"
-              "element strange 2\nproperty list uchar ushort pairs\nproperty uchar last\n"
-              "end_header\n");
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
+        ply_file f;
+        ply_begin(&f, e,
+                  "element material 2\nproperty float shine\nproperty int number\n"
+                  "element vertex 3\n" XYZ "property list uchar float weights\n"
+                  "element face 1\n" CORNER "property list int double heights\n"
+                  "element strange 2\nproperty list uchar ushort pairs\nproperty uchar last\n"
+                  "end_header\n");
         for (size_t k = 0; k < 2; k++) {
-            put_value(&f, FLOAT, 1);
-            put_value(&f, INT, 2);
-            end_row(&f);
+            ply_put_value(&f, FLOAT, 1);
+            ply_put_value(&f, INT, 2);
+            ply_end_row(&f);
         }
         for (size_t v = 0; v < 3; v++) {
             for (size_t k = 0; k < 3; k++) {
-                put_value(&f, FLOAT, square[v][k]);
+                ply_put_value(&f, FLOAT, ply_square[v][k]);
             }
-            put_value(&f, UCHAR, (double)v);
+            ply_put_value(&f, UCHAR, (double)v);
             for (size_t k = 0; k < v; k++) {
-                put_value(&f, FLOAT, 0.5);
+                ply_put_value(&f, FLOAT, 0.5);
             }
-            end_row(&f);
+            ply_end_row(&f);
         }
         for (size_t k = 0; k < 4; k++) {
-            put_value(&f, k == 0 ? UCHAR : INT, k == 0 ? 3 : (double)k - 1);
+            ply_put_value(&f, k == 0 ? UCHAR : INT, k == 0 ? 3 : (double)k - 1);
         }
-        put_value(&f, INT, 6);
+        ply_put_value(&f, INT, 6);
         for (size_t k = 0; k < 6; k++) {
-            put_value(&f, DOUBLE, 0.25);
+            ply_put_value(&f, DOUBLE, 0.25);
         }
-        end_row(&f);
+        ply_end_row(&f);
         for (size_t k = 0; k < 2; k++) {
-            put_value(&f, UCHAR, 2);
-            put_value(&f, 3, 2);
-            put_value(&f, 3, 2);
-            put_value(&f, UCHAR, 2);
-            end_row(&f);
+            ply_put_value(&f, UCHAR, 2);
+            ply_put_value(&f, 3, 2);
+            ply_put_value(&f, 3, 2);
+            ply_put_value(&f, UCHAR, 2);
+            ply_end_row(&f);
         }
-        he_import import = read_file(&f);
+        he_import import = ply_read(&f);
         expect_counts(&import, 3, 1, 3);
-        expect_points(&import, square, 3);
+        expect_points(&import, ply_square, 3);
         expect_note(&import, "ignored_element", "material", 1, 3);
         expect_note(&import, "ignored_list", "weights", 1, 10);
         expect_note(&import, "ignored_list", "heights", 1, 13);
@@ -340,17 +342,17 @@ static void values_that_are_not_finite(void **state)
 {
     (void)state;
     static const float wanted[] = {0, 1, 0, 0};
-    for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
-        file f;
-        begin(&f, e, "element vertex 4\n" XYZ "property float q\nend_header\n");
+    for (ply_encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
+        ply_file f;
+        ply_begin(&f, e, "element vertex 4\n" XYZ "property float q\nend_header\n");
         static const double values[] = {NAN, 1, INFINITY, -INFINITY};
         for (size_t v = 0; v < 4; v++) {
             for (size_t k = 0; k < 3; k++) {
-                put_value(&f, FLOAT, 0);
+                ply_put_value(&f, FLOAT, 0);
             }
-            put_value(&f, FLOAT, values[v]);
+            ply_put_value(&f, FLOAT, values[v]);
         }
-        he_import import = read_file(&f);
+        he_import import = ply_read(&f);
         assert_memory_equal(find_column(&import, HE_VERTEX, "q")->data, wanted, sizeof wanted);
         expect_note(&import, "not_finite", "q", 3, f.length - 64);
         he_import_clear(&import);
@@ -411,7 +413,8 @@ static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
     assert_int_equal(import.notes.count, 0);
     he_import_clear(&import);
     for (size_t end = at; end < length; end++) {
-        expect_refused_at_byte("ply", bytes, end, HE_SYNTAX, end, "the file ends after");
+        expect_refused_at_byte(&(format_file){"ply", bytes, end}, HE_SYNTAX, end,
+                               "the file ends after");
     }
 }
 
@@ -420,23 +423,23 @@ static void strips_become_triangles(void **state)
     (void)state;
     static const uint32_t corners[] = {0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 0, 1, 2, 3, 0, 4, 2};
     static const double strips[] = {0, 1, 2, 3, 4, 0, -1, 1, 2, 3, -1, -1, 2, 3, -1, 0, 4, 2};
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
-        file f;
-        begin(&f, e,
-              "element vertex 5\n" XYZ
-              "element tristrips 1\nproperty list int int vertex_indices\nend_header\n");
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
+        ply_file f;
+        ply_begin(&f, e,
+                  "element vertex 5\n" XYZ
+                  "element tristrips 1\nproperty list int int vertex_indices\nend_header\n");
         for (size_t v = 0; v < 5; v++) {
             for (size_t k = 0; k < 3; k++) {
-                put_value(&f, FLOAT, (double)(v * k));
+                ply_put_value(&f, FLOAT, (double)(v * k));
             }
-            end_row(&f);
+            ply_end_row(&f);
         }
-        put_value(&f, INT, 18);
+        ply_put_value(&f, INT, 18);
         for (size_t k = 0; k < 18; k++) {
-            put_value(&f, INT, strips[k]);
+            ply_put_value(&f, INT, strips[k]);
         }
-        end_row(&f);
-        he_import import = read_file(&f);
+        ply_end_row(&f);
+        he_import import = ply_read(&f);
         expect_counts(&import, 5, 6, 18);
         expect_corners(&import, corners, 18);
         assert_int_equal(he_places_find(&import.faces, 0), e == TEXT ? 15 : f.length - 64);
@@ -451,7 +454,7 @@ static void strips_become_triangles(void **state)
                      "element face 1\n" CORNER "property uint mark\nend_header\n"
                      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2 1\n2 0 1 2\n3 2 1 3 3\n3 0 2 1 7\n");
     expect_corners(&import, both, 9);
-    expect_u32s(&import, HE_FACE, "mark", 1, marks, 3);
+    expect_u32s(&import, &(attribute_shape){HE_FACE, "mark", 1, 3}, marks);
     expect_note(&import, "ignored_property", "id", 1, 9);
     he_import_clear(&import);
 }
@@ -493,19 +496,20 @@ static void places_are_known(void **state)
     assert_int_equal(err.place, HE_PLACE_LINE);
     assert_int_equal(err.at, 17);
     he_import_clear(&import);
-    file f;
-    begin(&f, MOST_FIRST,
-          "element vertex 3\nproperty char x\nproperty char y\nproperty char z\nelement face 4\n"
-          "property list uchar char vertex_indices\nend_header\n");
+    ply_file f;
+    ply_begin(
+        &f, MOST_FIRST,
+        "element vertex 3\nproperty char x\nproperty char y\nproperty char z\nelement face 4\n"
+        "property list uchar char vertex_indices\nend_header\n");
     size_t body = f.length;
     for (size_t k = 0; k < 9; k++) {
-        put_value(&f, UCHAR, 0);
+        ply_put_value(&f, UCHAR, 0);
     }
     static const double faces[] = {3, 0, 1, 2, 4, 0, 1, 2, 0, 3, 0, 2, 1, 2, 0, 1};
     for (size_t k = 0; k < sizeof faces / sizeof *faces; k++) {
-        put_value(&f, UCHAR, faces[k]);
+        ply_put_value(&f, UCHAR, faces[k]);
     }
-    import = read_file(&f);
+    import = ply_read(&f);
     static const size_t places[] = {9, 13, 18, 22};
     for (uint32_t i = 0; i < 4; i++) {
         assert_int_equal(he_places_find(&import.faces, i), body + places[i]);

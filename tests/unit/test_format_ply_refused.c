@@ -71,7 +71,7 @@ static void wrong_text_names_its_line(void **state)
         expect_refused("ply", rows[i].text, rows[i].status, rows[i].line, rows[i].words);
     }
     static const char wide[] = "\xFF\xFEp\0l\0y\0\n\0";
-    expect_bytes_refused("ply", wide, sizeof wide - 1, HE_UNSUPPORTED, 1, "UTF-16");
+    expect_bytes_refused(&(format_file){"ply", wide, sizeof wide - 1}, HE_UNSUPPORTED, 1, "UTF-16");
 }
 
 #define ROWS \
@@ -148,31 +148,32 @@ static void wrong_bytes_name_their_place(void **state)
         {{3, 0, -1, 2, -9}, HE_BAD_INDEX, 5, "no vertex -1"},
         {{3, 0, 1, 2, 127, 0, -9}, HE_SYNTAX, 18, "after 1 of the 2 rows"},
     };
-    for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
-        file f;
+    for (ply_encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
+        ply_file f;
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            begin(&f, e,
-                  "element vertex 3\n" XYZ "element face 2\n"
-                  "property list char int vertex_indices\nend_header\n");
+            ply_begin(&f, e,
+                      "element vertex 3\n" XYZ "element face 2\n"
+                      "property list char int vertex_indices\nend_header\n");
             for (size_t k = 0; k < 9; k++) {
-                put_value(&f, FLOAT, square[k / 3][k % 3]);
+                ply_put_value(&f, FLOAT, ply_square[k / 3][k % 3]);
             }
             size_t body = f.length, left = 0;
             for (size_t k = 0; rows[i].faces[k] != -9; k++) {
                 bool count = left == 0;
-                put_value(&f, count ? 0 : INT, rows[i].faces[k]);
+                ply_put_value(&f, count ? 0 : INT, rows[i].faces[k]);
                 left = count ? (size_t)fabs(rows[i].faces[k]) : left - 1;
             }
-            expect_refused_at_byte("ply", f.bytes, f.length, rows[i].status, body + rows[i].at,
-                                   rows[i].words);
+            expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, rows[i].status,
+                                   body + rows[i].at, rows[i].words);
         }
-        begin(&f, e, "element vertex 2\n" XYZ "end_header\n");
+        ply_begin(&f, e, "element vertex 2\n" XYZ "end_header\n");
         size_t body = f.length;
         for (size_t k = 0; k < 6; k++) {
-            put_value(&f, FLOAT, k == 4 ? NAN : 0);
+            ply_put_value(&f, FLOAT, k == 4 ? NAN : 0);
         }
-        expect_refused_at_byte("ply", f.bytes, f.length, HE_NOT_FINITE, body + 12, "vertex 1");
-        expect_refused_at_byte("ply", f.bytes, body + 23, HE_SYNTAX, body + 23,
+        expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, HE_NOT_FINITE, body + 12,
+                               "vertex 1");
+        expect_refused_at_byte(&(format_file){"ply", f.bytes, body + 23}, HE_SYNTAX, body + 23,
                                "after 1 of the 2 rows");
     }
 }
@@ -189,24 +190,25 @@ static void fractions_of_bytes_name_their_place(void **state)
                 {FLOAT, INFINITY, "does not name a vertex"},
                 {DOUBLE, NAN, "does not name a vertex"},
                 {DOUBLE, 3, "there is no vertex 3; the vertices are 0 to 2"}};
-    for (encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
+    for (ply_encoding e = LEAST_FIRST; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            file f;
+            ply_file f;
             char header[200];
             snprintf(header, sizeof header,
                      "element vertex 3\n" XYZ "element face 1\n"
                      "property list char %s vertex_indices\nend_header\n",
-                     types[rows[i].type].names[0]);
-            begin(&f, e, header);
+                     ply_types[rows[i].type].names[0]);
+            ply_begin(&f, e, header);
             for (size_t k = 0; k < 9; k++) {
-                put_value(&f, FLOAT, square[k / 3][k % 3]);
+                ply_put_value(&f, FLOAT, ply_square[k / 3][k % 3]);
             }
-            put_value(&f, 0, 3);
-            put_value(&f, rows[i].type, 0);
-            put_value(&f, rows[i].type, 1);
+            ply_put_value(&f, 0, 3);
+            ply_put_value(&f, rows[i].type, 0);
+            ply_put_value(&f, rows[i].type, 1);
             size_t at = f.length;
-            put_value(&f, rows[i].type, rows[i].corner);
-            expect_refused_at_byte("ply", f.bytes, f.length, HE_BAD_INDEX, at, rows[i].words);
+            ply_put_value(&f, rows[i].type, rows[i].corner);
+            expect_refused_at_byte(&(format_file){"ply", f.bytes, f.length}, HE_BAD_INDEX, at,
+                                   rows[i].words);
         }
     }
 }
@@ -269,18 +271,19 @@ static void counts_are_not_believed(void **state)
     };
     largest most = {0};
     const he_mem_hook hook = {watch, &most};
-    for (encoding e = TEXT; e <= MOST_FIRST; e++) {
+    for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            file f;
-            begin(&f, e, rows[i].header);
-            put_text(&f, "end_header\n");
-            put_value(&f, UINT, rows[i].body[0]);
-            put_value(&f, INT, rows[i].body[1]);
-            end_row(&f);
+            ply_file f;
+            ply_begin(&f, e, rows[i].header);
+            ply_put_text(&f, "end_header\n");
+            ply_put_value(&f, UINT, rows[i].body[0]);
+            ply_put_value(&f, INT, rows[i].body[1]);
+            ply_end_row(&f);
             he_import import = {0};
             he_error err = {0};
             he_mem_set_hook(&hook);
-            he_status status = read_pieces("ply", f.bytes, f.length, 3, NULL, &import, &err);
+            he_status status =
+                read_pieces(&(format_file){"ply", f.bytes, f.length}, 3, NULL, &import, &err);
             he_mem_set_hook(NULL);
             bool short_text = e == TEXT && strstr(err.text, "ends before its last") != NULL;
             if (!short_text && (status != rows[i].status || !strstr(err.text, rows[i].words))) {
@@ -309,27 +312,30 @@ static void limits_are_kept(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(
-            read_pieces("ply", text, sizeof text - 1, 1, &rows[i].limits, &import, &err), HE_LIMIT);
+        assert_int_equal(read_pieces(&(format_file){"ply", text, sizeof text - 1}, 1,
+                                     &rows[i].limits, &import, &err),
+                         HE_LIMIT);
         assert_non_null(strstr(err.text, rows[i].words));
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
     /* an attribute may take more memory than the rest of the mesh */
-    file f;
-    begin(
+    ply_file f;
+    ply_begin(
         &f, LEAST_FIRST,
         "element face 60\nproperty list char char vertex_indices\nproperty uchar a\nend_header\n");
     for (size_t k = 0; k < 60; k++) {
-        put_value(&f, UCHAR, 0);
-        put_value(&f, UCHAR, 1);
+        ply_put_value(&f, UCHAR, 0);
+        ply_put_value(&f, UCHAR, 1);
     }
     he_limits limits = {.bytes = 300};
     he_import import = {0};
     he_error err = {0};
-    assert_int_equal(read_pieces("ply", f.bytes, f.length, 0, NULL, &import, &err), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"ply", f.bytes, f.length}, 0, NULL, &import, &err),
+                     HE_OK);
     he_import_clear(&import);
     limits.bytes = 239;
-    assert_int_equal(read_pieces("ply", f.bytes, f.length, 0, &limits, &import, &err), HE_LIMIT);
+    assert_int_equal(
+        read_pieces(&(format_file){"ply", f.bytes, f.length}, 0, &limits, &import, &err), HE_LIMIT);
     assert_int_equal(err.place, HE_PLACE_BYTE);
 
     static char header[200000];
@@ -346,7 +352,9 @@ static void limits_are_kept(void **state)
             memset(header + length, 'c', sizeof header - 1 - length);
             length = sizeof header - 1;
         }
-        assert_int_equal(read_pieces("ply", header, length, 1000, NULL, &import, &err), HE_LIMIT);
+        assert_int_equal(
+            read_pieces(&(format_file){"ply", header, length}, 1000, NULL, &import, &err),
+            HE_LIMIT);
         assert_int_equal(err.place, HE_PLACE_LINE);
     }
 }

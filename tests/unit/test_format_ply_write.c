@@ -93,7 +93,8 @@ static void positions_are_floats_where_that_is_exact(void **state)
         char *bytes = write_bytes("ply", "binary", mesh, NULL, &length);
         assert_non_null(strstr(bytes, floats[i] ? "property float x" : "property double x"));
         he_import import = {0};
-        assert_int_equal(read_pieces("ply", bytes, length, 0, NULL, &import, NULL), HE_OK);
+        assert_int_equal(read_pieces(&(format_file){"ply", bytes, length}, 0, NULL, &import, NULL),
+                         HE_OK);
         assert_memory_equal(import.soup.positions, mesh->c.position, sizeof(he_vec3));
         he_import_clear(&import);
         free(bytes);
@@ -117,23 +118,30 @@ static void large_faces_are_counted_in_more_than_a_byte(void **state)
     char *bytes = write_bytes("ply", "binary_big_endian", mesh, NULL, &length);
     assert_non_null(strstr(bytes, "property list uint int vertex_indices\n"));
     he_import import = {0};
-    assert_int_equal(read_pieces("ply", bytes, length, 5, NULL, &import, NULL), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"ply", bytes, length}, 5, NULL, &import, NULL),
+                     HE_OK);
     expect_counts(&import, 300, 1, 300);
     he_import_clear(&import);
     free(bytes);
     he_mesh_free(mesh);
 }
 
-static void add_column(he_soup *soup, const char *name, he_kind domain, he_type type,
-                       uint32_t components, size_t rows)
+/* An attribute of `rows` rows, all of whose bytes are 1. */
+typedef struct attribute {
+    const char *name;
+    he_kind domain;
+    he_type type;
+    uint32_t components;
+    size_t rows;
+} attribute;
+
+static void add_column(he_soup *soup, const attribute *a)
 {
     he_column *column;
-    assert_int_equal(he_soup_column(soup,
-                                    &(he_column_schema){name, domain, type, components, HE_COPY},
-                                    &column, NULL),
-                     HE_OK);
-    assert_int_equal(he_column_extend(column, rows, NULL), HE_OK);
-    memset(column->data, 1, rows * column->row_bytes);
+    const he_column_schema schema = {a->name, a->domain, a->type, a->components, HE_COPY};
+    assert_int_equal(he_soup_column(soup, &schema, &column, NULL), HE_OK);
+    assert_int_equal(he_column_extend(column, a->rows, NULL), HE_OK);
+    memset(column->data, 1, a->rows * column->row_bytes);
 }
 
 static void colors_between_bytes_are_rounded_and_counted(void **state)
@@ -157,15 +165,16 @@ static void what_is_lost_is_named(void **state)
     he_soup soup;
     he_mesh *mesh = NULL;
     fixture_soup(&soup, "012,023");
-    add_column(&soup, "x", HE_VERTEX, HE_FLOAT, 1, 4);
-    add_column(&soup, "two words", HE_VERTEX, HE_FLOAT, 1, 4);
-    add_column(&soup, "pair", HE_VERTEX, HE_FLOAT, 2, 4);
-    add_column(&soup, "flag", HE_VERTEX, HE_BOOL, 1, 4);
-    add_column(&soup, "color", HE_VERTEX, HE_DOUBLE, 3, 4);
-    add_column(&soup, "color", HE_FACE, HE_UINT32, 3, 1);
-    add_column(&soup, "red", HE_VERTEX, HE_INT32, 1, 4);
-    add_column(&soup, "heat", HE_HALFEDGE, HE_FLOAT, 2, 6);
-    add_column(&soup, "mark", HE_FACE, HE_INT32, 1, 1);
+    static const attribute attributes[] = {
+        {"x", HE_VERTEX, HE_FLOAT, 1, 4},      {"two words", HE_VERTEX, HE_FLOAT, 1, 4},
+        {"pair", HE_VERTEX, HE_FLOAT, 2, 4},   {"flag", HE_VERTEX, HE_BOOL, 1, 4},
+        {"color", HE_VERTEX, HE_DOUBLE, 3, 4}, {"color", HE_FACE, HE_UINT32, 3, 1},
+        {"red", HE_VERTEX, HE_INT32, 1, 4},    {"heat", HE_HALFEDGE, HE_FLOAT, 2, 6},
+        {"mark", HE_FACE, HE_INT32, 1, 1},
+    };
+    for (size_t i = 0; i < sizeof attributes / sizeof *attributes; i++) {
+        add_column(&soup, &attributes[i]);
+    }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
     he_notes notes;
     size_t length;

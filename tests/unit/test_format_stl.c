@@ -121,12 +121,13 @@ static void wrong_bytes_name_their_place(void **state)
         put_facet(&f, facets[k], 0);
     }
     for (size_t length = 0; length < HEADER; length++) {
-        expect_refused_at_byte("stl", f.bytes, length, HE_SYNTAX, length, "not an STL file");
+        expect_refused_at_byte(&(format_file){"stl", f.bytes, length}, HE_SYNTAX, length,
+                               "not an STL file");
     }
     for (size_t length = HEADER; length < f.length; length++) {
         char words[60];
         snprintf(words, sizeof words, "after %zu of the 4 facets", (length - HEADER) / FACET);
-        expect_refused_at_byte("stl", f.bytes, length, HE_SYNTAX, length, words);
+        expect_refused_at_byte(&(format_file){"stl", f.bytes, length}, HE_SYNTAX, length, words);
     }
     static const struct {
         uint32_t count;
@@ -146,7 +147,8 @@ static void wrong_bytes_name_their_place(void **state)
         f.length = HEADER - 4;
         put_word(&f, rows[i].count);
         f.length = length;
-        expect_refused_at_byte("stl", f.bytes, f.length, rows[i].status, rows[i].at, rows[i].words);
+        expect_refused_at_byte(&(format_file){"stl", f.bytes, f.length}, rows[i].status, rows[i].at,
+                               rows[i].words);
     }
     static const float wrong[][9] = {{0, 0, 0, 0, NAN, 0, 1, 0, 0},
                                      {0, 0, 0, 0, 0, 0, 0, 0, INFINITY}};
@@ -154,8 +156,8 @@ static void wrong_bytes_name_their_place(void **state)
         begin(&f, "x", 2);
         put_facet(&f, facets[0], 0);
         put_facet(&f, wrong[i], 0);
-        expect_refused_at_byte("stl", f.bytes, f.length, HE_NOT_FINITE, HEADER + FACET,
-                               "not finite");
+        expect_refused_at_byte(&(format_file){"stl", f.bytes, f.length}, HE_NOT_FINITE,
+                               HEADER + FACET, "not finite");
     }
     /* a facet with repeated corners is refused when the mesh is built and not by the reader */
     static const float thin[9] = {0, 1, 0, -0.0f, 1, 0, 1, 0, 0};
@@ -307,10 +309,12 @@ static void limits_are_kept(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_import import = {0};
         he_error err = {0};
-        assert_int_equal(
-            read_pieces("stl", text, sizeof text - 1, 1, &rows[i].limits, &import, &err), HE_LIMIT);
+        assert_int_equal(read_pieces(&(format_file){"stl", text, sizeof text - 1}, 1,
+                                     &rows[i].limits, &import, &err),
+                         HE_LIMIT);
         assert_int_equal(err.place, HE_PLACE_LINE);
-        assert_int_equal(read_pieces("stl", f.bytes, f.length, 0, &rows[i].limits, &import, &err),
+        assert_int_equal(read_pieces(&(format_file){"stl", f.bytes, f.length}, 0, &rows[i].limits,
+                                     &import, &err),
                          HE_LIMIT);
         assert_int_equal(err.place, HE_PLACE_BYTE);
         assert_int_equal(err.at, rows[i].byte);
@@ -442,7 +446,8 @@ static void polygons_are_cut_into_triangles(void **state)
     assert_int_equal(find_note(&notes, "isolated_vertices", "")->count, 1);
     assert_int_equal(notes.count, 2);
     he_import import = {0};
-    assert_int_equal(read_pieces("stl", bytes, length, 9, NULL, &import, NULL), HE_OK);
+    assert_int_equal(read_pieces(&(format_file){"stl", bytes, length}, 9, NULL, &import, NULL),
+                     HE_OK);
     expect_counts(&import, 10, 7, 21);
     assert_true(area_of(&import) == 2 * (12 + 2 + 3));
     he_mesh *again = build_import(&import);

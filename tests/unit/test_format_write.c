@@ -185,22 +185,31 @@ static void dead_rows_are_skipped(void **state)
     he_mesh_free(mesh);
 }
 
-/* Adds an attribute of faces or vertices; element 0 gets this value. */
-static void add_column(he_mesh *mesh, const char *name, he_kind domain, he_type type,
-                       uint32_t components, const void *row, const char *const *labels)
+/* An attribute whose value for element 0 is `row`; `labels` may be NULL. */
+typedef struct attribute {
+    const char *name;
+    he_kind domain;
+    he_type type;
+    uint32_t components;
+    const void *row;
+    const char *const *labels;
+} attribute;
+
+static void add_column(he_mesh *mesh, const attribute *a)
 {
     he_column *column;
     assert_int_equal(
-        he_column_new(&(he_column_schema){name, domain, type, components, HE_COPY}, &column, NULL),
+        he_column_new(&(he_column_schema){a->name, a->domain, a->type, a->components, HE_COPY},
+                      &column, NULL),
         HE_OK);
-    assert_int_equal(he_column_extend(column, he_mesh_issued(mesh, domain), NULL), HE_OK);
-    memcpy(he_column_row(column, 0), row, column->row_bytes);
-    if (labels != NULL) {
+    assert_int_equal(he_column_extend(column, he_mesh_issued(mesh, a->domain), NULL), HE_OK);
+    memcpy(he_column_row(column, 0), a->row, column->row_bytes);
+    if (a->labels != NULL) {
         column->labels = he_labels_new();
         uint32_t ignored;
-        for (; *labels != NULL; labels++) {
-            assert_int_equal(
-                he_labels_add(column->labels, *labels, strlen(*labels), &ignored, NULL), HE_OK);
+        for (const char *const *label = a->labels; *label != NULL; label++) {
+            assert_int_equal(he_labels_add(column->labels, *label, strlen(*label), &ignored, NULL),
+                             HE_OK);
         }
     }
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
@@ -213,12 +222,12 @@ static void names_that_do_not_fit_a_line(void **state)
     char longer[5000];
     memset(longer, 'x', sizeof longer - 1);
     longer[sizeof longer - 1] = '\0';
-    add_column(mesh, "group", HE_FACE, HE_UINT32, 1, &(uint32_t){0},
-               (const char *const[]){" a\nf 9 9 9\\", NULL});
-    add_column(mesh, "object", HE_FACE, HE_UINT32, 1, &(uint32_t){1},
-               (const char *const[]){"", longer, NULL});
-    add_column(mesh, "material", HE_FACE, HE_UINT32, 1, &(uint32_t){77},
-               (const char *const[]){"only", NULL});
+    add_column(mesh, &(attribute){"group", HE_FACE, HE_UINT32, 1, &(uint32_t){0},
+                                  (const char *const[]){" a\nf 9 9 9\\", NULL}});
+    add_column(mesh, &(attribute){"object", HE_FACE, HE_UINT32, 1, &(uint32_t){1},
+                                  (const char *const[]){"", longer, NULL}});
+    add_column(mesh, &(attribute){"material", HE_FACE, HE_UINT32, 1, &(uint32_t){77},
+                                  (const char *const[]){"only", NULL}});
     he_notes notes;
     char *text = write_text("obj", mesh, &notes);
     assert_non_null(strstr(text, "\ng _a_f 9 9 9_\n"));
@@ -239,11 +248,12 @@ static void what_is_lost_is_named(void **state)
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     double big[2] = {1e308, 1};
     big[0] *= 10;
-    add_column(mesh, "uv", HE_VERTEX, HE_DOUBLE, 2, big, NULL);
-    add_column(mesh, "normal", HE_VERTEX, HE_FLOAT, 3, (float[]){0.1f, 0, -1}, NULL);
-    add_column(mesh, "color", HE_VERTEX, HE_BOOL, 4, (unsigned char[]){1, 0, 1, 1}, NULL);
-    add_column(mesh, "group", HE_FACE, HE_UINT32, 1, &(uint32_t){1}, NULL);
-    add_column(mesh, "weight", HE_EDGE, HE_INT32, 1, &(int32_t){-4}, NULL);
+    add_column(mesh, &(attribute){"uv", HE_VERTEX, HE_DOUBLE, 2, big, NULL});
+    add_column(mesh, &(attribute){"normal", HE_VERTEX, HE_FLOAT, 3, (float[]){0.1f, 0, -1}, NULL});
+    add_column(mesh,
+               &(attribute){"color", HE_VERTEX, HE_BOOL, 4, (unsigned char[]){1, 0, 1, 1}, NULL});
+    add_column(mesh, &(attribute){"group", HE_FACE, HE_UINT32, 1, &(uint32_t){1}, NULL});
+    add_column(mesh, &(attribute){"weight", HE_EDGE, HE_INT32, 1, &(int32_t){-4}, NULL});
     he_notes notes;
     char *text = write_text("obj", mesh, &notes);
     assert_non_null(strstr(text, "v 0 0 0\n"));
@@ -298,8 +308,9 @@ static void random_meshes_round_trip(void **state)
             char *text = write_pieces(names[i], mesh, 1000, NULL);
             he_import import = {0};
             he_error err = {0};
-            assert_int_equal(read_pieces(names[i], text, strlen(text), 777, NULL, &import, &err),
-                             HE_OK);
+            assert_int_equal(
+                read_pieces(&(format_file){names[i], text, strlen(text)}, 777, NULL, &import, &err),
+                HE_OK);
             he_mesh *again = build_import(&import);
             assert_true(he_mesh_equal(mesh, again));
             he_mesh_free(again);

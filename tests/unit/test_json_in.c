@@ -138,11 +138,19 @@ static const body_case cases[] = {
     {"{\"a/b\":[01]}", API_MALFORMED_JSON, "/a~1b/0"},
 };
 
-static bool parse(const char *body, size_t length, size_t values, api_document *document,
-                  api_in *root, api_problem *problem)
+/* A body that has been parsed, or the problem with it. */
+typedef struct parsed {
+    api_document document;
+    api_in root;
+    api_problem problem;
+} parsed;
+
+/* Parses a body of at most `values` values. */
+static bool parse(const char *body, size_t length, size_t values, parsed *p)
 {
     const api_in_options options = {.values = values};
-    return api_document_parse((api_bytes){body, length}, &options, document, root, problem);
+    return api_document_parse((api_bytes){body, length}, &options, &p->document, &p->root,
+                              &p->problem);
 }
 
 static void hostile_bodies_are_refused_exactly(void **state)
@@ -150,9 +158,7 @@ static void hostile_bodies_are_refused_exactly(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const body_case *c = &cases[i];
-        api_document document = {0};
-        api_in root;
-        api_problem problem = {0};
+        parsed p = {0};
         /* The body is copied to a block of its exact size, so that the address sanitizer detects a
          * read beyond its end. */
         size_t length = strlen(c->body);
@@ -160,13 +166,13 @@ static void hostile_bodies_are_refused_exactly(void **state)
         assert_non_null(body);
         char *exact = length == 0 ? body : realloc(body, length);
         memcpy(exact, c->body, length);
-        bool good = parse(exact, length, 1000, &document, &root, &problem);
-        if (good != (c->code == HE_OK) || problem.code != c->code ||
-            (strcmp(c->pointer, "-") != 0 && strcmp(c->pointer, problem.pointer) != 0)) {
-            fail_msg("%s: %s at \"%s\" (%s)", c->body, api_code_slug(problem.code), problem.pointer,
-                     problem.detail);
+        bool good = parse(exact, length, 1000, &p);
+        if (good != (c->code == HE_OK) || p.problem.code != c->code ||
+            (strcmp(c->pointer, "-") != 0 && strcmp(c->pointer, p.problem.pointer) != 0)) {
+            fail_msg("%s: %s at \"%s\" (%s)", c->body, api_code_slug(p.problem.code),
+                     p.problem.pointer, p.problem.detail);
         }
-        api_document_clear(&document);
+        api_document_clear(&p.document);
         free(exact);
     }
 }
@@ -178,26 +184,21 @@ static void depth_and_number_of_values_are_bounded(void **state)
     for (int depth = API_MAX_DEPTH; depth <= API_MAX_DEPTH + 1; depth++) {
         memset(body, '[', (size_t)depth);
         memset(body + depth, ']', (size_t)depth);
-        api_document document = {0};
-        api_in root;
-        api_problem problem = {0};
-        assert_int_equal(parse(body, 2 * (size_t)depth, 1000, &document, &root, &problem),
-                         depth == API_MAX_DEPTH);
-        assert_int_equal(problem.code, depth == API_MAX_DEPTH ? HE_OK : API_MALFORMED_JSON);
-        api_document_clear(&document);
+        parsed p = {0};
+        assert_int_equal(parse(body, 2 * (size_t)depth, 1000, &p), depth == API_MAX_DEPTH);
+        assert_int_equal(p.problem.code, depth == API_MAX_DEPTH ? HE_OK : API_MALFORMED_JSON);
+        api_document_clear(&p.document);
     }
-    api_document document = {0};
-    api_in root;
-    api_problem problem = {0};
-    assert_true(parse("[1,2,3]", 7, 4, &document, &root, &problem));
-    api_document_clear(&document);
-    assert_false(parse("[1,2,3]", 7, 3, &document, &root, &problem));
-    assert_int_equal(api_problem_http(&problem), 413);
+    parsed p = {0};
+    assert_true(parse("[1,2,3]", 7, 4, &p));
+    api_document_clear(&p.document);
+    assert_false(parse("[1,2,3]", 7, 3, &p));
+    assert_int_equal(api_problem_http(&p.problem), 413);
     /* Brackets that are opened and never closed must not use the stack. */
     static char deep[100000];
     memset(deep, '[', sizeof deep);
-    problem = (api_problem){0};
-    assert_false(parse(deep, sizeof deep, 1000000, &document, &root, &problem));
+    p.problem = (api_problem){0};
+    assert_false(parse(deep, sizeof deep, 1000000, &p));
 }
 
 static void objects_have_a_bounded_number_of_members(void **state)
@@ -211,12 +212,9 @@ static void objects_have_a_bounded_number_of_members(void **state)
                                      i == 0 ? "{" : ",", i);
         }
         body[used++] = '}';
-        api_document document = {0};
-        api_in root;
-        api_problem problem = {0};
-        assert_int_equal(parse(body, used, 10000, &document, &root, &problem),
-                         members == API_MAX_MEMBERS);
-        api_document_clear(&document);
+        parsed p = {0};
+        assert_int_equal(parse(body, used, 10000, &p), members == API_MAX_MEMBERS);
+        api_document_clear(&p.document);
     }
 }
 
@@ -321,20 +319,19 @@ static void values_are_refused_with_their_pointer(void **state)
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         char body[128];
         int length = snprintf(body, sizeof body, "{\"v\":%s}", values[i].value);
-        api_document document = {0};
+        parsed p = {0};
         api_arena arena = {0};
-        api_in root, value;
-        api_problem problem = {0};
-        assert_true(parse(body, (size_t)length, 100, &document, &root, &problem));
-        assert_true(api_in_need(&root, "v", &value));
+        api_in value;
+        assert_true(parse(body, (size_t)length, 100, &p));
+        assert_true(api_in_need(&p.root, "v", &value));
         bool good = read_value(values[i].how, &value, &arena);
-        if (good != (values[i].code == HE_OK) || problem.code != values[i].code ||
-            strcmp(problem.pointer, values[i].pointer) != 0) {
-            fail_msg("%s: %s at \"%s\" (%s)", body, api_code_slug(problem.code), problem.pointer,
-                     problem.detail);
+        if (good != (values[i].code == HE_OK) || p.problem.code != values[i].code ||
+            strcmp(p.problem.pointer, values[i].pointer) != 0) {
+            fail_msg("%s: %s at \"%s\" (%s)", body, api_code_slug(p.problem.code),
+                     p.problem.pointer, p.problem.detail);
         }
         api_arena_clear(&arena);
-        api_document_clear(&document);
+        api_document_clear(&p.document);
     }
 }
 
@@ -342,21 +339,20 @@ static void members_are_those_that_are_named(void **state)
 {
     (void)state;
     static const char body[] = "{\"a\":1,\"B\":2}";
-    api_document document = {0};
-    api_in root, value;
-    api_problem problem = {0};
-    assert_true(parse(body, strlen(body), 100, &document, &root, &problem));
-    assert_true(api_in_only(&root, (const char *const[]){"a", "B", "c", NULL}));
-    assert_false(api_in_find(&root, "b", &value)); /* letter case matters */
-    assert_int_equal(problem.code, HE_OK);
-    assert_false(api_in_need(&root, "c", &value));
-    assert_int_equal(problem.code, API_MISSING_MEMBER);
-    assert_string_equal(problem.pointer, "");
-    problem = (api_problem){0};
-    assert_false(api_in_only(&root, (const char *const[]){"a", "b", NULL}));
-    assert_int_equal(problem.code, API_UNKNOWN_MEMBER);
-    assert_string_equal(problem.pointer, "/B");
-    api_document_clear(&document);
+    parsed p = {0};
+    api_in value;
+    assert_true(parse(body, strlen(body), 100, &p));
+    assert_true(api_in_only(&p.root, (const char *const[]){"a", "B", "c", NULL}));
+    assert_false(api_in_find(&p.root, "b", &value)); /* letter case matters */
+    assert_int_equal(p.problem.code, HE_OK);
+    assert_false(api_in_need(&p.root, "c", &value));
+    assert_int_equal(p.problem.code, API_MISSING_MEMBER);
+    assert_string_equal(p.problem.pointer, "");
+    p.problem = (api_problem){0};
+    assert_false(api_in_only(&p.root, (const char *const[]){"a", "b", NULL}));
+    assert_int_equal(p.problem.code, API_UNKNOWN_MEMBER);
+    assert_string_equal(p.problem.pointer, "/B");
+    api_document_clear(&p.document);
 }
 
 static void numbers_are_exact(void **state)
@@ -364,19 +360,18 @@ static void numbers_are_exact(void **state)
     (void)state;
     static const char body[] = "[9007199254740991,0.1,1e-320,179769313486231570e291]";
     static const double expected[] = {9007199254740991.0, 0.1, 1e-320, 1.7976931348623157e308};
-    api_document document = {0};
-    api_in root, child;
-    api_problem problem = {0};
-    assert_true(parse(body, strlen(body), 100, &document, &root, &problem));
+    parsed p = {0};
+    api_in child;
+    assert_true(parse(body, strlen(body), 100, &p));
     size_t i = 0;
-    for (bool more = api_in_first(&root, &child); more; more = api_in_next(&child)) {
+    for (bool more = api_in_first(&p.root, &child); more; more = api_in_next(&child)) {
         double value;
         assert_true(api_in_number(&child, &value));
         assert_memory_equal(&value, &expected[i], sizeof value);
         i++;
     }
     assert_int_equal(i, 4);
-    api_document_clear(&document);
+    api_document_clear(&p.document);
 }
 
 static void every_failed_allocation_is_a_problem(void **state)
@@ -385,18 +380,17 @@ static void every_failed_allocation_is_a_problem(void **state)
     static const char body[] = "{\"ids\":[1,2,3],\"name\":\"x\",\"deep\":[[{\"a\":null}]]}";
     failing f = {0};
     while (failing_next(&f)) {
-        api_document document = {0};
+        parsed p = {0};
         api_arena arena = {0};
-        api_in root, list;
-        api_problem problem = {0};
+        api_in list;
         uint32_t *ids;
         size_t count;
-        bool good = parse(body, strlen(body), 100, &document, &root, &problem) &&
-                    api_in_need(&root, "ids", &list) && api_in_ids(&list, 1, &arena, &ids, &count);
+        bool good = parse(body, strlen(body), 100, &p) && api_in_need(&p.root, "ids", &list) &&
+                    api_in_ids(&list, 1, &arena, &ids, &count);
         failing_end(&f, good);
-        assert_int_equal(problem.code, good ? HE_OK : HE_NO_MEMORY);
+        assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
         api_arena_clear(&arena);
-        api_document_clear(&document);
+        api_document_clear(&p.document);
     }
     assert_true(f.n > 10);
 }

@@ -14,10 +14,11 @@
 
 enum { MOST = 8192 };
 
-/* The parts that were read, as text: "[name|type]bytes;" for each. */
+/* The parts that were read, as text: "[name|type]bytes;" for each, and why the body was refused. */
 typedef struct told {
     char text[MOST];
     size_t length;
+    api_problem problem;
 } told;
 
 static void add(told *t, const char *bytes, size_t length)
@@ -35,9 +36,9 @@ static void add_text(told *t, const char *text)
 
 /* Reads a body in pieces of `piece` bytes, each in a block of its own; returns the code of a
  * refusal, or HE_OK. */
-static int read_in(const char *type, const char *body, size_t length, size_t piece, told *out,
-                   api_problem *problem)
+static int read_in(const char *type, const char *body, size_t length, size_t piece, told *out)
 {
+    api_problem *problem = &out->problem;
     *problem = (api_problem){0};
     out->length = 0;
     out->text[0] = '\0';
@@ -89,10 +90,10 @@ static void expect_of(const char *type, const char *body, size_t length, const c
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
         told t;
-        api_problem problem;
-        int code = read_in(type, body, length, piece, &t, &problem);
+        int code = read_in(type, body, length, piece, &t);
         if (code != HE_OK || strcmp(t.text, wanted) != 0) {
-            fail_msg("pieces of %zu: got %s %s, wanted %s", piece, t.text, problem.detail, wanted);
+            fail_msg("pieces of %zu: got %s %s, wanted %s", piece, t.text, t.problem.detail,
+                     wanted);
         }
     }
 }
@@ -107,10 +108,9 @@ static void expect_refused_of(const char *type, const char *body, size_t length,
 {
     for (size_t piece = 1; piece <= length; piece += piece < 9 ? 1 : length / 5 + 1) {
         told t;
-        api_problem problem;
-        assert_int_equal(read_in(type, body, length, piece, &t, &problem), code);
-        if (strstr(problem.detail, words) == NULL) {
-            fail_msg("pieces of %zu: got \"%s\", wanted \"%s\"", piece, problem.detail, words);
+        assert_int_equal(read_in(type, body, length, piece, &t), code);
+        if (strstr(t.problem.detail, words) == NULL) {
+            fail_msg("pieces of %zu: got \"%s\", wanted \"%s\"", piece, t.problem.detail, words);
         }
     }
 }
@@ -166,9 +166,8 @@ static void what_only_begins_as_a_delimiter_is_data(void **state)
     }
     static const char zeros[] = PART("a") "\0\r\n\0--AbC\0" LAST;
     told t;
-    api_problem problem;
     for (size_t piece = 1; piece < sizeof zeros; piece++) {
-        assert_int_equal(read_in(TYPE, zeros, sizeof zeros - 1, piece, &t, &problem), HE_OK);
+        assert_int_equal(read_in(TYPE, zeros, sizeof zeros - 1, piece, &t), HE_OK);
         assert_int_equal(t.length, 14);
         assert_memory_equal(t.text, "[a]\0\r\n\0--AbC\0;", 14);
     }

@@ -52,15 +52,21 @@ static he_vec3 on_grid(uint64_t *seed)
     return he_vec3_sub(p, (he_vec3){3, 3, 3});
 }
 
-/* Makes a fan of n triangles around `hub`: a disc, or a cone if z is not 0, which goes around
- * `turns` times. */
-static void fan(specimen *s, uint32_t n, he_vec3 hub, double z, double turns, double radius)
+/* A cone with its tip at `hub` and its rim z above that, a disc if z is 0; it goes around `turns`
+ * times. */
+typedef struct cone {
+    he_vec3 hub;
+    double z, turns, radius;
+} cone;
+
+/* Makes a cone of n triangles around its hub. */
+static void fan(specimen *s, uint32_t n, cone c)
 {
     for (uint32_t i = 0; i < n; i++) {
-        double step = turns * 2 * HE_PI / n;
-        he_vec3 from = around(i * step, radius, z);
-        he_vec3 to = around((turns == 1 ? (i + 1) % n : i + 1) * step, radius, z);
-        add(s, hub, he_vec3_add(hub, from), he_vec3_add(hub, to));
+        double step = c.turns * 2 * HE_PI / n;
+        he_vec3 from = around(i * step, c.radius, c.z);
+        he_vec3 to = around((c.turns == 1 ? (i + 1) % n : i + 1) * step, c.radius, c.z);
+        add(s, c.hub, he_vec3_add(c.hub, from), he_vec3_add(c.hub, to));
     }
 }
 
@@ -106,16 +112,16 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
     uint32_t n = 33 + below(seed, 60);
     switch (kind) {
     case 0: /* a disc, or a disc that goes around more than once */
-        fan(s, n, zero, 0, 1 + below(seed, 3), 1);
+        fan(s, n, (cone){zero, 0, 1 + below(seed, 3), 1});
         break;
     case 1: /* nested cones */
-        fan(s, n, zero, -1, 1, 1);
-        fan(s, n, below(seed, 2) == 0 ? zero : up, -1, 1, 0.7);
+        fan(s, n, (cone){zero, -1, 1, 1});
+        fan(s, n, (cone){below(seed, 2) == 0 ? zero : up, -1, 1, 0.7});
         break;
     case 2: /* two closed cones that touch at their tips, and a bow-tie of flat fans */
-        fan(s, n, up, -1, 1, 1);
-        fan(s, n, zero, 0, 1, 1);
-        fan(s, n, up, 1, 1, 1);
+        fan(s, n, (cone){up, -1, 1, 1});
+        fan(s, n, (cone){zero, 0, 1, 1});
+        fan(s, n, (cone){up, 1, 1, 1});
         break;
     case 3:
         burst(s, seed, n, zero, true);
@@ -126,10 +132,10 @@ static void make(specimen *s, uint64_t *seed, unsigned kind)
         break;
     case 5:
         book(s, seed, n, aside);
-        fan(s, n, aside, 0.5, 2, 1);
+        fan(s, n, (cone){aside, 0.5, 2, 1});
         break;
     default: /* hubs together with ordinary triangles */
-        fan(s, n, zero, 0.1, 1, 2);
+        fan(s, n, (cone){zero, 0.1, 1, 2});
         burst(s, seed, 40, zero, false);
         litter(s, seed, 60);
         break;
@@ -326,7 +332,7 @@ static void a_full_list_of_pairs_ends_the_search(void **state)
     (void)state;
     specimen *s = calloc(1, sizeof *s);
     assert_non_null(s);
-    fan(s, 200, (he_vec3){0, 0, 0}, 0, 40, 1);
+    fan(s, 200, (cone){(he_vec3){0, 0, 0}, 0, 40, 1});
     he_mesh *m = mesh_of(s);
     he_bvh *tree = NULL;
     he_ids pairs = {0};

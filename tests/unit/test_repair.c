@@ -51,7 +51,7 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
         he_report report;
         unsigned which = 0;
         fixture_soup(&soup, rows[i].faces);
-        copy_soup(&soup, &copy);
+        repair_copy_soup(&soup, &copy);
         he_status status = he_build(&copy, HE_BUILD_TAKE, &mesh, &report, NULL);
         bool listed = false;
         for (size_t k = 0; k < report.total; k++) {
@@ -64,8 +64,8 @@ static void the_set_that_is_named_lets_each_refused_soup_pass(void **state)
             fail_msg("%s: %x", rows[i].faces, which);
         }
         he_repaired done = {0};
-        he_repair_plan plan = plan_of(which);
-        mesh = mend(&soup, &plan, &done);
+        he_repair_plan plan = repair_plan_of(which);
+        mesh = repair_mend(&soup, &plan, &done);
         fixture_counts(mesh, rows[i].v, rows[i].e, rows[i].f);
         he_mesh_free(mesh);
         he_repaired_clear(&done);
@@ -78,12 +78,12 @@ static void nothing_is_done_to_what_is_good(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    he_mesh *mesh = mend_faces(CUBE, ALL, &done);
+    he_mesh *mesh = repair_mend_faces(CUBE, ALL, &done);
     fixture_counts(mesh, 8, 12, 6);
     assert_false(he_repaired_soup(&done));
     for (he_repair r = HE_REPAIR_WELD; r < HE_REPAIR_COUNT; r++) {
-        assert_int_equal(account(&done, r)->count, 0);
-        assert_int_equal(account(&done, r)->named, 0);
+        assert_int_equal(repair_account_of(&done, r)->count, 0);
+        assert_int_equal(repair_account_of(&done, r)->named, 0);
     }
     he_mesh_free(mesh);
     he_repaired_clear(&done);
@@ -96,7 +96,7 @@ static void no_repair_mends_an_index_that_names_nothing(void **state)
     unsigned which = ALL;
     he_mesh *mesh = NULL;
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(ALL);
+    he_repair_plan plan = repair_plan_of(ALL);
     fixture_soup(&soup, "012,11");
     soup.corners[1] = 3;
     assert_int_equal(he_repair_soup(&soup, &plan, &done, NULL), HE_OK);
@@ -113,7 +113,7 @@ static void a_moebius_band_is_not_orientable(void **state)
     he_soup soup;
     he_error err = {0};
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(DEGENERATE | ORIENT);
+    he_repair_plan plan = repair_plan_of(DEGENERATE | ORIENT);
     unsigned which;
     fixture_soup(&soup, "01,012,123,234,340,401");
     assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), HE_NOT_ORIENTABLE);
@@ -129,9 +129,9 @@ static void a_moebius_band_is_not_orientable(void **state)
     he_soup_clear(&soup);
 
     done = (he_repaired){0};
-    he_mesh *mesh = mend_faces("01,012,123,234,340,401", which, &done);
-    assert_int_equal(account(&done, HE_REPAIR_ORIENT)->left, 1);
-    assert_int_equal(account(&done, HE_REPAIR_SPLIT)->count, 2);
+    he_mesh *mesh = repair_mend_faces("01,012,123,234,340,401", which, &done);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->left, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_SPLIT)->count, 2);
     he_mesh_free(mesh);
     he_repaired_clear(&done);
 }
@@ -140,10 +140,10 @@ static void the_larger_part_keeps_its_direction(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    he_mesh *mesh = mend_faces("0123,4567,0154,1265,2376,3047", ORIENT, &done);
-    assert_int_equal(account(&done, HE_REPAIR_ORIENT)->count, 1);
-    assert_int_equal(account(&done, HE_REPAIR_ORIENT)->parts, 1);
-    assert_int_equal(account(&done, HE_REPAIR_ORIENT)->pairs[0].a, 0);
+    he_mesh *mesh = repair_mend_faces("0123,4567,0154,1265,2376,3047", ORIENT, &done);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->count, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->parts, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_ORIENT)->pairs[0].a, 0);
     /* the face is reversed, and its first corner stays the first */
     he_halfedge h = he_face_halfedge(mesh, (he_face){0});
     assert_int_equal(he_origin(mesh, h).i, 0);
@@ -156,8 +156,8 @@ static void copies_know_their_parents(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    he_mesh *mesh = mend_faces("021,032,013,123,354,365,346,456", SPLIT, &done);
-    const he_repair_account *split = account(&done, HE_REPAIR_SPLIT);
+    he_mesh *mesh = repair_mend_faces("021,032,013,123,354,365,346,456", SPLIT, &done);
+    const he_repair_account *split = repair_account_of(&done, HE_REPAIR_SPLIT);
     assert_int_equal(split->count, 1);
     assert_int_equal(split->parts, 1);
     assert_int_equal(split->named, 1);
@@ -171,9 +171,9 @@ static void bow_ties_of_open_fans_are_split_too(void **state)
 {
     (void)state;
     he_repaired done = {0};
-    he_mesh *mesh = mend_faces("012,034,056", SPLIT, &done);
-    assert_int_equal(account(&done, HE_REPAIR_SPLIT)->count, 2);
-    assert_int_equal(account(&done, HE_REPAIR_SPLIT)->parts, 1);
+    he_mesh *mesh = repair_mend_faces("012,034,056", SPLIT, &done);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_SPLIT)->count, 2);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_SPLIT)->parts, 1);
     fixture_counts(mesh, 9, 9, 3);
     he_mesh_free(mesh);
     he_repaired_clear(&done);
@@ -184,27 +184,27 @@ static void small_holes_are_filled(void **state)
     (void)state;
     he_repaired done = {0};
     /* a cube without its lid and without the two sides at vertex 7 */
-    he_mesh *mesh = mend_faces("0321,0154,1265,2376,3047", FILL, &done);
+    he_mesh *mesh = repair_mend_faces("0321,0154,1265,2376,3047", FILL, &done);
     fixture_counts(mesh, 8, 12, 6);
-    assert_int_equal(account(&done, HE_REPAIR_FILL)->count, 1);
-    assert_int_equal(account(&done, HE_REPAIR_FILL)->pairs[0].a, 5);
-    assert_int_equal(account(&done, HE_REPAIR_FILL)->pairs[0].b, 4);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->count, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->pairs[0].a, 5);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->pairs[0].b, 4);
     he_mesh_free(mesh);
     he_repaired_clear(&done);
 
     /* the outline of a single face must not be filled, nor a hole that is longer than allowed */
     done = (he_repaired){0};
-    mesh = mend_faces("0123", FILL, &done);
+    mesh = repair_mend_faces("0123", FILL, &done);
     fixture_counts(mesh, 4, 4, 1);
-    assert_int_equal(account(&done, HE_REPAIR_FILL)->left, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->left, 1);
     he_mesh_free(mesh);
     he_soup soup;
     he_repair_plan plan = {.which = FILL, .hole_edges = 3};
     done = (he_repaired){0};
     fixture_soup(&soup, "0321,0154,1265,2376,3047");
-    mesh = mend(&soup, &plan, &done);
+    mesh = repair_mend(&soup, &plan, &done);
     fixture_counts(mesh, 8, 12, 5);
-    assert_int_equal(account(&done, HE_REPAIR_FILL)->left, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_FILL)->left, 1);
     he_mesh_free(mesh);
     he_soup_clear(&soup);
 }
@@ -217,9 +217,9 @@ static he_status mend_or_fail(const he_soup *soup, unsigned which, he_watch *wat
     he_repaired done = {0};
     he_mesh *mesh = NULL;
     he_error err = {0};
-    he_repair_plan plan = plan_of(which);
+    he_repair_plan plan = repair_plan_of(which);
     failing_pause();
-    copy_soup(soup, &copy);
+    repair_copy_soup(soup, &copy);
     copy.limits.watch = watch;
     failing_resume();
     he_status status = he_repair_soup(&copy, &plan, &done, &err);
@@ -259,7 +259,7 @@ static void every_failing_allocation_is_survived(void **state)
         failing_pause();
         he_soup copy;
         unsigned which;
-        copy_soup(&soup, &copy);
+        repair_copy_soup(&soup, &copy);
         failing_resume();
         failing_status(&f, he_repair_advise(&copy, 0, &which, NULL));
         he_soup_clear(&copy);
@@ -303,7 +303,7 @@ static void copies_keep_within_the_limits(void **state)
     he_soup soup;
     he_error err = {0};
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(SPLIT);
+    he_repair_plan plan = repair_plan_of(SPLIT);
     fixture_soup(&soup, "012,034,056");
     soup.limits.vertices = 8;
     assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), HE_LIMIT);

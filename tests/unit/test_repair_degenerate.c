@@ -51,17 +51,17 @@ static void a_face_keeps_what_has_an_area(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_soup soup, copy;
         he_repaired done = {0};
-        he_repair_plan plan = plan_of(DEGENERATE);
+        he_repair_plan plan = repair_plan_of(DEGENERATE);
         char text[80];
         fixture_soup(&soup, rows[i].before);
-        copy_soup(&soup, &copy);
+        repair_copy_soup(&soup, &copy);
         assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
-        expect_carried(&soup, &copy, &done, false);
+        repair_expect_carried(&soup, &copy, &done, false);
         faces_of(&copy, text);
         if (strcmp(text, rows[i].after) != 0) {
             fail_msg("%s becomes %s, not %s", rows[i].before, text, rows[i].after);
         }
-        const he_repair_account *a = account(&done, HE_REPAIR_DROP_DEGENERATE);
+        const he_repair_account *a = repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE);
         assert_int_equal(a->count, rows[i].gone);
         assert_int_equal(a->parts, rows[i].mended);
         he_repaired_clear(&done);
@@ -105,12 +105,12 @@ static void a_keyhole_is_cut_into_triangles(void **state)
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
         he_soup soup, copy;
         he_repaired done = {0};
-        he_repair_plan plan = plan_of(DEGENERATE);
+        he_repair_plan plan = repair_plan_of(DEGENERATE);
         uint32_t n = sides[i];
         make_keyhole(&soup, n);
-        copy_soup(&soup, &copy);
+        repair_copy_soup(&soup, &copy);
         assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
-        expect_carried(&soup, &copy, &done, false);
+        repair_expect_carried(&soup, &copy, &done, false);
         assert_int_equal(copy.face_count, 2 * n);
         double area = 0;
         for (size_t f = 0; f < copy.face_count; f++) {
@@ -121,7 +121,7 @@ static void a_keyhole_is_cut_into_triangles(void **state)
         assert_true(fabs(area - ring) < 1e-9 * ring);
         he_repaired_clear(&done);
         he_soup_clear(&copy);
-        he_mesh *mesh = mend(&soup, &plan, &done);
+        he_mesh *mesh = repair_mend(&soup, &plan, &done);
         fixture_counts(mesh, 2 * n, 4 * n, 2 * n); /* V - E + F = 0, as for a ring */
         assert_int_equal(he_mesh_boundary_halfedges(mesh), 2 * n);
         he_mesh_free(mesh);
@@ -147,13 +147,13 @@ static void a_face_that_touches_itself_is_cut_where_it_is(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         he_soup soup, copy;
         he_repaired done = {0};
-        he_repair_plan plan = plan_of(DEGENERATE);
+        he_repair_plan plan = repair_plan_of(DEGENERATE);
         he_soup_init(&soup, NULL);
         for (size_t v = 0; v < sizeof points / sizeof *points; v++) {
             assert_int_equal(he_soup_add_vertex(&soup, points[v], NULL), HE_OK);
         }
         assert_int_equal(he_soup_add_face(&soup, rows[i].corners, rows[i].count, NULL), HE_OK);
-        copy_soup(&soup, &copy);
+        repair_copy_soup(&soup, &copy);
         assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
         double twice = 0;
         for (size_t f = 0; f < copy.face_count; f++) {
@@ -175,16 +175,16 @@ static void a_face_that_repeats_its_corners_is_left_out(void **state)
     (void)state;
     he_soup soup;
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(DEGENERATE);
+    he_repair_plan plan = repair_plan_of(DEGENERATE);
     fixture_soup(&soup, "0123");
     assert_int_equal(he_soup_begin_face(&soup, NULL), HE_OK);
     for (uint32_t i = 0; i < 400000; i++) {
         assert_int_equal(he_soup_add_corner(&soup, i % 4, NULL), HE_OK);
     }
-    he_mesh *mesh = mend(&soup, &plan, &done);
+    he_mesh *mesh = repair_mend(&soup, &plan, &done);
     fixture_counts(mesh, 4, 4, 1);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->pairs[0].a, 1);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->pairs[0].b, 0);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE)->pairs[0].a, 1);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE)->pairs[0].b, 0);
     he_mesh_free(mesh);
     he_repaired_clear(&done);
     he_soup_clear(&soup);
@@ -204,7 +204,7 @@ static void cuts_keep_within_the_limits(void **state)
         he_soup soup;
         he_error err = {0};
         he_repaired done = {0};
-        he_repair_plan plan = plan_of(DEGENERATE);
+        he_repair_plan plan = repair_plan_of(DEGENERATE);
         make_keyhole(&soup, 4);
         soup.limits = rows[i].limits;
         assert_int_equal(he_repair_soup(&soup, &plan, &done, &err), rows[i].status);
@@ -221,7 +221,7 @@ static void every_failing_allocation_is_survived(void **state)
     static const uint32_t quad[] = {0, 1, 2, 2}, none[] = {5, 5};
     assert_int_equal(he_soup_add_face(&soup, quad, 4, NULL), HE_OK);
     assert_int_equal(he_soup_add_face(&soup, none, 2, NULL), HE_OK);
-    expect_failures_survived(&soup, DEGENERATE, 20);
+    repair_expect_failures_survived(&soup, DEGENERATE, 20);
     he_soup_clear(&soup);
 }
 

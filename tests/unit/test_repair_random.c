@@ -34,9 +34,9 @@ static void expect_welded(const he_soup *soup, double tolerance)
     he_soup copy;
     he_repaired done = {0};
     he_repair_plan plan = {.which = WELD, .tolerance = tolerance};
-    copy_soup(soup, &copy);
+    repair_copy_soup(soup, &copy);
     assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
-    expect_carried(soup, &copy, &done, true);
+    repair_expect_carried(soup, &copy, &done, true);
     uint32_t *kept = calloc(soup->vertex_count + 1, sizeof *kept), count = 0;
     uint32_t *into = calloc(soup->vertex_count + 1, sizeof *into);
     assert_true(kept != NULL && into != NULL);
@@ -51,15 +51,15 @@ static void expect_welded(const he_soup *soup, double tolerance)
         }
     }
     assert_int_equal(copy.vertex_count, count);
-    assert_int_equal(account(&done, HE_REPAIR_WELD)->count, soup->vertex_count - count);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_WELD)->count, soup->vertex_count - count);
     for (uint32_t v = 0; v < count && done.vertex_from != NULL; v++) {
         assert_int_equal(done.vertex_from[v], kept[v]);
     }
     for (size_t c = 0; c < soup->corner_count; c++) {
         assert_int_equal(copy.corners[c], into[soup->corners[c]]);
     }
-    for (size_t i = 0; i < account(&done, HE_REPAIR_WELD)->named; i++) {
-        he_repair_pair pair = account(&done, HE_REPAIR_WELD)->pairs[i];
+    for (size_t i = 0; i < repair_account_of(&done, HE_REPAIR_WELD)->named; i++) {
+        he_repair_pair pair = repair_account_of(&done, HE_REPAIR_WELD)->pairs[i];
         assert_int_equal(into[pair.a], pair.b);
     }
     free(kept);
@@ -264,10 +264,10 @@ static size_t expect_mended(const he_soup *soup, size_t f, const he_soup *after,
 static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cut)
 {
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(DEGENERATE);
-    copy_soup(soup, out);
+    he_repair_plan plan = repair_plan_of(DEGENERATE);
+    repair_copy_soup(soup, out);
     assert_int_equal(he_repair_soup(out, &plan, &done, NULL), HE_OK);
-    expect_carried(soup, out, &done, false);
+    repair_expect_carried(soup, out, &done, false);
     size_t at = 0, gone = 0, mended = 0;
     for (size_t f = 0; f < soup->face_count; f++) {
         if (!is_degenerate(soup, f)) {
@@ -283,8 +283,8 @@ static void expect_no_degenerate(const he_soup *soup, he_soup *out, unsigned *cu
         at += made;
     }
     assert_int_equal(at, out->face_count);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->count, gone);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->parts, mended);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE)->count, gone);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE)->parts, mended);
     he_repaired_clear(&done);
 }
 
@@ -294,10 +294,10 @@ static void expect_no_duplicates(const he_soup *soup)
 {
     he_soup copy;
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(DEGENERATE | DUPLICATES);
-    copy_soup(soup, &copy);
+    he_repair_plan plan = repair_plan_of(DEGENERATE | DUPLICATES);
+    repair_copy_soup(soup, &copy);
     assert_int_equal(he_repair_soup(&copy, &plan, &done, NULL), HE_OK);
-    expect_carried(soup, &copy, &done, false);
+    repair_expect_carried(soup, &copy, &done, false);
     size_t kept = 0;
     for (size_t f = 0; f < soup->face_count; f++) {
         bool gone = false;
@@ -311,8 +311,9 @@ static void expect_no_duplicates(const he_soup *soup)
         }
     }
     assert_int_equal(kept, copy.face_count);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DEGENERATE)->count, 0);
-    assert_int_equal(account(&done, HE_REPAIR_DROP_DUPLICATES)->count, soup->face_count - kept);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DEGENERATE)->count, 0);
+    assert_int_equal(repair_account_of(&done, HE_REPAIR_DROP_DUPLICATES)->count,
+                     soup->face_count - kept);
     he_repaired_clear(&done);
     he_soup_clear(&copy);
 }
@@ -374,11 +375,11 @@ static void expect_oriented(const he_soup *soup)
 {
     he_soup copy;
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(DEGENERATE | ORIENT);
-    copy_soup(soup, &copy);
+    he_repair_plan plan = repair_plan_of(DEGENERATE | ORIENT);
+    repair_copy_soup(soup, &copy);
     he_status status = he_repair_soup(&copy, &plan, &done, NULL);
     if (status == HE_OK) {
-        expect_carried(soup, &copy, &done, false);
+        repair_expect_carried(soup, &copy, &done, false);
         assert_true(is_orientable(&copy));
         for (uint32_t a = 0; a < copy.vertex_count; a++) {
             for (uint32_t b = 0; b < a; b++) {
@@ -402,15 +403,15 @@ static void expect_split(const he_soup *soup)
     he_soup copy, again;
     he_repaired done = {0};
     he_ids bowties = {0};
-    he_repair_plan drop = plan_of(DEGENERATE), split = plan_of(SPLIT);
-    copy_soup(soup, &copy);
+    he_repair_plan drop = repair_plan_of(DEGENERATE), split = repair_plan_of(SPLIT);
+    repair_copy_soup(soup, &copy);
     assert_int_equal(he_repair_soup(&copy, &drop, &done, NULL), HE_OK);
     he_repaired_clear(&done);
-    he_mesh *mesh = mend(&copy, &split, &done);
+    he_mesh *mesh = repair_mend(&copy, &split, &done);
     assert_int_equal(he_bowties_find(mesh, &bowties, NULL), HE_OK);
     assert_int_equal(bowties.count, 0);
     he_repaired_clear(&done);
-    copy_soup(&copy, &again);
+    repair_copy_soup(&copy, &again);
     assert_int_equal(he_repair_soup(&again, &split, &done, NULL), HE_OK);
     for (size_t f = 0; f < copy.face_count; f++) {
         uint32_t end = he_soup_end(&copy, f);
@@ -437,9 +438,9 @@ static void expect_advice(const he_soup *soup, unsigned asked)
     he_soup copy;
     he_repaired done = {0};
     he_mesh *mesh = NULL;
-    he_repair_plan plan = plan_of(asked);
+    he_repair_plan plan = repair_plan_of(asked);
     unsigned which = 0;
-    copy_soup(soup, &copy);
+    repair_copy_soup(soup, &copy);
     he_status status = he_repair_soup(&copy, &plan, &done, NULL);
     if (status == HE_OK) {
         status = he_build(&copy, HE_BUILD_TAKE, &mesh, NULL, NULL);
@@ -450,8 +451,8 @@ static void expect_advice(const he_soup *soup, unsigned asked)
         assert_int_equal(he_repair_advise(&copy, asked, &which, NULL), HE_OK);
         assert_int_equal(which & asked, asked);
         assert_int_not_equal(which, asked);
-        plan = plan_of(which);
-        mesh = mend(soup, &plan, &done);
+        plan = repair_plan_of(which);
+        mesh = repair_mend(soup, &plan, &done);
         he_repaired_clear(&done);
         he_mesh_free(mesh);
     }
@@ -474,8 +475,8 @@ static void soups_of_every_kind_are_mended(void **state)
         expect_split(&soup);
         expect_advice(&soup, 0);
         expect_advice(&soup, md_below(&random, ALL + 1));
-        he_repair_plan plan = plan_of(md_below(&random, ALL + 1) | DEGENERATE | SPLIT);
-        he_mesh *mesh = mend(&soup, &plan, &done);
+        he_repair_plan plan = repair_plan_of(md_below(&random, ALL + 1) | DEGENERATE | SPLIT);
+        he_mesh *mesh = repair_mend(&soup, &plan, &done);
         he_mesh_free(mesh);
         he_repaired_clear(&done);
         he_soup_clear(&soup);

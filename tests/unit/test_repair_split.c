@@ -8,8 +8,8 @@
 static void expect_closed(const he_soup *soup)
 {
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(SPLIT);
-    he_mesh *mesh = mend(soup, &plan, &done);
+    he_repair_plan plan = repair_plan_of(SPLIT);
+    he_mesh *mesh = repair_mend(soup, &plan, &done);
     assert_int_equal(he_mesh_boundary_halfedges(mesh), 0);
     assert_int_equal(he_mesh_faces(mesh), soup->face_count);
     he_mesh_free(mesh);
@@ -87,7 +87,7 @@ static void an_edge_of_very_many_faces_takes_no_longer(void **state)
     he_soup soup;
     he_mesh *mesh = NULL;
     he_repaired done = {0};
-    he_repair_plan plan = plan_of(SPLIT);
+    he_repair_plan plan = repair_plan_of(SPLIT);
     he_soup_init(&soup, NULL);
     for (uint32_t v = 0; v < PILLOWS + 2; v++) {
         assert_int_equal(he_soup_add_vertex(&soup, (he_vec3){v, v % 7, v % 3}, NULL), HE_OK);
@@ -111,7 +111,7 @@ static void every_failing_allocation_is_survived(void **state)
     (void)state;
     he_soup soup;
     fixture_soup(&soup, "012,013,014,015,016,103,104,105,106,102");
-    expect_failures_survived(&soup, SPLIT, 15);
+    repair_expect_failures_survived(&soup, SPLIT, 15);
     he_soup_clear(&soup);
 }
 

@@ -1,6 +1,6 @@
 /* Backups of a store, and restoring them (core/journal/sqlite/sqlite_backup.h). */
 #include "tests/pace.h"
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -9,7 +9,6 @@
 
 #include <dirent.h>
 #include <sched.h>
-#include <sqlite3.h>
 #include <stdatomic.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -56,15 +55,6 @@ static int remove_folders(void **state)
     return 0;
 }
 
-static void open_store(told_journal *told)
-{
-    st_sqlite_opened out;
-    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &out)) {
-        fail_msg("%s", out.message);
-    }
-    told_begin(told, &out.journal);
-}
-
 static kept_mesh new_mesh(const char *id)
 {
     static uint64_t incarnations = 9000;
@@ -93,7 +83,7 @@ static kept_mesh make_store(unsigned edits)
 {
     told_journal told;
     kept_mesh mesh = new_mesh("a");
-    open_store(&told);
+    told_open(&told, folder);
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     for (unsigned i = 0; i < edits; i++) {
         kept_append(&told.journal, kept_edit(&mesh), &mesh, "x", 1);
@@ -107,7 +97,7 @@ static void expect_records(unsigned records, uint64_t *incarnation)
     told_journal told;
     unsigned found;
     st_card card;
-    open_store(&told);
+    told_open(&told, folder);
     assert_int_equal(count_records(&told.journal, "a", &found, &card), ST_OK);
     assert_int_equal(found, records);
     *incarnation = card.incarnation;
@@ -122,7 +112,7 @@ static void a_restore_brings_back_the_state_under_new_incarnations(void **state)
         fail_msg("%s", message);
     }
     told_journal told;
-    open_store(&told);
+    told_open(&told, folder);
     for (int i = 0; i < 3; i++) {
         kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1);
     }
@@ -173,7 +163,7 @@ static void a_restore_keeps_keys_without_their_tags(void **state)
     static const st_record_key edit = {.text = "a key", .digest = {7, 8}, .time = 1001};
     told_journal told;
     kept_mesh mesh = new_mesh("a");
-    open_store(&told);
+    told_open(&told, folder);
     st_record record = kept_content(&mesh);
     record.key = &make;
     kept_append(&told.journal, record, &mesh, NULL, 0);
@@ -185,22 +175,12 @@ static void a_restore_keeps_keys_without_their_tags(void **state)
     if (!st_sqlite_restore(folder, backup, before, message)) {
         fail_msg("%s", message);
     }
-    open_store(&told);
+    told_open(&told, folder);
     unsigned keys = 0;
     assert_int_equal(told.journal.keys(told.journal.self, NULL, count_key, &keys), ST_OK);
     assert_int_equal(told.journal.keys(told.journal.self, "a", count_key, &keys), ST_OK);
     assert_int_equal(keys, 2);
     told_end(&told);
-}
-
-static void run_sql(const char *text)
-{
-    char path[2 * FOLDER_PATH];
-    sqlite3 *db;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
 }
 
 static double restore_keys(const void *context, size_t size)
@@ -214,7 +194,7 @@ static double restore_keys(const void *context, size_t size)
                    "metadata, position, made, sum) "
                    "SELECT 1, 'key ' || i, zeroblob(16), i, 'a', 5, 1, 1, i, 0, 0 FROM n",
                    size);
-    run_sql(text);
+    store_sql_run(folder, text);
     if (!st_sqlite_backup(folder, backup, message)) {
         fail_msg("%s", message);
     }
@@ -252,7 +232,7 @@ static void a_backup_takes_the_place_of_no_file_of_a_store(void **state)
     char path[3 * FOLDER_PATH], linked[2 * FOLDER_PATH];
     told_journal told;
     kept_mesh mesh = make_store(2);
-    open_store(&told);
+    told_open(&told, folder);
     told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         (void)snprintf(path, sizeof path, "%s/%s", folder, names[i]);
@@ -304,7 +284,7 @@ static void a_log_left_behind_stays_with_its_database(void **state)
     kept_mesh mesh = make_store(2);
     assert_true(st_sqlite_backup(folder, backup, message));
     told_journal told;
-    open_store(&told);
+    told_open(&told, folder);
     for (int i = 0; i < 30; i++) {
         told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "y", 1));
     }
@@ -344,7 +324,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
         assert_true(st_sqlite_backup(folder, backup, message));
         uint64_t incarnation;
         told_journal told;
-        open_store(&told);
+        told_open(&told, folder);
         kept_mesh other = new_mesh("b");
         told_wait(&told, kept_append(&told.journal, kept_content(&other), &other, NULL, 0));
         told_end(&told);
@@ -367,7 +347,7 @@ static void an_interrupted_restore_is_finished_by_the_next_start(void **state)
             move("restored.db", "hedge.db");
         }
         expect_records(1, &incarnation);
-        open_store(&told);
+        told_open(&told, folder);
         /* As long as the note about the restore is not written, the old store must be kept. */
         assert_int_equal(told.journal.count(told.journal.self), step == 0 ? 2 : 1);
         told_end(&told);
@@ -476,7 +456,7 @@ static void a_backup_beside_a_writer_is_the_state_of_one_moment(void **state)
     (void)state;
     pthread_t thread;
     kept_mesh mesh = new_mesh("a");
-    open_store(&writing);
+    told_open(&writing, folder);
     kept_append(&writing.journal, kept_content(&mesh), &mesh, NULL, 0);
     atomic_store(&stops, false);
     assert_int_equal(pthread_create(&thread, NULL, write_on, &mesh), 0);

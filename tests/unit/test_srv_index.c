@@ -1,13 +1,11 @@
 /* When a store starts, the list of its meshes is compared with the indexes of the database
  * (sqlite_index.c), for any number of meshes. */
 #include "tests/pace.h"
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
 #include "journal/sqlite/sqlite_schema.h"
-
-#include <sqlite3.h>
 
 static char folder[FOLDER_PATH];
 
@@ -45,17 +43,9 @@ static void expect_start(const char *where)
     }
 }
 
-static void run_sql(const char *text)
-{
-    char path[2 * FOLDER_PATH];
-    sqlite3 *db;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "PRAGMA wal_checkpoint(TRUNCATE)", NULL, NULL, NULL),
-                     SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
-}
+/* Moves the pages of the statements before it from the log into the database. The same connection
+ * must do that, because a new one may find that the schema is damaged. */
+#define CHECKPOINT "; PRAGMA wal_checkpoint(TRUNCATE)"
 
 /* Makes a store with this many meshes in its list; their rows need no correct checksums, since the
  * start does not check these. */
@@ -71,9 +61,9 @@ static void make_store(size_t meshes)
         "created, modified, vertices, edges, faces, boundary, bytes, base, damage, sum) "
         "SELECT 'needle-' || (i * 7919 %% 1000003), '', i * 7919 %% 1000003, 1, 1, 1, 1, 1, 1, 1, "
         "1, 1, 1, 1, 1, 1, '', 1 FROM n; "
-        "UPDATE state SET commits = 5, position = 5, meshes = %zu, sum = %lu; COMMIT",
+        "UPDATE state SET commits = 5, position = 5, meshes = %zu, sum = %lu; COMMIT" CHECKPOINT,
         meshes, meshes, (unsigned long)st_progress_sum(&progress));
-    run_sql(text);
+    store_sql_run(folder, text);
 }
 
 /* Flips one bit at a time wherever the id is stored, in the row and in the index; returns how many
@@ -108,9 +98,10 @@ static void an_index_that_has_lost_a_mesh_refuses_the_start(void **state)
     assert_true(expect_refusals("needle-79190") >= 2);
     expect_start(folder);
     /* The index is replaced by the index of another column. */
-    run_sql("PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
-            "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "
-            "WHERE name = 'sqlite_autoindex_mesh_2'");
+    store_sql_run(
+        folder, "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET rootpage = (SELECT rootpage "
+                "FROM sqlite_schema WHERE name = 'sqlite_autoindex_mesh_1') "
+                "WHERE name = 'sqlite_autoindex_mesh_2'" CHECKPOINT);
     char message[ST_SQLITE_MESSAGE];
     assert_false(starts(folder, message));
     assert_non_null(strstr(message, "is damaged"));

@@ -1,6 +1,6 @@
 /* The journal in a folder (core/journal/sqlite) by itself: records that were appended are there
  * after a restart, and damage is named. */
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -8,7 +8,6 @@
 #include "model/random.h"
 #include "tests/seed.h"
 
-#include <sqlite3.h>
 #include <unistd.h>
 
 static char folder[FOLDER_PATH];
@@ -40,33 +39,6 @@ static void open_in(told_journal *told, const char *where)
 static void open_store(told_journal *told)
 {
     open_in(told, folder);
-}
-
-static void run_sql(const char *text)
-{
-    char path[2 * FOLDER_PATH], *message = NULL;
-    sqlite3 *db;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    if (sqlite3_exec(db, text, NULL, NULL, &message) != SQLITE_OK) {
-        fail_msg("%s: %s", text, message);
-    }
-    sqlite3_close(db);
-}
-
-static int64_t number_of(const char *text)
-{
-    char path[2 * FOLDER_PATH];
-    sqlite3 *db;
-    sqlite3_stmt *s;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, text, -1, &s, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
-    int64_t number = sqlite3_column_int64(s, 0);
-    sqlite3_finalize(s);
-    sqlite3_close(db);
-    return number;
 }
 
 /* --- meshes --- */
@@ -301,21 +273,6 @@ static kept_mesh open_with_mesh(told_journal *told, const he_mesh *content)
     return mesh;
 }
 
-static void wait_until_purged(told_journal *told)
-{
-    const st_journal *j = &told->journal;
-    const st_room_need need = {.records = 1};
-    st_room *room;
-    st_card card;
-    /* A deleted content is purged in steps between commits, so this loop writes until all is
-     * gone. */
-    do {
-        assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
-        j->leave(j->self, room);
-        assert_int_equal(j->open(j->self, "none", &card, NULL), ST_ABSENT);
-    } while (number_of("SELECT count(*) FROM purge") > 0);
-}
-
 static void a_staged_content_is_that_of_its_record(void **state)
 {
     (void)state;
@@ -348,21 +305,21 @@ static void a_staged_content_is_that_of_its_record(void **state)
     assert_int_equal(l.records, 1);
     assert_true(l.base.number == 4);
     loaded_clear(&l);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM record"), 1);
-    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 1);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM record"), 1);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 1);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
     /* A content that was staged and not used must leave nothing on the disk. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     j->unstage(j->self, stage);
     kept_append(j, kept_edit(&mesh), &mesh, "z", 1);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
     /* After the mesh is deleted, nothing of it must be left. */
     kept_append(j, kept_remove(&mesh), &mesh, NULL, 0);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
-    assert_int_equal(number_of("SELECT count(*) FROM record"), 0);
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM record"), 0);
     told_end(&told);
     he_mesh_free(small);
     he_mesh_free(large);
@@ -376,7 +333,7 @@ static void spoil(const char *table)
     size_t size;
     (void)snprintf(query, sizeof query, "SELECT rootpage FROM sqlite_schema WHERE name = '%s'",
                    table);
-    const size_t at = ((size_t)number_of(query) - 1) * PAGE;
+    const size_t at = ((size_t)store_sql_number(folder, query) - 1) * PAGE;
     unsigned char *bytes = folder_read(folder, "hedge.db", &size);
     assert_true(at + PAGE <= size);
     memset(bytes + at, 0xff, PAGE);
@@ -402,7 +359,7 @@ static void what_is_too_damaged_to_be_deleted_stops_nobody(void **state)
     spoil("part");
     open_store(&told);
     told_wait(&told, kept_append(&told.journal, kept_remove(&a), &a, NULL, 0));
-    wait_until_purged(&told);
+    store_sql_wait_for_purge(folder, &told);
     told_wait(&told, kept_append(&told.journal, kept_edit(&b), &b, "x", 1));
     assert_int_equal(told_losses(&told), 0);
     told_end(&told);
@@ -447,17 +404,17 @@ static void a_rebase_shortens_the_log_and_no_more(void **state)
     assert_int_equal(l.edits, 2);
     assert_string_equal(l.name, mesh.name);
     loaded_clear(&l);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT min(number) FROM record"), 23);
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT min(number) FROM record"), 23);
     /* The new base is for a record number that never existed: it must be ignored, and leave
      * nothing. */
     assert_int_equal(j->stage(j->self, large, &stage), ST_OK);
     facts.number = 23;
     j->rebase(j->self, stage, &facts, facts.revision);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "e", 1));
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 1);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), he_stored_parts(large));
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 1);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), he_stored_parts(large));
     told_end(&told);
     open_store(&told);
     l = load(&told.journal, "a");
@@ -526,7 +483,7 @@ static void damage_is_named_and_stays_with_its_mesh(void **state)
     for (size_t i = 0; i < sizeof damages / sizeof *damages; i++) {
         told_journal told;
         make_two();
-        run_sql(damages[i].sql);
+        store_sql_run(folder, damages[i].sql);
         open_store(&told);
         const st_journal *j = &told.journal;
         loaded l = load(j, "bad");
@@ -597,12 +554,12 @@ static void other_files_are_refused_by_name(void **state)
 {
     (void)state;
     make_two();
-    run_sql("PRAGMA user_version = 7");
+    store_sql_run(folder, "PRAGMA user_version = 7");
     expect_refused(folder,
                    "has version 7 of the tables, and this hedged 1.2.3 knows them up to version 3");
-    run_sql("PRAGMA user_version = 3; PRAGMA application_id = 5");
+    store_sql_run(folder, "PRAGMA user_version = 3; PRAGMA application_id = 5");
     expect_refused(folder, "is not a store of hedged");
-    run_sql("PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");
+    store_sql_run(folder, "PRAGMA application_id = 0x68656467; UPDATE state SET position = 1");
     expect_refused(folder, "is damaged");
     folder_write(folder, "hedge.db", (const unsigned char *)"no database at all", 18);
     expect_refused(folder, "is damaged");

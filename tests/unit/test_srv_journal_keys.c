@@ -1,10 +1,8 @@
 /* Idempotency-Keys in the journal of a folder: the keys of the last day are restored, completely or
  * not at all. */
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
-
-#include <sqlite3.h>
 
 enum { DAY = 24 * 3600, MOST = 16 };
 
@@ -174,18 +172,7 @@ static void without_memory_to_take_them_the_reading_ends(void **state)
 
 static int64_t rows(void)
 {
-    char path[2 * FOLDER_PATH];
-    sqlite3 *db;
-    sqlite3_stmt *statement;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_prepare_v2(db, "SELECT count(*) FROM kept", -1, &statement, NULL),
-                     SQLITE_OK);
-    assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
-    int64_t count = sqlite3_column_int64(statement, 0);
-    sqlite3_finalize(statement);
-    sqlite3_close(db);
-    return count;
+    return store_sql_number(folder, "SELECT count(*) FROM kept");
 }
 
 /* Appends the key of a request that changed nothing, and so has no record. */
@@ -239,22 +226,13 @@ static bool count_key(void *context, const st_kept_key *key)
 static void a_damaged_key_is_told(void **state)
 {
     (void)state;
-    char path[FOLDER_PATH + 16];
-    sqlite3 *db = NULL;
     st_health health = {.status = ST_OK};
     kept_mesh a = {.id = "a", .name = "", .content = content, .incarnation = 11};
     append(&a, kept_content(&a), "makes", 100, true);
     append(&a, kept_edit(&a), "first", 102, false);
     append(&a, kept_edit(&a), "second", 103, false);
     told_end(&told);
-    snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db,
-                                  "UPDATE kept SET revision = revision + 1 "
-                                  "WHERE text = 'second'",
-                                  NULL, NULL, NULL),
-                     SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+    store_sql_run(folder, "UPDATE kept SET revision = revision + 1 WHERE text = 'second'");
     open_store();
     told.journal.health(told.journal.self, &health);
     assert_int_equal(health.damaged_keys, 1);

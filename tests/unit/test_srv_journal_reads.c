@@ -1,6 +1,6 @@
 /* A mesh in the journal of a folder changes while it is read; and records of a newer release are
  * left alone. */
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
@@ -29,15 +29,6 @@ static int remove_folder(void **state)
     return 0;
 }
 
-static void open_store(told_journal *told)
-{
-    st_sqlite_opened opened;
-    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &opened)) {
-        fail_msg("%s", opened.message);
-    }
-    told_begin(told, &opened.journal);
-}
-
 static kept_mesh mesh_as(const char *id)
 {
     static uint64_t incarnations = 7000;
@@ -53,18 +44,6 @@ static sqlite3 *open_database(void)
     (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
     assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
     return db;
-}
-
-static int64_t number_of(const char *text)
-{
-    sqlite3 *db = open_database();
-    sqlite3_stmt *s;
-    assert_int_equal(sqlite3_prepare_v2(db, text, -1, &s, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_step(s), SQLITE_ROW);
-    int64_t number = sqlite3_column_int64(s, 0);
-    sqlite3_finalize(s);
-    sqlite3_close(db);
-    return number;
 }
 
 /* --- memory --- */
@@ -103,7 +82,7 @@ static void sqlite_keeps_little_of_a_small_memory_budget(void **state)
     told_journal told;
     kept_mesh mesh = mesh_as("m");
     st_memory_install(BUDGET);
-    open_store(&told);
+    told_open(&told, folder);
     const uint64_t before = st_memory_used();
     assert_int_not_equal(kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0), 0);
     write_and_read(&told, &mesh, WRITTEN, EACH);
@@ -125,7 +104,7 @@ static bool is_condemned_after(int change, bool restarts)
     kept_mesh mesh = mesh_as("m"), anew = mesh_as("m");
     st_reader *reader = NULL;
     st_card card;
-    open_store(&told);
+    told_open(&told, folder);
     const st_journal *j = &told.journal;
     kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
     assert_int_equal(j->open(j->self, "m", &card, &reader), ST_OK);
@@ -142,7 +121,7 @@ static bool is_condemned_after(int change, bool restarts)
     j->shut(reader);
     if (restarts) {
         told_end(&told);
-        open_store(&told);
+        told_open(&told, folder);
     }
     st_status status = j->open(j->self, "m", &card, NULL);
     assert_true(status == ST_OK || strcmp(card.damage, "it is none") == 0);
@@ -196,7 +175,7 @@ static st_status read_to_end(void)
     st_reader *reader = NULL;
     st_piece piece = {.kind = ST_PIECE_BASE};
     st_card card;
-    open_store(&told);
+    told_open(&told, folder);
     const st_journal *j = &told.journal;
     st_status status = j->open(j->self, "m", &card, &reader);
     while (status == ST_OK && piece.kind != ST_PIECE_END) {
@@ -213,7 +192,7 @@ static void a_record_of_a_newer_release_is_refused_with_both_versions(void **sta
     (void)state;
     told_journal told;
     kept_mesh mesh = mesh_as("m");
-    open_store(&told);
+    told_open(&told, folder);
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     for (int i = 0; i < 5; i++) {
         kept_append(&told.journal, kept_edit(&mesh), &mesh, "xyz", 3);
@@ -237,7 +216,7 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     told_journal told;
     kept_mesh mesh = mesh_as("m");
     st_stage *stage;
-    open_store(&told);
+    told_open(&told, folder);
     const st_journal *j = &told.journal;
     kept_append(j, kept_content(&mesh), &mesh, NULL, 0);
     st_record facts = kept_edit(&mesh);
@@ -249,7 +228,7 @@ static void a_base_before_the_base_leaves_nothing(void **state)
     j->rebase(j->self, stage, &facts, facts.revision);
     told_wait(&told, kept_append(j, kept_edit(&mesh), &mesh, "xyz", 3));
     told_end(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 0);
 }
 
 /* Reads the mesh "a": its base, then record 2, which has these bytes in parts, then record 3. */
@@ -281,20 +260,6 @@ static void expect_parts_of_edit(const st_journal *j, const unsigned char *bytes
     j->shut(reader);
 }
 
-static void wait_until_purged(told_journal *told)
-{
-    const st_journal *j = &told->journal;
-    const st_room_need need = {.records = 1};
-    st_room *room;
-    st_card card;
-    /* Old contents are purged in steps between commits, so this loop writes until all is gone. */
-    do {
-        assert_int_equal(j->reserve(j->self, &need, &room), ST_OK);
-        j->leave(j->self, room);
-        assert_int_equal(j->open(j->self, "none", &card, NULL), ST_ABSENT);
-    } while (number_of("SELECT count(*) FROM purge") > 0);
-}
-
 static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
 {
     (void)state;
@@ -304,7 +269,7 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     unsigned char *bytes = malloc(SIZE);
     st_stage *stage;
     assert_non_null(bytes);
-    open_store(&told);
+    told_open(&told, folder);
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
     for (size_t i = 0; i < SIZE; i++) {
         bytes[i] = (unsigned char)(i * 7 / 5);
@@ -317,14 +282,14 @@ static void a_staged_edit_comes_back_in_parts_and_is_no_base(void **state)
     kept_append(&told.journal, record, &mesh, NULL, 0);
     told_wait(&told, kept_append(&told.journal, kept_edit(&mesh), &mesh, "x", 1));
     told_end(&told);
-    open_store(&told);
+    told_open(&told, folder);
     expect_parts_of_edit(&told.journal, bytes, SIZE);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), 4);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 4);
     /* A PUT replaces the content: the parts of the old record must be deleted with it. */
     kept_append(&told.journal, kept_content(&mesh), &mesh, NULL, 0);
-    wait_until_purged(&told);
-    assert_int_equal(number_of("SELECT count(*) FROM part"), 0);
-    assert_int_equal(number_of("SELECT count(*) FROM snapshot"), 0);
+    store_sql_wait_for_purge(folder, &told);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM part"), 0);
+    assert_int_equal(store_sql_number(folder, "SELECT count(*) FROM snapshot"), 0);
     told_end(&told);
     free(bytes);
 }

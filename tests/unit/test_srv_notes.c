@@ -1,31 +1,21 @@
 /* Jobs that the journal of a folder keeps: they are restored as they were recorded last, or as done
  * if their change is recorded, or not at all. */
-#include "tests/store_folder.h"
+#include "tests/store_sql.h"
 #include "unit/edit_script.h"
 #include "unit/fixture.h"
 
 #include "journal/sqlite/sqlite_backup.h"
 
-#include <sqlite3.h>
 #include <unistd.h>
 
 static char folder[FOLDER_PATH];
 static he_mesh *content;
 static told_journal told;
 
-static void open_store(void)
-{
-    st_sqlite_opened out;
-    if (!st_sqlite_open(&(st_sqlite_options){.folder = folder, .release = "test"}, &out)) {
-        fail_msg("%s", out.message);
-    }
-    told_begin(&told, &out.journal);
-}
-
 static void restart(void)
 {
     told_end(&told);
-    open_store();
+    told_open(&told, folder);
 }
 
 static int setup(void **state)
@@ -33,7 +23,7 @@ static int setup(void **state)
     (void)state;
     folder_make(folder);
     content = script_mesh("012,023,034", NULL);
-    open_store();
+    told_open(&told, folder);
     return 0;
 }
 
@@ -44,18 +34,6 @@ static int teardown(void **state)
     folder_remove(folder);
     he_mesh_free(content);
     return 0;
-}
-
-static void run_sql(const char *text)
-{
-    char path[2 * FOLDER_PATH], *message = NULL;
-    sqlite3 *db;
-    (void)snprintf(path, sizeof path, "%s/hedge.db", folder);
-    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-    if (sqlite3_exec(db, text, NULL, NULL, &message) != SQLITE_OK) {
-        fail_msg("%s: %s", text, message);
-    }
-    sqlite3_close(db);
 }
 
 /* --- jobs --- */
@@ -220,8 +198,8 @@ static void a_damaged_job_is_as_good_as_none(void **state)
     const st_job a = accepted("a", 1), b = accepted("b", 2);
     note_job(&a);
     note_job(&b);
-    run_sql("UPDATE job SET number = 9 WHERE id = 'a'");
-    run_sql("UPDATE job SET state = 7 WHERE id = 'b'");
+    store_sql_run(folder, "UPDATE job SET number = 9 WHERE id = 'a'");
+    store_sql_run(folder, "UPDATE job SET state = 7 WHERE id = 'b'");
     assert_int_equal(jobs_kept().count, 0);
     /* The damaged job is gone, but the change that it has made must stay. */
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
@@ -240,14 +218,14 @@ static void an_older_file_is_raised(void **state)
     kept_mesh mesh = {.id = "m", .name = "", .content = content, .incarnation = 11};
     append(&mesh, kept_content(&mesh), NULL);
     told_end(&told);
-    run_sql("DROP TABLE job; PRAGMA user_version = 1");
+    store_sql_run(folder, "DROP TABLE job; PRAGMA user_version = 1");
     assert_true(st_sqlite_backup(folder, backup, message));
     st_sqlite_opened look;
     assert_true(st_sqlite_look(backup, &look));
     assert_int_equal(look.journal.count(look.journal.self), 1);
     look.journal.close(look.journal.self);
     for (int way = 0; way < 2; way++) {
-        open_store();
+        told_open(&told, folder);
         const st_job a = accepted("a", 1);
         note_job(&a);
         assert_int_equal(jobs_kept().count, 1);
@@ -259,7 +237,7 @@ static void an_older_file_is_raised(void **state)
     }
     folder_remove(before);
     (void)unlink(backup);
-    open_store();
+    told_open(&told, folder);
 }
 
 /* A job's entity tag names a state that may be gone after a restore, so a restore must remove
@@ -282,7 +260,7 @@ static void a_restore_takes_the_tags(void **state)
     }
     folder_remove(before);
     (void)unlink(backup);
-    open_store();
+    told_open(&told, folder);
     const seen s = jobs_kept();
     assert_int_equal(s.count, 1);
     assert_string_equal(s.texts[0], "apply_edits||m||token||||");

@@ -39,18 +39,22 @@ static bool hand_over(passed *p, const char *bytes, size_t length, size_t room)
     return false;
 }
 
-/* Passes the bytes in pieces of `piece` bytes, of which the first has `first` bytes (0: like the
- * others). */
-static void feed(passed *p, const char *bytes, size_t length, size_t first, size_t piece,
-                 size_t room)
+/* How bytes arrive: in pieces of `piece` bytes, of which the first has `first` bytes (0: like the
+ * others), in a buffer with `room` free bytes. */
+typedef struct arrival {
+    size_t first, piece, room;
+} arrival;
+
+/* Passes the bytes through the check as they arrive. */
+static void feed(passed *p, const char *bytes, size_t length, arrival by)
 {
     p->syntax = (srv_syntax){0};
     p->length = 0;
     p->taken = 0;
     for (size_t at = 0; at < length;) {
-        size_t size = at == 0 && first > 0 ? first : piece;
+        size_t size = at == 0 && by.first > 0 ? by.first : by.piece;
         size = size < length - at ? size : length - at;
-        if (!hand_over(p, bytes + at, size, room)) {
+        if (!hand_over(p, bytes + at, size, by.room)) {
             break;
         }
         at += size;
@@ -80,7 +84,7 @@ static void each_case_has_its_fault(void **state)
         const framing_case *c = framing_case_at(i);
         size_t length;
         char *bytes = framing_case_bytes(c, &length);
-        feed(&p[0], bytes, length, 0, length, ROOM / 2);
+        feed(&p[0], bytes, length, (arrival){0, length, ROOM / 2});
         int code = code_of(&p[0]);
         const char *slug = code == HE_OK ? "none" : api_code_slug(code);
         if (strcmp(slug, c->fault ? c->code : "none") != 0) {
@@ -105,15 +109,15 @@ static void a_case_is_the_same_wherever_it_is_cut(void **state)
         const framing_case *c = framing_case_at(i);
         size_t length;
         char *bytes = framing_case_bytes(c, &length);
-        feed(&p[0], bytes, length, 0, length, ROOM / 2);
-        feed(&p[1], bytes, length, 0, length, 0);
+        feed(&p[0], bytes, length, (arrival){0, length, ROOM / 2});
+        feed(&p[1], bytes, length, (arrival){0, length, 0});
         expect_equal(c, &p[0], &p[1], 0);
-        feed(&p[1], bytes, length, 0, 1, 0);
+        feed(&p[1], bytes, length, (arrival){0, 1, 0});
         expect_equal(c, &p[0], &p[1], 1);
-        feed(&p[1], bytes, length, 0, 997, 1);
+        feed(&p[1], bytes, length, (arrival){0, 997, 1});
         expect_equal(c, &p[0], &p[1], 997);
         for (size_t cut = 1; cut < length && length < 1000; cut++) {
-            feed(&p[1], bytes, length, cut, length, cut % 5);
+            feed(&p[1], bytes, length, (arrival){cut, length, cut % 5});
             expect_equal(c, &p[0], &p[1], cut);
         }
         free(bytes);
@@ -129,7 +133,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         const framing_case *c = framing_case_at(i);
         size_t length, same = 0, taken;
         char *bytes = framing_case_bytes(c, &length);
-        feed(&p[0], bytes, length, 0, 1, 0);
+        feed(&p[0], bytes, length, (arrival){0, 1, 0});
         taken = p[0].taken - (c->fault ? 1 : 0); /* the last consumed byte is the fault */
         while (same < taken && (bytes[same] == p[0].bytes[same] || p[0].bytes[same] == '\0' ||
                                 ((bytes[same] | 0x20) == 'e' && p[0].bytes[same] == '-') ||
@@ -141,7 +145,7 @@ static void no_byte_after_a_fault_is_passed_on(void **state)
         /* The bytes after the faulty byte may be anything: they must not change the result. */
         if (c->fault) {
             memset(bytes + taken + 1, 'x', length - taken - 1);
-            feed(&p[1], bytes, length, 0, length, ROOM / 2);
+            feed(&p[1], bytes, length, (arrival){0, length, ROOM / 2});
             expect_equal(c, &p[0], &p[1], taken);
         }
         free(bytes);
@@ -155,7 +159,7 @@ static void requests_are_counted(void **state)
                                "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 5\r\n\r\nGET /"
                                "\r\nPUT / HTTP/1.1\r\nHost: a\r\nTransfer-Encoding: chunked\r\n\r\n"
                                "3\r\nabc\r\n0\r\nX: y\r\n\r\nGET / HTTP/1.0\r\n\r\n";
-    feed(&p[0], good, sizeof good - 1, 0, sizeof good - 1, 0);
+    feed(&p[0], good, sizeof good - 1, (arrival){0, sizeof good - 1, 0});
     assert_false(srv_syntax_is_faulty(&p[0].syntax));
     assert_int_equal(p[0].syntax.requests, 4);
     assert_false(hand_over(&p[0], "\n", 1, 10));

@@ -150,20 +150,27 @@ static void write_float(FILE *file, double value)
     fwrite(&narrow, sizeof narrow, 1, file);
 }
 
-static void write_text(const bench_side *side, const char *name, const char *head,
-                       const char *vertex, const char *face, uint32_t base)
+/* A format of text: the file's name and first lines, the words in front of a vertex and of a face,
+ * and the number of the first vertex. */
+typedef struct text_format {
+    const char *name, *head, *vertex, *face;
+    uint32_t base;
+} text_format;
+
+static void write_text(const bench_side *side, const text_format *format)
 {
+    const uint32_t base = format->base;
     const bench_input *in = &side->input;
-    FILE *file = bench_open(side, name, "wb");
+    FILE *file = bench_open(side, format->name, "wb");
     setvbuf(file, NULL, _IOFBF, PIECE);
-    fputs(head, file);
+    fputs(format->head, file);
     for (uint32_t v = 0; v < in->vertices; v++) {
         const double *p = in->positions + 3 * (size_t)v;
-        fprintf(file, "%s%.9g %.9g %.9g\n", vertex, p[0], p[1], p[2]);
+        fprintf(file, "%s%.9g %.9g %.9g\n", format->vertex, p[0], p[1], p[2]);
     }
     for (uint32_t f = 0; f < in->faces; f++) {
         const uint32_t *c = in->corners + in->starts[f];
-        fprintf(file, "%s %u %u %u\n", face, c[0] + base, c[1] + base, c[2] + base);
+        fprintf(file, "%s %u %u %u\n", format->face, c[0] + base, c[1] + base, c[2] + base);
     }
     fclose(file);
 }
@@ -217,9 +224,9 @@ static void write_stl(const bench_side *side)
 static void make_files(bench_side *side, bench_result *out)
 {
     char head[64];
-    write_text(side, "input.obj", "", "v ", "f", 1);
+    write_text(side, &(text_format){"input.obj", "", "v ", "f", 1});
     snprintf(head, sizeof head, "OFF\n%u %u 0\n", side->input.vertices, side->input.faces);
-    write_text(side, "input.off", head, "", "3", 0);
+    write_text(side, &(text_format){"input.off", head, "", "3", 0});
     write_ply(side);
     write_stl(side);
     out->amount = side->input.faces;
