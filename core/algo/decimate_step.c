@@ -16,9 +16,9 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Lists the half-edges that leave the ends of h, starting with h and its twin: those of the first
- * end, or of both. Both ends are walked around in alternation, since each step waits for memory.
- * Returns false if there are too many. */
+/* Lists the half-edges that leave the ends of h, starting with h and its twin. If `ends` is 1, only
+ * those that leave the origin of h are listed. The walks around both ends alternate, since each
+ * step waits for memory. Returns false if there are more than HE_DECIMATE_DEGREE at an end. */
 static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
     const he_halfedge first[2] = {h, he_twin(h)};

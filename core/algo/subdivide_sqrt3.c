@@ -240,7 +240,7 @@ static void put_vertex(const he_subdivide_step *s, uint32_t v)
     s->to->vertex_halfedge[v] = h;
 }
 
-/* Numbers the new elements. */
+/* Numbers the new elements in the order of subdivide.h. */
 static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;

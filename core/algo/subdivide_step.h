@@ -1,7 +1,7 @@
 /* subdivide_step.h - one step of subdivide: makes the content of the finer mesh from that of the
  * coarser one.
  *
- *     subdivide.c         sizes, room, steps, and the replace
+ *     subdivide.c         sizes, memory, the loop over the steps, replacing the mesh
  *     subdivide_split.c   links where edges are cut in halves (loop, catmull_clark, linear)
  *     subdivide_sqrt3.c   links where edges are flipped
  *     subdivide_rules.c   positions of vertices
@@ -17,9 +17,9 @@
 /* The sizes of a mesh's content after a step. They have 64 bits because an estimate may exceed what
  * fits into a mesh. */
 typedef struct he_sizes {
-    uint64_t vertices, edges, faces; /* rows */
+    uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
-    uint64_t boundary;           /* half-edges */
+    uint64_t boundary;           /* boundary half-edges */
     uint64_t sharp, sharp_sides; /* sharp edges, and the faces at them */
     uint64_t polygons, corners;  /* faces that are no triangles, and their corners */
 } he_sizes;
@@ -52,7 +52,9 @@ typedef struct he_subdivide_step {
     uint64_t *feature_next; /* features of the finer content */
     uint64_t *fixed; /* a bit for each of the first `fixed_count` vertices, NULL if none is fixed */
     uint32_t fixed_count;
-    uint8_t *sharp; /* sharp edges of each vertex, at most 3; 3 if fixed. NULL: all are smooth */
+    /* Number of sharp edges at each vertex; 3 stands for more, and for fixed vertices; NULL if all
+     * vertices are smooth */
+    uint8_t *sharp;
     uint32_t *degree;
     /* Only for the scheme sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp
      * edge) and the first edge inside; for each edge that is cut in three its index among those
@@ -105,7 +107,7 @@ static inline void he_subdivide_set(he_content *to, uint32_t h, he_subdivide_lin
 }
 
 /* Writes the links of the finer content `to`, with the vertices' stored half-edges, the features
- * and the parents. */
+ * and the parents of new rows. */
 HE_NODISCARD he_status he_subdivide_split(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err);
 

@@ -7,7 +7,7 @@
 typedef struct corner {
     uint32_t halfedge;
     uint32_t group; /* HE_NONE on a boundary half-edge */
-    he_vec3 normal; /* normal of its face; then, in the first corners, the sums of the groups */
+    he_vec3 normal; /* normal of the face; zero if the face is degenerate */
     bool degenerate;
 } corner;
 
@@ -77,9 +77,10 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     return HE_OK;
 }
 
-/* Groups the corners around a vertex whose faces are smooth with each other, and returns the number
- * of groups. A boundary half-edge comes before the corners of its fan, and a vertex on the boundary
- * stores one, so only a closed fan continues from its last corner to the first. */
+/* Groups the corners around a vertex that no crease separates: the normals of neighbouring faces of
+ * a group differ by at most the crease angle. Returns the number of groups. A boundary half-edge
+ * comes before the corners of its fan, and a vertex on the boundary stores one, so only a closed
+ * fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
     const corner *last = NULL,
@@ -107,8 +108,9 @@ static uint32_t find_groups(fan *f)
     bool merged = he_vec3_angle(last->normal, leader->normal) <= f->crease;
     for (size_t i = 0; i < f->count; i++) {
         corner *c = &f->corners[i];
-        bool leads = c < leader; /* corners before the first that has a normal: clockwise of them is
-                                    the last one */
+        /* Degenerate corners before the first corner with a normal: they join the group of the
+         * corner next to them clockwise, which is the last one */
+        bool leads = c < leader;
         c->group = leads || (merged && c->group == group) ? (merged ? 0 : group) : c->group;
     }
     return group + 1;

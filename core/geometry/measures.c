@@ -52,9 +52,9 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
-/* Terms of any size are summed exactly enough in several totals: terms whose exponents are in one
- * window of WINDOW share a total. The exponent of a volume is at most three times that of a
- * double. */
+/* Terms of very different sizes are summed in several totals, so that small terms are not lost:
+ * terms whose exponents are in one range (window) of WINDOW exponents share a total. The exponent
+ * of a volume is at most three times that of a double. */
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
@@ -91,9 +91,9 @@ static double sum_of(sums *s, const total *plain, double divisor)
     return he_clamped(ldexp((all.sum + all.error) / divisor, LEAST + top * WINDOW));
 }
 
-/* Finds the point from which volumes are measured: a vertex with edges nearest to the origin of
- * coordinates, or nearly so. From a point far from the mesh the volume would cancel, and so would
- * that of small near parts if it were measured from a far corner. */
+/* Finds the point from which volumes are measured: a vertex with edges that is nearest to the
+ * origin of coordinates. Measured from a point far from the mesh the terms of the volume would
+ * cancel out, and so would those of small parts measured from a far corner of the mesh. */
 static he_vec3 find_base(const he_mesh *m)
 {
     double least = HUGE_VAL;
@@ -102,7 +102,7 @@ static he_vec3 find_base(const he_mesh *m)
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
             he_vec3 p = m->c.position[v];
-            double square = he_vec3_dot(p, p); /* may be infinite: any nearer vertex is taken */
+            double square = he_vec3_dot(p, p); /* may be infinite: then another vertex is taken */
             if (square < least || !any) {
                 least = square;
                 base = p;

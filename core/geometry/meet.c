@@ -154,7 +154,9 @@ static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 /* Two triangles, and on which side of each one's plane the corners of the other are. */
 typedef struct meeting {
     const he_vec3 *t[2];
-    int side[2][3]; /* for the corners of t[0], as seen from t[1], and the reverse */
+    /* side[0]: where the corners of t[0] are, as seen from the plane of t[1]; side[1]: the
+     * reverse */
+    int side[2][3];
 } meeting;
 
 /* Returns true if the side that begins at corner i of triangle `of` intersects the other

@@ -7,7 +7,7 @@
  *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
  *                cube, whatever isolated vertices there are: no finite input overflows. Faces that
  *                are 1e70 times smaller than the largest coordinate of a face count as points for
- *                rays and nearest points. Floats, rounded outward
+ *                rays and nearest points. The boxes are floats, rounded outward
  *     discs      around the same triangles, see bvh_disc.h
  *
  * A tree belongs to the state of the mesh when it was made: the functions take that mesh as an

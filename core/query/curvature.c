@@ -11,8 +11,8 @@
  * chosen, else by its rank among the chosen ones. */
 typedef struct chosen {
     bool all;
-    he_ids ids;   /* sorted, each once; empty when all */
-    he_ids faces; /* faces beside them, sorted, each once; empty if all */
+    he_ids ids;   /* sorted, each once; empty if all elements are chosen */
+    he_ids faces; /* faces beside the chosen elements, sorted, each once; empty if all are chosen */
 } chosen;
 
 static void clear(chosen *c)
@@ -222,7 +222,9 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* Returns the part of the triangle's area that is nearest to corner i, if no angle is obtuse. */
+/* Returns the share of corner i in the triangle's mixed area: the part that is nearest to the
+ * corner if no angle is obtuse, else half of the area at the obtuse angle and a quarter
+ * elsewhere. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;

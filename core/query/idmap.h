@@ -22,6 +22,6 @@ uint32_t he_idmap_find(const he_idmap *map, uint32_t id);
  * Returns HE_NO_MEMORY if memory is out; the map is as it was. */
 HE_NODISCARD he_status he_idmap_add(he_idmap *map, uint32_t id, uint32_t *index, bool *added,
                                     he_error *err);
-void he_idmap_clear(he_idmap *map); /* frees */
+void he_idmap_clear(he_idmap *map); /* frees the memory */
 
 #endif

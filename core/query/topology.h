@@ -54,13 +54,14 @@ typedef struct he_boundaries {
 HE_NODISCARD he_status he_boundaries_find(const he_mesh *m, he_boundaries *out, he_error *err);
 void he_boundaries_clear(he_boundaries *boundaries);
 
-/* COMPONENTS. */
+/* COMPONENTS. The two relations by which faces are joined into components. */
 typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connection;
 
 typedef struct he_component {
     uint32_t faces;
-    uint32_t vertices; /* components by edge each count a bow-tie that they share */
-    uint32_t face;     /* the lowest id */
+    /* vertices of its faces; a bow-tie that components share counts in each of them */
+    uint32_t vertices;
+    uint32_t face; /* the face with the lowest id */
 } he_component;
 
 typedef struct he_components {
