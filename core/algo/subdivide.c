@@ -342,7 +342,7 @@ typedef struct refinement {
     he_scheme scheme;
     bool thirds;           /* sqrt3: it cuts sharp edges in three */
     const he_sizes *sizes; /* sizes of the finer mesh */
-    /* Share of the whole progress that is done before the step, and after it */
+    /* Share of the whole progress that is done before the step, and after it. */
     double done, to;
 } refinement;
 

@@ -53,7 +53,7 @@ typedef struct he_subdivide_step {
     uint64_t *fixed; /* a bit for each of the first `fixed_count` vertices, NULL if none is fixed */
     uint32_t fixed_count;
     /* Number of sharp edges at each vertex; 3 stands for more, and for fixed vertices; NULL if all
-     * vertices are smooth */
+     * vertices are smooth. */
     uint8_t *sharp;
     uint32_t *degree;
     /* Only for the scheme sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp

@@ -109,7 +109,7 @@ static uint32_t find_groups(fan *f)
     for (size_t i = 0; i < f->count; i++) {
         corner *c = &f->corners[i];
         /* Degenerate corners before the first corner with a normal: they join the group of the
-         * corner next to them clockwise, which is the last one */
+         * corner next to them clockwise, which is the last one. */
         bool leads = c < leader;
         c->group = leads || (merged && c->group == group) ? (merged ? 0 : group) : c->group;
     }

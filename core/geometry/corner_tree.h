@@ -25,7 +25,7 @@
 enum {
     HE_CORNER_LEAF = 6,
     HE_CORNER_FEW = 128, /* up to this many corners are kept in a list instead of a tree */
-    /* A list made of up to this many corners is searched in its own order */
+    /* A list made of up to this many corners is searched in its own order. */
     HE_CORNER_UNSORTED = 16
 };
 
@@ -40,7 +40,7 @@ typedef struct he_corner_tree {
     void *memory;         /* one block that contains the arrays below */
     he_corner_box *boxes; /* only in a tree */
     /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
-     * batches */
+     * batches. */
     double *x, *y;
     uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
     /* The corners in the order of the Z curve, HE_NONE for each that was removed; or, in a plain

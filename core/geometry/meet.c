@@ -155,7 +155,7 @@ static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 typedef struct meeting {
     const he_vec3 *t[2];
     /* side[0]: where the corners of t[0] are, as seen from the plane of t[1]; side[1]: the
-     * reverse */
+     * reverse. */
     int side[2][3];
 } meeting;
 

@@ -111,8 +111,8 @@ typedef struct he_results {
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* How long an operation takes: HE_OP_LOCAL depends on what it touches; HE_OP_WHOLE on the whole
- * mesh, so it may run long. */
+/* How long an operation takes: the time of HE_OP_LOCAL depends on the elements it touches, that of
+ * HE_OP_WHOLE on the whole mesh, so it may run long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
 /* Marks a change of V, E or F that depends on the mesh. */
@@ -137,7 +137,7 @@ typedef struct he_op {
     /* Finds a refusal from the mesh's counts alone, before the operation begins; NULL if no refusal
      * can be found in this way. HE_OK is no promise of success. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
-    /* Called by he_op_run only. */
+    /* Performs the operation. Only he_op_run calls it. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
 } he_op;
 

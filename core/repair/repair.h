@@ -67,9 +67,10 @@ static inline unsigned he_repair_bit(he_repair repair)
 }
 
 typedef struct he_repair_plan {
-    unsigned which;    /* a set of repairs; 0: none */
-    double tolerance;  /* for weld: finite, not negative */
-    size_t hole_edges; /* for fill */
+    unsigned which; /* a set of repairs; 0: none */
+    /* For weld: the largest distance between merged vertices; finite, not negative. */
+    double tolerance;
+    size_t hole_edges; /* for fill: the most edges of a hole that is closed */
 } he_repair_plan;
 
 /* The number of elements that are listed for each repair: the first ones. */
