@@ -126,8 +126,8 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* Returns true if the edges of the vertex need not return to the queue yet. That is possible only
- * if the vertex can be remembered as late. */
+/* Returns true if the refused edges of the vertex need not return to the queue yet. The vertex is
+ * then in the list of late vertices. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];

@@ -48,7 +48,8 @@ typedef enum he_edge_place { HE_EDGE_QUEUED, HE_EDGE_ASIDE, HE_EDGE_DEAR } he_ed
 enum { HE_CACHE_LINE = 64 };
 
 typedef struct he_node {
-    alignas(HE_CACHE_LINE) he_quadric quadric; /* relative to `place` */
+    /* Sum of the planes' quadrics, relative to `place`. */
+    alignas(HE_CACHE_LINE) he_quadric quadric;
     he_vec3 place;
     uint32_t degree;
     uint32_t features; /* number of feature edges at it; 3 stands for 3 and more */
@@ -62,10 +63,10 @@ typedef struct he_merges {
 
 typedef struct he_decimation {
     he_mesh *mesh;
-    he_node *nodes;      /* by vertex; each is in two cache lines */
+    he_node *nodes;      /* one for each vertex, in two cache lines */
     void *memory;        /* the block that contains the nodes */
-    uint8_t *flags;      /* by vertex: HE_NODE_... */
-    uint8_t *places;     /* by edge: an he_edge_place */
+    uint8_t *flags;      /* the HE_NODE_... flags of each vertex */
+    uint8_t *places;     /* where each edge is: an he_edge_place */
     he_edge_queue queue; /* contains no edge twice */
     he_merges *merges;   /* where merges are noted, or NULL */
     he_progressive *log; /* where collapses are recorded, or NULL */
@@ -86,9 +87,9 @@ typedef struct he_decimation {
 typedef struct he_candidate {
     he_halfedge h;  /* its origin would be deleted */
     bool moves;     /* the target moves to `place`, else it stays where it is */
-    he_vec3 place;  /* in inside coordinates */
+    he_vec3 place;  /* where the target moves, in inside coordinates */
     double cost;    /* value of the quadrics */
-    double error;   /* as in decimate.h, in inside units */
+    double error;   /* error of the collapse as in decimate.h, in inside coordinates */
     float priority; /* its priority in the queue */
 } he_candidate;
 

@@ -20,7 +20,7 @@ enum {
 };
 
 typedef struct he_queue_chunk {
-    uint32_t next; /* the next chunk of the bucket, or of the free list; HE_NONE */
+    uint32_t next; /* the next chunk of the bucket, or of the free list; HE_NONE at the end */
     uint32_t count;
     uint32_t edges[HE_QUEUE_CHUNK];
 } he_queue_chunk;

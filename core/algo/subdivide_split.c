@@ -3,7 +3,7 @@
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
-/* The elements of an edge and its halves:
+/* The names of the parts of a half-edge h that is cut in halves, for which functions follow:
  *
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
  *                  origin              middle               target */

@@ -20,17 +20,17 @@ typedef struct he_sizes {
     uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
     uint64_t boundary;           /* boundary half-edges */
-    uint64_t sharp, sharp_sides; /* sharp edges, and the faces at them */
-    uint64_t polygons, corners;  /* faces that are no triangles, and their corners */
+    uint64_t sharp, sharp_sides; /* numbers of sharp edges, and of faces at them */
+    uint64_t polygons, corners;  /* numbers of faces that are no triangles, and of their corners */
 } he_sizes;
 
 /* How a corner's values are computed. */
 typedef enum he_source_how {
-    HE_FROM_NOWHERE, /* the default */
-    HE_FROM_ROW,     /* half-edge a */
-    HE_FROM_MIDDLE,  /* the middle of half-edges a and b */
-    HE_FROM_THIRD,   /* 2/3 of half-edge a, 1/3 of half-edge b */
-    HE_FROM_FACE,    /* the mean over the face of half-edge a */
+    HE_FROM_NOWHERE, /* default of the attribute */
+    HE_FROM_ROW,     /* value of half-edge a */
+    HE_FROM_MIDDLE,  /* mean of the values of half-edges a and b */
+    HE_FROM_THIRD,   /* 2/3 of the value of half-edge a and 1/3 of that of half-edge b */
+    HE_FROM_FACE,    /* mean of the values in the face of half-edge a */
     HE_FROM_NEW      /* a copy of half-edge a of the finer content */
 } he_source_how;
 

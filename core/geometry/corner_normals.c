@@ -3,7 +3,8 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* One corner around a vertex, with the normal of its face and the group it belongs to. */
+/* One corner around a vertex, with the normal of its face, and its group. The corners of a group
+ * get one common normal. */
 typedef struct corner {
     uint32_t halfedge;
     uint32_t group; /* HE_NONE on a boundary half-edge */
@@ -13,7 +14,7 @@ typedef struct corner {
 
 typedef struct fan {
     corner *corners; /* counter-clockwise around the vertex */
-    he_vec3 *sums;   /* one for each group */
+    he_vec3 *sums;   /* weighted sum of normals, one for each group */
     size_t count, capacity;
     double crease;
 } fan;
@@ -42,8 +43,8 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* Lists the corners around a vertex. `normals` are those of all faces, or NULL if they must be
- * computed. */
+/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, they
+ * are computed. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -83,8 +84,7 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
  * fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
-    const corner *last = NULL,
-                 *leader = NULL; /* corners with a normal: the latest, and the first of all */
+    const corner *last = NULL, *leader = NULL; /* the latest and the first corner with a normal */
     uint32_t group = 0;
     bool closed = true;
     for (size_t i = 0; i < f->count; i++) {

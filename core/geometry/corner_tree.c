@@ -6,7 +6,7 @@
 
 static const he_corner_box EMPTY = {{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 
-/* --- order --- */
+/* --- the order of the corners --- */
 
 typedef struct keyed {
     uint64_t key;
@@ -110,7 +110,7 @@ static bool fill_order(he_corner_tree *t, const uint32_t *corners)
     return true;
 }
 
-/* --- boxes --- */
+/* --- the boxes of the nodes --- */
 
 static void include(he_corner_box *box, const he_corner_box *other)
 {
@@ -230,8 +230,8 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 
 /* --- searching --- */
 
-/* The area that he_flat_turns_left takes for rounding, relative to the squared size of the
- * triangle. It has a margin for points beside the triangle and for the rounding of a
+/* The area up to which he_flat_turns_left regards a triangle as flat, relative to the squared size
+ * of the triangle. It has a margin for points beside the triangle and for the rounding of a
  * determinant. */
 static const double ABOUT = 4e-12;
 

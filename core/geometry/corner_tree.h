@@ -34,11 +34,11 @@ typedef struct he_corner_box {
     double min[2], max[2];
 } he_corner_box;
 
-/* {0} holds no corners. */
+/* A tree, or a list, of corners of a loop. {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_flat *flat;
     void *memory;         /* one block that contains the arrays below */
-    he_corner_box *boxes; /* only in a tree */
+    he_corner_box *boxes; /* one box for each node; only in a tree */
     /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
      * batches. */
     double *x, *y;
@@ -46,7 +46,7 @@ typedef struct he_corner_tree {
     /* The corners in the order of the Z curve, HE_NONE for each that was removed; or, in a plain
      * list, the corners in any order and without gaps. */
     uint32_t *order;
-    uint32_t count;  /* entries of `order` */
+    uint32_t count;  /* number of entries of `order` */
     uint32_t made;   /* number of corners when the tree was made */
     uint32_t leaves; /* number of leaves; 0 for a list */
 } he_corner_tree;

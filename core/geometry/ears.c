@@ -8,7 +8,7 @@ typedef struct ring {
     uint32_t *next, *prev;
 } ring;
 
-/* Makes a node an empty list, or takes a corner out of all lists. */
+/* Links an element to itself: a node is then an empty list, and a corner is in no list. */
 static void isolate(ring r, uint32_t i)
 {
     r.next[i] = r.prev[i] = i;

@@ -24,7 +24,7 @@
 #include "geometry/triangulation.h"
 
 enum {
-    HE_ANY_CORNER = 4, /* a flag beside those of triangulation.h */
+    HE_ANY_CORNER = 4, /* a further flag of he_ears_cut: cut any corner rather than get stuck */
     HE_EAR_STEPS = 8
 };
 

@@ -49,7 +49,7 @@ double he_corner_angle(const he_mesh *m, he_halfedge h);
 
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
-    he_vec3 normal;   /* unit, or zero if degenerate */
+    he_vec3 normal;   /* unit vector, or zero if the face is degenerate */
     he_vec3 centroid; /* mean of the corners, where face_poke puts its vertex */
     double area;
     uint32_t degree;
@@ -123,7 +123,7 @@ bool he_surface_box(const he_mesh *m, he_box *out);
  * from the origin. */
 typedef struct he_measures {
     double area;
-    double volume;   /* 0 unless closed */
+    double volume;   /* 0 unless the mesh is closed */
     bool has_volume; /* the mesh is closed: it has faces and no boundary half-edge */
 } he_measures;
 

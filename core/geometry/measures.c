@@ -61,7 +61,7 @@ typedef struct sums {
     total of[WINDOWS]; /* the true total of window i is this times 2^(LEAST + WINDOW i) */
 } sums;
 
-/* Adds x times 2^exponent. */
+/* Adds x times 2^exponent to the total of its window. */
 static void add_scaled(sums *s, double x, int exponent)
 {
     int own;
@@ -158,8 +158,8 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
         } else {
             add_scaled(&area, twice, 2 * exponent);
         }
-        /* The tetrahedra over a fan of triangles from p0 add up to p0 . A, whatever the other
-         * corners, because p0 . (p0 x q) is 0. */
+        /* The volumes of the tetrahedra over a fan of triangles from corner p0 add up to p0 . A / 3
+         * for the area vector A, whatever the other corners, because p0 . (p0 x q) is 0. */
         if (!closed) {
             continue;
         }

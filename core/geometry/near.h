@@ -19,7 +19,7 @@ typedef struct he_near_slot {
     uint32_t hash, number; /* hash and number + 1 of a kept point; 0 in a free slot */
 } he_near_slot;
 
-/* {0} is empty. */
+/* A grid of kept points. {0} is empty. */
 typedef struct he_near {
     he_near_slot *slots;
     size_t mask;
@@ -30,7 +30,7 @@ typedef struct he_near {
 
 /* The points that are compared, and how near to each other two of them must be. */
 typedef struct he_near_points {
-    const he_vec3 *at; /* borrowed while the table is used */
+    const he_vec3 *at; /* positions of the points; borrowed while the grid is used */
     double tolerance;
     /* A random number. It and the address of the table keep a file from choosing points that all
      * fall into one slot. */

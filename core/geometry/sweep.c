@@ -6,7 +6,8 @@
 
 /* A corner in the chain of an interval. One corner may be in two chains. */
 typedef struct link {
-    uint32_t corner, up, down; /* HE_NONE at the ends */
+    /* `up` and `down` are its neighbours in the chain; HE_NONE at the ends. */
+    uint32_t corner, up, down;
 } link;
 
 typedef struct interval {

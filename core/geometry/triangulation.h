@@ -35,10 +35,11 @@
 enum { HE_EXACT_CORNERS = 64 };
 
 typedef struct he_triangulation {
-    he_flat flat;      /* without x and y if the triangulation is from the cache */
+    /* The loop in its plane; without x and y if the triangulation is from the cache. */
+    he_flat flat;
     uint32_t *corners; /* three a triangle, counter-clockwise, for flat.n - 2 triangles */
     bool degenerate;   /* some triangle has no area in the plane, or is flipped */
-    uint64_t steps;    /* steps taken */
+    uint64_t steps;    /* number of steps that this triangulation took */
 } he_triangulation;
 
 /* State shared by many triangulations of a mesh; {0} begins it. The mesh must not change meanwhile,

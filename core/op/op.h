@@ -16,7 +16,7 @@ typedef enum he_param_type {
     HE_PARAM_ELEMENT,  /* one id of the row's kind */
     HE_PARAM_ELEMENTS, /* one id under `name`, or a list under `plural` */
     HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
-    HE_PARAM_POINT,    /* [x, y, z] */
+    HE_PARAM_POINT,    /* a point [x, y, z] */
     HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
     HE_PARAM_FLAG,     /* true or false */
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
@@ -67,12 +67,12 @@ typedef struct he_param {
  * call. */
 typedef struct he_arg {
     bool given;
-    uint32_t id;         /* for ELEMENT; HE_NONE for null */
-    const uint32_t *ids; /* for ELEMENTS and CYCLE */
+    uint32_t id;         /* value of an HE_PARAM_ELEMENT; HE_NONE for null */
+    const uint32_t *ids; /* values of an HE_PARAM_ELEMENTS or HE_PARAM_CYCLE */
     size_t count;        /* number of ids or points */
-    bool list;           /* for ELEMENTS and POINTS: given as a list */
+    bool list;           /* an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
     double number;
-    const he_vec3 *points; /* for POINT and POINTS */
+    const he_vec3 *points; /* values of an HE_PARAM_POINT or HE_PARAM_POINTS */
     bool flag;
     int choice;
     double matrix[16];

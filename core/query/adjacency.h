@@ -29,7 +29,7 @@
 
 #include "mesh/mesh.h"
 
-/* Flags. */
+/* Flags of the functions below. */
 enum { HE_CLOCKWISE = 1 };
 
 struct he_gather; /* where a relation's function puts its ids; private to adjacency.c */

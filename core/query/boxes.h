@@ -31,7 +31,8 @@ typedef struct he_bounds {
 /* A node of the tree, with its box in floats, which are rounded outward. */
 typedef struct he_box_node {
     float min[3], max[3];
-    uint32_t first; /* index in the order, or of the first child */
+    /* In a leaf, index of its first thing in `order`; else index of the first child. */
+    uint32_t first;
     uint32_t count; /* number of things in a leaf, 0 for an inner node */
 } he_box_node;
 

@@ -28,7 +28,7 @@
 enum { HE_BVH_LOOK = 8, HE_BVH_PAIR = 64 };
 
 typedef struct he_bvh_disc {
-    float center[3], normal[3], thick, radius; /* the thickness is to either side */
+    float center[3], normal[3], thick, radius; /* `thick` is the thickness to either side */
 } he_bvh_disc;
 
 typedef struct he_bvh_triangle {
@@ -58,7 +58,7 @@ typedef struct he_bvh {
 HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err);
 void he_bvh_free(he_bvh *tree);
 
-/* A point on a face. */
+/* The point where a ray hits a face, or the nearest point on a face. */
 typedef struct he_hit {
     uint32_t face;      /* HE_NONE: nothing was hit, and the other fields are not set */
     uint32_t vertex[3]; /* corners of one of its triangles */

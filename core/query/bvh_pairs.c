@@ -198,7 +198,7 @@ static bool is_needless(void *context, uint32_t a, uint32_t b)
     const he_bvh *tree = w->search.tree;
     common shared = both(&w->commons[a], &w->commons[b]);
     if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-        /* he_pairs_at_hub tries the pairs at a hub; triangles of one face are never tried */
+        /* he_pairs_at_hub tries the pairs at a hub; triangles of one face are never tried. */
         return true;
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||

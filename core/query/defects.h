@@ -59,8 +59,8 @@ enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
     uint32_t id;
-    uint32_t other; /* HE_NONE if there is none */
-    double value;   /* 0 if there is none */
+    uint32_t other; /* the other element concerned; HE_NONE if there is none */
+    double value;   /* what was measured, see above; 0 if there is nothing */
 } he_defect_found;
 
 typedef struct he_defect_list {

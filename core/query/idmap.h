@@ -10,9 +10,11 @@
 #include "mesh/mesh.h"
 
 typedef struct he_idmap {
-    he_ids ids;      /* in order of arrival */
-    uint32_t *slots; /* index + 1, or 0 if free; open addressing, at most half full */
-    unsigned log2;   /* logarithm of the number of slots, 0 while there are none */
+    he_ids ids; /* the ids in the order in which they were added */
+    /* Hash table of indices in `ids`, each + 1, or 0 if free; open addressing, at most half
+     * full. */
+    uint32_t *slots;
+    unsigned log2; /* logarithm of the number of slots, 0 while there are none */
 } he_idmap;
 
 /* Returns the index of an id, HE_NONE if the id was never added. */

@@ -48,7 +48,7 @@ HE_NODISCARD he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_i
 typedef struct he_breadth_first {
     he_kind kind;   /* HE_VERTEX or HE_FACE */
     uint32_t from;  /* the vertex or face where the walk begins */
-    uint32_t depth; /* nothing deeper is visited; HE_NONE: no bound */
+    uint32_t depth; /* the greatest depth that is visited; HE_NONE: no bound */
     size_t limit;   /* the walk stops at so many elements, which is no error; 0: no bound */
 } he_breadth_first;
 

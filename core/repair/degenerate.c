@@ -30,9 +30,9 @@ typedef struct mending {
     uint64_t *bad;   /* one bit for each face: set if the face is degenerate */
     uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
     he_ids loops;    /* corners that are kept, face by face */
-    he_ids ends;     /* end of each loop */
+    he_ids ends;     /* end of each loop in `loops` */
     he_ids cut;      /* for each loop its number in `flat`, or HE_NONE */
-    he_ids done;     /* for each face the end of its loops */
+    he_ids done;     /* for each degenerate face the end of its loops in `ends` */
     he_ids stack;    /* corners of the loop that is being divided */
     uint32_t *place; /* index of each vertex in `stack` */
     he_soup flat;    /* loops to be cut into triangles: every corner is a vertex */
@@ -41,7 +41,7 @@ typedef struct mending {
     uint64_t *runs;  /* the edges of `list`, sorted by their ends */
     size_t run_capacity;
 
-    he_soup made; /* the faces afterwards */
+    he_soup made; /* the faces after the repair */
     he_ids face_from, corner_from;
     he_triangulation_work work;
 } mending;
@@ -145,7 +145,7 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
         g->runs[i] = (uint64_t)list[i] << 32 | list[next];
     }
     *out = false;
-    if (count > 0) { /* there may be no array yet */
+    if (count > 0) { /* qsort must not get NULL */
         qsort(g->runs, count, sizeof *g->runs, compare);
     }
     for (size_t i = 1; i < count; i++) {
@@ -306,7 +306,7 @@ static he_status find(mending *g, he_error *err)
     return status;
 }
 
-/* --- the faces afterwards --- */
+/* --- the faces after the repair --- */
 
 static he_status add_face(mending *g, const uint32_t *corners, size_t count, uint32_t from,
                           he_error *err)

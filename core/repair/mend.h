@@ -1,4 +1,4 @@
-/* mend.h - the soup under repair, shared by the files of this room. */
+/* mend.h - the soup under repair, shared by the files of this folder. */
 #ifndef HE_REPAIR_MEND_H
 #define HE_REPAIR_MEND_H
 

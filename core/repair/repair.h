@@ -108,7 +108,7 @@ typedef struct he_repaired {
     /* The number in the input of each vertex and face of the soup; NULL if all kept their
      * numbers. */
     uint32_t *vertex_from, *face_from;
-    size_t vertices, faces; /* entries of these arrays */
+    size_t vertices, faces; /* lengths of the two arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
     /* The first places at which orient found that a component cannot be oriented;
      * accounts[HE_REPAIR_ORIENT].left is their number. */

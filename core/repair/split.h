@@ -24,9 +24,9 @@ typedef struct he_splitting {
     size_t copies, capacity;
     bool is_crowded;  /* an edge has more than two corners, or two in one direction */
     bool has_closed;  /* a vertex has a closed fan and another fan */
-    uint64_t *done;   /* corners whose fan is found */
-    uint64_t *taken;  /* vertices that belong to a fan already */
-    uint64_t *closed; /* vertices whose first fan is closed */
+    uint64_t *done;   /* one bit for each corner: set if its fan was found */
+    uint64_t *taken;  /* one bit for each vertex: set if it belongs to a fan already */
+    uint64_t *closed; /* one bit for each vertex: set if its first fan is closed */
 } he_splitting;
 
 static inline uint32_t he_corner_after(const he_splitting *s, uint32_t c)
