@@ -43,7 +43,8 @@ typedef struct he_boxes {
     he_bounds all;
 } he_boxes;
 
-/* Return a box that contains nothing, and the smallest box that contains both `a` and `b`. */
+/* he_bounds_none returns a box that contains nothing; he_bounds_include enlarges a box so that it
+ * contains another one, too. */
 he_bounds he_bounds_none(void);
 void he_bounds_include(he_bounds *b, const he_bounds *other);
 

@@ -68,9 +68,9 @@ static inline unsigned he_repair_bit(he_repair repair)
 
 typedef struct he_repair_plan {
     unsigned which; /* a set of repairs; 0: none */
-    /* For weld: the largest distance between merged vertices; finite, not negative. */
+    /* The largest distance between vertices that weld merges; finite, not negative. */
     double tolerance;
-    size_t hole_edges; /* for fill: the most edges of a hole that is closed */
+    size_t hole_edges; /* the most edges of a hole that fill closes */
 } he_repair_plan;
 
 /* The number of elements that are listed for each repair: the first ones. */

@@ -16,7 +16,8 @@
 
 typedef struct he_splitting {
     const he_soup *soup;
-    /* For each corner the one that runs along its edge the other way; HE_NONE if there is none. */
+    /* The mate of each corner, which runs along its edge the other way; HE_NONE if there is
+     * none. */
     uint32_t *mate;
     uint32_t *face_of;
     uint32_t *to;      /* vertex of each corner after the split, which stands for its fan */

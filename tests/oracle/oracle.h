@@ -36,7 +36,9 @@ enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200,
 typedef struct or_vertex {
     bool alive;
     bool locked;
-    bool near;   /* `at` was computed here: compared with a tolerance, then replaced by hedge's */
+    /* The oracle computed `at`: it is compared with a tolerance, then replaced by hedge's
+     * position. */
+    bool near;
     bool inside; /* `at` is not specified: any position within low..high is correct */
     he_vec3 at, low, high;
 } or_vertex;
@@ -106,7 +108,7 @@ typedef struct or_lists {
     uint32_t vertices, edges, faces;
     or_vertex *vertex;
     or_edge *edge;
-    or_face **face; /* each allocated for as many corners as it has */
+    or_face **face; /* the faces, each allocated for as many corners as it has */
 } or_lists;
 
 or_lists *or_save(const or_mesh *o);

@@ -104,7 +104,7 @@ static void hold_idle(int port, int idle)
     files.rlim_cur = files.rlim_max;
     setrlimit(RLIMIT_NOFILE, &files);
     for (int i = 0; i < idle; i++) {
-        once.fd = connect_to(port); /* stays open */
+        once.fd = connect_to(port); /* the connection stays open */
         ask(&once, 1);
         while (take(&once) == 0) {
         }
