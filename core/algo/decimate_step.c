@@ -268,8 +268,8 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     }
 }
 
-/* Collapses the first edge of `about`, and records the collapse where the caller of the decimation
- * asked for it. */
+/* Collapses the first edge of `about`. Records the collapse in the log, and the merged elements in
+ * the list of merges, if there are such. */
 static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
 {
     he_halfedge h = {about->out[0]};

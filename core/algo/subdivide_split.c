@@ -53,7 +53,8 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
         m[i] = middle(s, h[i]);
         lo[i] = first(s, h[i]);
         hi[i] = second(s, h[i]);
-        /* From the middle of h[i] to the middle of the half-edge before it. */
+        /* The half-edge in the face from the middle of h[i] to the middle of the one before
+         * h[i]. */
         in[i] = 2 * (at->edge + i);
     }
     for (unsigned i = 0; i < 3; i++) {

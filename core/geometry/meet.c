@@ -245,8 +245,9 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
                              : flat_meet_beyond_side(&f, 3 - sum_a, 3 - sum_b);
     }
     if (shared == 1) {
-        /* Points other than the shared corner that are in both triangles reach the side opposite to
-         * it of one triangle, which then intersects the other one. */
+        /* If both triangles contain more than the shared corner, what they have in common reaches
+         * the side opposite to that corner in one of them, and this side intersects the other
+         * triangle. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
     /* If the projections of the triangles are disjoint, the triangles are disjoint, too; this test

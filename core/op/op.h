@@ -127,7 +127,7 @@ typedef struct he_op {
     /* Every refusal that the operation can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and,
      * under a watch, HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
-    int change[3]; /* change of V, E, F */
+    int change[3]; /* change of the numbers of vertices, edges and faces */
     /* The time of the operation relative to `transform`: for each element of the mesh if it takes
      * the whole mesh, else for each element of its lists. It was measured, and rounded up; 0 means
      * 1. */

@@ -91,7 +91,7 @@ typedef struct triangle {
     uint32_t corner[3];
     bool is_side[3]; /* is the side from corner i to the next one an edge of the mesh? */
     double length[3];
-    double angle[3], cosine[3], sine[3]; /* at its corners */
+    double angle[3], cosine[3], sine[3]; /* angles at the corners, with their cosines and sines */
     he_vec3 along[3];                    /* unit vectors along its sides */
     he_vec3 normal;                      /* unit vector, unless degenerate */
     bool degenerate;

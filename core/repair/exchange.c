@@ -58,7 +58,8 @@ static bool is_valid(const exchanging *x, const slot *at)
            s->to[he_corner_after(s, at->corner)] == at->to;
 }
 
-/* Returns the slot of a settled corner of the present edge between two fans, or a free slot. */
+/* Returns the slot of a settled corner of the edge being handled between two fans, or a free
+ * slot. */
 static size_t slot_of(const exchanging *x, uint32_t from, uint32_t to)
 {
     uint64_t sum = (uint64_t)(uintptr_t)x->slots * 0x94D049BB133111EB;
