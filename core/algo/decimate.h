@@ -55,9 +55,10 @@ enum { HE_DECIMATE_DEGREE = 256 };
 #define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
-    uint32_t faces;         /* stop when there are at most this many */
-    double max_error;       /* at least 0; may be infinite */
-    double boundary_weight; /* from 0 to HE_BOUNDARY_WEIGHT_MAX */
+    uint32_t faces;   /* stop when there are at most this many */
+    double max_error; /* at least 0; may be infinite */
+    /* Weight of boundary and feature edges, from 0 to HE_BOUNDARY_WEIGHT_MAX. */
+    double boundary_weight;
 } he_decimate_options;
 
 typedef enum he_decimate_stop {

@@ -85,12 +85,12 @@ typedef struct he_decimation {
 
 /* A possible collapse of an edge. */
 typedef struct he_candidate {
-    he_halfedge h;  /* its origin would be deleted */
+    he_halfedge h;  /* the half-edge to collapse; its origin would be deleted */
     bool moves;     /* the target moves to `place`, else it stays where it is */
     he_vec3 place;  /* where the target moves, in inside coordinates */
-    double cost;    /* value of the quadrics */
+    double cost;    /* value of the quadrics of both ends at the new place */
     double error;   /* error of the collapse as in decimate.h, in inside coordinates */
-    float priority; /* its priority in the queue */
+    float priority; /* priority of the edge in the queue */
 } he_candidate;
 
 /* The `count` half-edges that leave a vertex (`out`), and their targets, which are the corners of

@@ -19,7 +19,7 @@
 typedef struct he_sizes {
     uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
-    uint64_t boundary;           /* boundary half-edges */
+    uint64_t boundary;           /* number of boundary half-edges */
     uint64_t sharp, sharp_sides; /* numbers of sharp edges, and of faces at them */
     uint64_t polygons, corners;  /* numbers of faces that are no triangles, and of their corners */
 } he_sizes;
@@ -63,7 +63,8 @@ typedef struct he_subdivide_step {
     /* The parents of new rows, starting with the first new row. They are made only if the mesh has
      * attribute columns. */
     uint32_t *vertex_from, *edge_from, *face_from; /* an edge inside a face has HE_NONE */
-    he_corner_source *corner_from;                 /* for every half-edge of `to` */
+    /* How the values of each corner of `to` are computed. */
+    he_corner_source *corner_from;
 } he_subdivide_step;
 
 static inline bool he_subdivide_is_live(const uint32_t *link, uint32_t row)

@@ -7,13 +7,13 @@
  * get one common normal. */
 typedef struct corner {
     uint32_t halfedge;
-    uint32_t group; /* HE_NONE on a boundary half-edge */
+    uint32_t group; /* number of the group; HE_NONE on a boundary half-edge */
     he_vec3 normal; /* normal of the face; zero if the face is degenerate */
     bool degenerate;
 } corner;
 
 typedef struct fan {
-    corner *corners; /* counter-clockwise around the vertex */
+    corner *corners; /* the corners, counter-clockwise around the vertex */
     he_vec3 *sums;   /* weighted sum of normals, one for each group */
     size_t count, capacity;
     double crease;

@@ -65,8 +65,8 @@ he_vec3 he_face_centroid(const he_mesh *m, he_face f);
 
 /* How the faces around a vertex are weighted in the vertex's normal. */
 typedef enum he_weight {
-    HE_WEIGHT_AREA,   /* by the face's area */
-    HE_WEIGHT_ANGLE,  /* by the corner's angle (Thuermer and Wuethrich 1998) */
+    HE_WEIGHT_AREA,   /* the weight is the face's area */
+    HE_WEIGHT_ANGLE,  /* the weight is the corner's angle (Thuermer and Wuethrich 1998) */
     HE_WEIGHT_UNIFORM /* all faces weigh the same */
 } he_weight;
 

@@ -7,7 +7,7 @@
 /* The sums over one walk around a face; coordinates are multiplied by a scale. */
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
-    he_vec3 sum;    /* sum of the corners */
+    he_vec3 sum;    /* sum of the positions of the corners */
     /* The sum of |u|^2 |v|^2 over the triangles of the fan, u and v being two sides of each: how
      * large the terms of `vector` were before they cancelled. */
     double reach;

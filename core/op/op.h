@@ -50,7 +50,8 @@ enum {
 
 typedef struct he_param {
     const char *name;
-    const char *plural; /* for HE_PARAM_ELEMENTS, else NULL */
+    /* Name under which a list is given; NULL unless `type` is HE_PARAM_ELEMENTS. */
+    const char *plural;
     he_param_type type;
     he_kind kind; /* kind of the elements */
     unsigned flags;
@@ -59,7 +60,7 @@ typedef struct he_param {
     char group;
     double min, max;
     double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
-    const char *const *choices; /* ends in NULL */
+    const char *const *choices; /* names of the choices, ending in NULL */
     const char *doc;
 } he_param;
 
@@ -76,7 +77,7 @@ typedef struct he_arg {
     bool flag;
     int choice;
     double matrix[16];
-    const char *text;    /* borrowed */
+    const char *text;    /* value of an HE_PARAM_TEXT; borrowed */
     double color[4];     /* `count` of the numbers are given */
     const he_mesh *mesh; /* borrowed; never the mesh that is edited */
 } he_arg;
@@ -97,7 +98,7 @@ typedef struct he_result_row {
     he_result_type type;
     he_kind kind;
     const char *doc;
-    const char *const *choices; /* ends in NULL */
+    const char *const *choices; /* names of the choices, ending in NULL */
 } he_result_row;
 
 enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
@@ -106,7 +107,7 @@ enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
  * the end the caller clears them. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
-    uint32_t id[HE_OP_RESULTS]; /* for a choice, its index */
+    uint32_t id[HE_OP_RESULTS]; /* the element; for a choice, its index */
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
 } he_results;

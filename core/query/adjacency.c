@@ -8,7 +8,7 @@
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 typedef struct he_gather {
-    const uint32_t *of; /* NULL: every live element */
+    const uint32_t *of; /* elements whose neighbours are wanted; NULL: every live element */
     size_t count;       /* number of entries of `of`; of issued rows if that is NULL */
     he_ids *ids;
     uint32_t *offsets; /* where the next offset will be written; NULL if offsets are not wanted */

@@ -19,7 +19,7 @@ typedef struct builder {
     const he_bounds *boxes; /* boxes of things, by their numbers */
     const uint32_t *group;  /* the group of each thing; NULL if there are no groups */
     he_bounds *group_boxes;
-    size_t capacity; /* number of nodes that fit */
+    size_t capacity; /* number of nodes for which there is memory */
     he_budget *budget;
 } builder;
 
@@ -58,7 +58,7 @@ typedef struct run {
 } run;
 
 typedef struct cut {
-    int axis; /* -1: no cut was found */
+    int axis; /* axis of the cut; -1 if none was found */
     int bin;  /* things in the bins below this one go left */
     double low, factor;
 } cut;

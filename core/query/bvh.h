@@ -64,14 +64,14 @@ typedef struct he_hit {
     uint32_t vertex[3]; /* corners of one of its triangles */
     double weight[3];   /* barycentric coordinates of the point: not negative, sum 1 */
     he_vec3 point;
-    double distance; /* at most DBL_MAX */
+    double distance; /* distance of the point; at most DBL_MAX */
 } he_hit;
 
 /* A ray; `max` is the greatest distance from its origin at which it hits, in the mesh's unit. */
 typedef struct he_ray {
     he_vec3 origin;
     he_vec3 direction; /* of any length but zero */
-    double max;        /* may be HUGE_VAL */
+    double max;        /* greatest distance of a hit; may be HUGE_VAL */
 } he_ray;
 
 /* Finds the first face that a ray hits, from either side.

@@ -16,7 +16,7 @@ typedef struct prism {
 enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
 typedef struct common {
-    uint32_t of[COMMON]; /* the face is last */
+    uint32_t of[COMMON]; /* hubs first, the face last */
 } common;
 
 typedef struct walk {

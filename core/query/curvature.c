@@ -198,7 +198,7 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_w
 typedef struct sums {
     double angle, area;
     he_vec3 bend;   /* sum of cotangents times sides towards the vertex */
-    he_vec3 normal; /* weighted by angle */
+    he_vec3 normal; /* sum of the triangles' normals, weighted by angle */
     int exponent;
     bool any;
 } sums;

@@ -36,7 +36,7 @@ typedef struct mending {
     he_ids stack;    /* corners of the loop that is being divided */
     uint32_t *place; /* index of each vertex in `stack` */
     he_soup flat;    /* loops to be cut into triangles: every corner is a vertex */
-    he_mesh *mesh;   /* made from `flat` */
+    he_mesh *mesh;   /* mesh made from `flat` */
     he_ids list;     /* vertices of a loop, or of triangles */
     uint64_t *runs;  /* the edges of `list`, sorted by their ends */
     size_t run_capacity;

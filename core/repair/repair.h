@@ -92,9 +92,9 @@ typedef struct he_repair_account {
     uint64_t moved; /* weld: values of vertices that differed and moved to corners */
     uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
     /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
-     * drop_degenerate: the face, and 0 or more faces made of it; drop_duplicates: the dropped face,
-     * the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent; fill:
-     * the face, its corners. */
+     * drop_degenerate: the face, and how many faces were made of it; drop_duplicates: the dropped
+     * face, the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent;
+     * fill: the face, and how many corners it has. */
     he_repair_pair pairs[HE_REPAIR_NAMED];
     size_t named;
 } he_repair_account;

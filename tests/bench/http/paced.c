@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* ppoll */
+#define _GNU_SOURCE /* for ppoll */
 /* A client that sends requests at a fixed rate, whether or not earlier ones are answered. The time
  * of an answer counts from when its request was due, so that a slow answer also shows in the
  * requests that had to wait behind it (no coordinated omission).
