@@ -194,7 +194,7 @@ static he_status collapse_one(he_decimation *d, he_edge e, uint32_t bucket, he_e
     return HE_OK;
 }
 
-/* Prefetches the end vertices of the edges, and their positions. */
+/* Prefetches the links from the edges to their end vertices. */
 static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -202,6 +202,7 @@ static void ask_for_edges(const he_decimation *d, const uint32_t *edges, uint32_
     }
 }
 
+/* Prefetches the nodes of an edge's end vertices, each of which is in two cache lines. */
 static void ask_for_ends(const he_decimation *d, uint32_t edge)
 {
     for (unsigned i = 0; i < 2; i++) {
@@ -237,8 +238,8 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
     return status;
 }
 
-/* The progress watch is stepped after TAKES_PER_LOOK takes from the queue, or after WORK_PER_LOOK
- * units of work. */
+/* Progress is reported after TAKES_PER_LOOK chunks of edges have been taken from the queue, or
+ * after WORK_PER_LOOK units of work. */
 enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_WATCH_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)

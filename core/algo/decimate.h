@@ -11,14 +11,15 @@
  * Boundary edges and `feature` edges add planes that contain the edge and are perpendicular to its
  * faces, each weighed by `boundary_weight` times the square of the edge's length.
  *
- * ERROR of a collapse: the square root of that least value divided by the weight of all planes in
- * it: a distance in the mesh's unit, the root mean square of the distances from the new point to
- * the planes of the original faces that it stands for. It is no bound on the distance of the
- * surfaces. Errors below 1e-12 of the size of the mesh count as 0.
+ * The ERROR of a collapse is the square root of that least value divided by the weight of all its
+ * planes. It is a distance in the mesh's unit: the root mean square of the distances from the new
+ * point to the planes of the original faces that it stands for. It is no bound on the distance of
+ * the surfaces. Errors below 1e-12 of the size of the mesh count as 0.
  *
- * ORDER is by the cost times the error, up to a quarter of the product. By the cost alone the
- * largest distance of the surfaces was a tenth larger, and the mean no smaller, measured on a bumpy
- * torus reduced from a million faces to a tenth of them.
+ * ORDER. Edges are collapsed by rising product of cost and error; products that differ by less than
+ * a quarter may come in either order. With the cost alone, the largest distance of the surfaces was
+ * a tenth larger, and the mean no smaller, measured on a bumpy torus reduced from a million faces
+ * to a tenth of them.
  *
  * An edge is not collapsed
  *
@@ -28,10 +29,10 @@
  *     if the vertex that would be deleted or move has more than HE_DECIMATE_DEGREE edges;
  *     if its error would be more than `max_error`.
  *
- * It is tried again when the faces around it have changed, or, if its error was too large, when
- * another vertex has been merged into an end, unless that end has more than HE_DECIMATE_DEGREE
- * edges. So no edge is left that could be collapsed within `max_error`, except edges with such an
- * end. Nothing depends on chance or the clock.
+ * A refused edge is tried again when the faces around it have changed, or, if its error was too
+ * large, when another vertex has been merged into an end, unless that end has more than
+ * HE_DECIMATE_DEGREE edges. So no edge is left that could be collapsed within `max_error`, except
+ * edges with such an end. Nothing depends on chance or the clock.
  *
  * A face may turn a little in each of many steps, which no test limits: on rough surfaces some
  * faces flip. In a grid of 5,000 faces, with vertices moved by up to 0.3 of a cell in each
@@ -54,9 +55,10 @@ enum { HE_DECIMATE_DEGREE = 256 };
 #define HE_BOUNDARY_WEIGHT_MAX 1e9
 
 typedef struct he_decimate_options {
-    uint32_t faces;         /* stop when there are at most this many */
-    double max_error;       /* at least 0; may be infinite */
-    double boundary_weight; /* from 0 to HE_BOUNDARY_WEIGHT_MAX */
+    uint32_t faces;   /* stop when there are at most this many */
+    double max_error; /* at least 0; may be infinite */
+    /* Weight of boundary and feature edges, from 0 to HE_BOUNDARY_WEIGHT_MAX. */
+    double boundary_weight;
 } he_decimate_options;
 
 typedef enum he_decimate_stop {
@@ -77,10 +79,10 @@ typedef struct he_decimated {
 /* decimate: V - n for n collapses. A collapse deletes one face at a boundary edge, two at an
  * interior edge, and the edges accordingly.
  *
- * The work is done in a copy, and then each word that differs is written once. If more than
- * HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded as
- * one replacement that keeps ids and the old arrays; the sets of changes are then empty. That takes
- * a quarter of the memory: words take 264 bytes for each deleted face.
+ * The work is done in a copy, and then each word of the mesh that differs is written once. If more
+ * than HE_DECIMATE_RECORDED faces would be deleted, the copy replaces the content instead, recorded
+ * as one replacement that keeps ids and the old arrays; the sets of changes are then empty. That
+ * takes a quarter of the memory: words take 264 bytes for each deleted face.
  *
  * `out` may be NULL.
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.

@@ -30,7 +30,7 @@ static bool may_move(const he_decimation *d, uint32_t vertex, bool along)
 typedef struct ends {
     he_halfedge h; /* runs from a to b */
     const he_node *a, *b;
-    he_quadric sum; /* relative to a */
+    he_quadric sum; /* sum of the quadrics of a and b, relative to the place of a */
     he_vec3 across; /* vector from a to b */
     bool a_goes, b_goes, a_moves, b_moves;
 } ends;

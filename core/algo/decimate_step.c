@@ -16,9 +16,9 @@ static he_vec3 place_of(const he_decimation *d, uint32_t vertex)
     return he_decimation_inside(d, d->mesh->c.position[vertex]);
 }
 
-/* Lists the half-edges that leave the ends of h, starting with h and its twin: those of the first
- * end, or of both. Both ends are walked around in alternation, since each step waits for memory.
- * Returns false if there are too many. */
+/* Lists the half-edges that leave the ends of h, starting with h and its twin. If `ends` is 1, only
+ * those that leave the origin of h are listed. The walks around both ends alternate, since each
+ * step waits for memory. Returns false if there are more than HE_DECIMATE_DEGREE at an end. */
 static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out[2])
 {
     const he_halfedge first[2] = {h, he_twin(h)};
@@ -126,8 +126,8 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
     } while (h.i != first.i);
 }
 
-/* Returns true if the edges of the vertex need not return to the queue yet. That is possible only
- * if the vertex can be remembered as late. */
+/* Returns true if the refused edges of the vertex need not return to the queue yet. The vertex is
+ * then in the list of late vertices. */
 static bool is_late(he_decimation *d, uint32_t vertex)
 {
     he_node *node = &d->nodes[vertex];
@@ -268,8 +268,8 @@ static void lose_edge(he_decimation *d, uint32_t vertex)
     }
 }
 
-/* Collapses the first edge of `about`, and records the collapse where the caller of the decimation
- * asked for it. */
+/* Collapses the first edge of `about`. Records the collapse in the log, and the merged elements in
+ * the list of merges, if there are such. */
 static he_status collapse(const he_decimation *d, const he_spokes *about, double t, he_vec3 to)
 {
     he_halfedge h = {about->out[0]};

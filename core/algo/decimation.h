@@ -1,8 +1,8 @@
 /* decimation.h - the state of a decimation: decimate.c sets it up and picks edges, decimate_cost.c
  * computes the cost of an edge, decimate_step.c collapses one.
  *
- * COORDINATES inside are relative to the middle of the mesh, in units of a power of two about half
- * its size, so that no product of them leaves the range of a double.
+ * COORDINATES inside a decimation are relative to the middle of the mesh, in units of a power of
+ * two about half its size, so that no product of them leaves the range of a double.
  *
  * AN EDGE'S COST is outdated as soon as another vertex was merged into one of its ends. Costs
  * hardly ever fall, so it is computed again only when the edge is first in the queue: most edges
@@ -26,15 +26,15 @@
 
 #include <stdalign.h>
 
-/* Flags of a vertex, which never change. edge_collapse would refuse to delete or to move such a
- * vertex, so it stays. */
+/* Flags of a vertex. HE_NODE_LOCKED and HE_NODE_HELD never change: edge_collapse would refuse to
+ * move or to delete such a vertex. */
 enum {
-    HE_NODE_LOCKED = 1, /* stays where it is */
-    HE_NODE_HELD = 2,   /* an edge or face at it is locked: it stays, but may move */
+    HE_NODE_LOCKED = 1, /* it may neither be deleted nor move */
+    HE_NODE_HELD = 2,   /* an edge or face at it is locked: it may move, but not be deleted */
     HE_NODE_ASIDE = 4,  /* some of its edges may be ASIDE */
     HE_NODE_DEAR = 8,   /* some of its edges may be DEAR */
     HE_NODE_LATE = 16,  /* its edges return to the queue later, see HE_DECIMATE_PATIENT */
-    HE_NODE_GREW = 32   /* a vertex was merged into it meanwhile */
+    HE_NODE_GREW = 32   /* a vertex was merged into it while it was HE_NODE_LATE */
 };
 
 /* At a vertex of more edges than HE_DECIMATE_PATIENT, refused edges are not tried again after every
@@ -48,10 +48,11 @@ typedef enum he_edge_place { HE_EDGE_QUEUED, HE_EDGE_ASIDE, HE_EDGE_DEAR } he_ed
 enum { HE_CACHE_LINE = 64 };
 
 typedef struct he_node {
-    alignas(HE_CACHE_LINE) he_quadric quadric; /* relative to `place` */
+    /* Sum of the planes' quadrics, relative to `place`. */
+    alignas(HE_CACHE_LINE) he_quadric quadric;
     he_vec3 place;
     uint32_t degree;
-    uint32_t features; /* feature edges at it; 3 stands for more */
+    uint32_t features; /* number of feature edges at it; 3 stands for 3 and more */
     uint32_t changes;  /* changes since its edges returned to the queue, if HE_NODE_LATE */
 } he_node;
 
@@ -62,19 +63,19 @@ typedef struct he_merges {
 
 typedef struct he_decimation {
     he_mesh *mesh;
-    he_node *nodes;      /* by vertex; each is in two cache lines */
+    he_node *nodes;      /* one for each vertex, in two cache lines */
     void *memory;        /* the block that contains the nodes */
-    uint8_t *flags;      /* by vertex: HE_NODE_... */
-    uint8_t *places;     /* by edge: an he_edge_place */
+    uint8_t *flags;      /* the HE_NODE_... flags of each vertex */
+    uint8_t *places;     /* where each edge is: an he_edge_place */
     he_edge_queue queue; /* contains no edge twice */
     he_merges *merges;   /* where merges are noted, or NULL */
     he_progressive *log; /* where collapses are recorded, or NULL */
     const he_column *feature;
-    double boundary_weight, most; /* the largest allowed error, in inside units */
+    double boundary_weight, most; /* `most` is the largest allowed error, in inside coordinates */
     he_vec3 middle;
     int exponent;  /* inside = (outside - middle) / 2^exponent */
     double inward; /* 2^-exponent */
-    double error;  /* the largest so far, inside */
+    double error;  /* largest error of a collapse so far, in inside coordinates */
     /* The work done so far: the number of edges judged, plus an eighth of the number of half-edges
      * visited around their ends. Both take about the same time, and there may be 256 of them for
      * each collapse at a vertex of large degree. */
@@ -84,12 +85,12 @@ typedef struct he_decimation {
 
 /* A possible collapse of an edge. */
 typedef struct he_candidate {
-    he_halfedge h;  /* its origin would be deleted */
+    he_halfedge h;  /* the half-edge to collapse; its origin would be deleted */
     bool moves;     /* the target moves to `place`, else it stays where it is */
-    he_vec3 place;  /* in inside coordinates */
-    double cost;    /* value of the quadrics */
-    double error;   /* as in decimate.h, in inside units */
-    float priority; /* its priority in the queue */
+    he_vec3 place;  /* where the target moves, in inside coordinates */
+    double cost;    /* value of the quadrics of both ends at the new place */
+    double error;   /* error of the collapse as in decimate.h, in inside coordinates */
+    float priority; /* priority of the edge in the queue */
 } he_candidate;
 
 /* The `count` half-edges that leave a vertex (`out`), and their targets, which are the corners of

@@ -20,7 +20,7 @@ enum {
 };
 
 typedef struct he_queue_chunk {
-    uint32_t next; /* the next chunk of the bucket, or of the free list; HE_NONE */
+    uint32_t next; /* the next chunk of the bucket, or of the free list; HE_NONE at the end */
     uint32_t count;
     uint32_t edges[HE_QUEUE_CHUNK];
 } he_queue_chunk;
@@ -29,8 +29,9 @@ typedef struct he_edge_queue {
     he_queue_chunk *chunks;
     uint32_t *first;     /* the first chunk of each bucket; all after it are full */
     uint32_t free, used; /* the first free chunk; chunks from `used` on were never used */
+    /* One bit for each bucket: set if the bucket has edges. */
     uint64_t filled[HE_QUEUE_WORDS];
-    size_t word; /* no word before it has a bucket with edges */
+    size_t word; /* no word of `filled` before this one has a bit set */
 } he_edge_queue;
 
 /* Makes a queue with room for `edges` edges. The caller must clear it, even after a failure.
@@ -57,7 +58,7 @@ static inline void he_queue_clear(he_edge_queue *queue)
 }
 
 /* Returns the bucket of a priority, which must not be negative. A lower priority never has a higher
- * bucket than a higher one. */
+ * bucket than a higher priority has. */
 static inline uint32_t he_queue_bucket(float priority)
 {
     uint32_t bits;

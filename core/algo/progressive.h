@@ -25,13 +25,13 @@
  * that side are HE_NONE. */
 typedef struct he_progressive_split {
     uint32_t vertex, from;   /* u, which is made, and v, beside which it is */
-    uint32_t left, right;    /* the third corners, c and d */
-    uint32_t halfedge;       /* from u to v */
-    uint32_t left_halfedge;  /* from u to c */
-    uint32_t right_halfedge; /* from u to d */
+    uint32_t left, right;    /* third corners of the two faces: c and d */
+    uint32_t halfedge;       /* half-edge from u to v */
+    uint32_t left_halfedge;  /* half-edge from u to c */
+    uint32_t right_halfedge; /* half-edge from u to d */
     uint32_t left_face, right_face;
     uint32_t moved;      /* number of faces that move to u */
-    size_t first_moved;  /* the first of them in he_progressive.moved */
+    size_t first_moved;  /* index of the first of these faces in he_progressive.moved */
     he_vec3 at, from_at; /* positions of u and v after the split */
 } he_progressive_split;
 

@@ -14,7 +14,7 @@
 #include "geometry/vec3.h"
 
 typedef struct he_quadric {
-    double xx, xy, xz, yy, yz, zz; /* A */
+    double xx, xy, xz, yy, yz, zz; /* entries of A */
     he_vec3 b;
     double c;
     double weight; /* sum of the weights of all planes */

@@ -29,7 +29,7 @@ static void circle_point(uint32_t i, uint32_t n, double *x, double *y)
         *x = -c;
         *y = -s;
         break;
-    default: /* the remainder of a division by 4 */
+    default: /* the remainder can only be 3 */
         *x = s;
         *y = -c;
         break;
@@ -467,7 +467,8 @@ he_status he_shape_check(const he_shape *shape, const double args[HE_SHAPE_PARAM
 static he_status within(const he_shape *shape, uint64_t count, uint64_t limit, const char *what,
                         he_error *err)
 {
-    /* There is at most one edge for each corner, so this leaves ids for the edges too. */
+    /* There is at most one edge for each corner, so this limit also leaves enough ids for the
+     * edges. */
     if (limit == 0 || limit > HE_MAX_ROWS) {
         limit = HE_MAX_ROWS;
     }

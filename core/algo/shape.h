@@ -13,7 +13,7 @@
 #include "build/build.h"
 
 typedef enum he_shape_type {
-    HE_SHAPE_NUMBER,  /* finite */
+    HE_SHAPE_NUMBER,  /* a finite number */
     HE_SHAPE_INTEGER, /* a number without a fraction */
     HE_SHAPE_FLAG     /* 0 or 1 */
 } he_shape_type;

@@ -180,7 +180,7 @@ static uint64_t rows_of(const he_sizes *s)
 }
 
 /* Computes the sizes after each step; fails if they are too large. A step multiplies sizes by at
- * most seven, so 64 bits are enough, and sizes within the limit have ids. */
+ * most seven, so 64 bits are enough, and numbers of rows within the limit fit into ids. */
 _Static_assert(HE_SUBDIVIDE_ROWS < HE_MAX_ROWS, "a limit within the ids");
 static he_status estimate(const he_sizes *first, he_scheme scheme, unsigned steps, he_sizes *out,
                           he_error *err)
@@ -249,7 +249,8 @@ static void clear_step(he_subdivide_step *s)
 }
 
 /* Returns for each live row its index among the live rows; NULL if all rows are live. *failed is
- * set if memory is out. A row has `stride` links. */
+ * set if memory is out. `link` has `stride` entries for each row; the first of them is HE_DEAD in a
+ * deleted row. */
 static uint32_t *rank(const he_rows *rows, const uint32_t *link, uint32_t stride, bool *failed)
 {
     if (rows->live == rows->issued) {
@@ -340,8 +341,9 @@ static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 typedef struct refinement {
     he_scheme scheme;
     bool thirds;           /* sqrt3: it cuts sharp edges in three */
-    const he_sizes *sizes; /* of the finer mesh */
-    double done, to;       /* its part of the whole progress */
+    const he_sizes *sizes; /* sizes of the finer mesh */
+    /* Share of the whole progress that is done before the step, and after it. */
+    double done, to;
 } refinement;
 
 static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement *r, he_error *err)

@@ -2,9 +2,9 @@
  * those of the papers in subdivide.h; none is negative, so a refined mesh stays in the bounding box
  * of the old one.
  *
- * Two passes: for each old vertex the array `to` first gets the sum that its rule needs, which is
- * that of its neighbours (for catmull_clark also of the means of its faces) or, on a curve, of its
- * two neighbours there. Then the vertex is moved. */
+ * There are two passes. First the array `to` gets, for each old vertex, the sum that its rule
+ * needs: over its neighbours (for catmull_clark also over the means of its faces) or, on a curve,
+ * over its two neighbours on the curve. Then the vertex is moved. */
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
@@ -212,8 +212,8 @@ static he_status move_vertices(void *context, uint32_t part, size_t from, size_t
     return HE_OK;
 }
 
-/* Computes the vertices inside faces for catmull_clark and sqrt3. The number of a face, or a table,
- * says which vertex is inside it. */
+/* Computes the vertices inside faces for catmull_clark and sqrt3. The vertex inside a face follows
+ * from the rank of the face; for sqrt3 it is listed in `centre`. */
 static he_status place_centres(void *context, uint32_t part, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;
@@ -273,14 +273,14 @@ static he_status place_middles(void *context, uint32_t part, size_t from, size_t
             linear_edge(s, (uint32_t)e, p->from, p->to);
             break;
         case HE_SQRT3:
-            break; /* only for sharp edges, when the sums are complete */
+            break; /* cut_in_thirds places points on sharp edges, when the sums are complete */
         }
     }
     return HE_OK;
 }
 
-/* Adds up the sums of all vertices. One thread does this alone, because a floating-point sum
- * depends on the order of its terms. */
+/* Adds up, for every vertex, the sum that its rule needs. One thread does this alone, because a
+ * floating-point sum depends on the order of its terms. */
 static he_status sum_ends(void *context, uint32_t lane, size_t from, size_t to, he_error *err)
 {
     const placing *p = context;

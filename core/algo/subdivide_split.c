@@ -3,7 +3,7 @@
 #include "algo/subdivide_step.h"
 #include "base/exec.h"
 
-/* The elements of an edge and its halves:
+/* The names of the parts of a half-edge h that is cut in halves, for which functions follow:
  *
  *     half-edge h    o ----first(h)----> o ----second(h)----> o
  *                  origin              middle               target */
@@ -53,7 +53,9 @@ static void cut_triangle(const he_subdivide_step *s, uint32_t f, const uint32_t 
         m[i] = middle(s, h[i]);
         lo[i] = first(s, h[i]);
         hi[i] = second(s, h[i]);
-        in[i] = 2 * (at->edge + i); /* from the middle of h[i] to that of the one before */
+        /* The half-edge in the face from the middle of h[i] to the middle of the one before
+         * h[i]. */
+        in[i] = 2 * (at->edge + i);
     }
     for (unsigned i = 0; i < 3; i++) {
         unsigned p = i == 0 ? 2 : i - 1, n = i == 2 ? 0 : i + 1;

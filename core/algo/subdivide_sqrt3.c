@@ -22,7 +22,7 @@
 /* A face of the coarse mesh and its three half-edges. */
 typedef struct triangle {
     uint32_t f, h[3];
-    unsigned cut; /* the half-edge of the edge cut in three; 3 if there is none */
+    unsigned cut; /* index of the half-edge whose edge is cut in three; 3 if there is none */
 } triangle;
 
 enum { NO_CUT = 3 };
@@ -107,8 +107,8 @@ static he_corner_source at_row(uint32_t h)
     return (he_corner_source){h, HE_NONE, HE_FROM_ROW};
 }
 
-/* One corner of a new triangle: its half-edge, the vertex that leaves, and how to compute its
- * values. */
+/* One corner of a new triangle: its half-edge, the vertex that this half-edge leaves, and how to
+ * compute its values. */
 typedef struct corner {
     uint32_t h, origin;
     he_corner_source source;
@@ -240,7 +240,7 @@ static void put_vertex(const he_subdivide_step *s, uint32_t v)
     s->to->vertex_halfedge[v] = h;
 }
 
-/* Numbers the new elements. */
+/* Numbers the new elements in the order of subdivide.h. */
 static he_status find_places(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;

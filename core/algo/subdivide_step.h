@@ -1,7 +1,7 @@
 /* subdivide_step.h - one step of subdivide: makes the content of the finer mesh from that of the
  * coarser one.
  *
- *     subdivide.c         sizes, room, steps, and the replace
+ *     subdivide.c         sizes, memory, the loop over the steps, replacing the mesh
  *     subdivide_split.c   links where edges are cut in halves (loop, catmull_clark, linear)
  *     subdivide_sqrt3.c   links where edges are flipped
  *     subdivide_rules.c   positions of vertices
@@ -17,20 +17,20 @@
 /* The sizes of a mesh's content after a step. They have 64 bits because an estimate may exceed what
  * fits into a mesh. */
 typedef struct he_sizes {
-    uint64_t vertices, edges, faces; /* rows */
+    uint64_t vertices, edges, faces; /* numbers of rows, deleted ones included */
     uint64_t live_vertices, live_edges, live_faces;
-    uint64_t boundary;           /* half-edges */
-    uint64_t sharp, sharp_sides; /* sharp edges, and the faces at them */
-    uint64_t polygons, corners;  /* faces that are no triangles, and their corners */
+    uint64_t boundary;           /* number of boundary half-edges */
+    uint64_t sharp, sharp_sides; /* numbers of sharp edges, and of faces at them */
+    uint64_t polygons, corners;  /* numbers of faces that are no triangles, and of their corners */
 } he_sizes;
 
 /* How a corner's values are computed. */
 typedef enum he_source_how {
-    HE_FROM_NOWHERE, /* the default */
-    HE_FROM_ROW,     /* half-edge a */
-    HE_FROM_MIDDLE,  /* the middle of half-edges a and b */
-    HE_FROM_THIRD,   /* 2/3 of half-edge a, 1/3 of half-edge b */
-    HE_FROM_FACE,    /* the mean over the face of half-edge a */
+    HE_FROM_NOWHERE, /* default of the attribute */
+    HE_FROM_ROW,     /* value of half-edge a */
+    HE_FROM_MIDDLE,  /* mean of the values of half-edges a and b */
+    HE_FROM_THIRD,   /* 2/3 of the value of half-edge a and 1/3 of that of half-edge b */
+    HE_FROM_FACE,    /* mean of the values in the face of half-edge a */
     HE_FROM_NEW      /* a copy of half-edge a of the finer content */
 } he_source_how;
 
@@ -52,7 +52,9 @@ typedef struct he_subdivide_step {
     uint64_t *feature_next; /* features of the finer content */
     uint64_t *fixed; /* a bit for each of the first `fixed_count` vertices, NULL if none is fixed */
     uint32_t fixed_count;
-    uint8_t *sharp; /* sharp edges of each vertex, at most 3; 3 if fixed. NULL: all are smooth */
+    /* Number of sharp edges at each vertex; 3 stands for more, and for fixed vertices; NULL if all
+     * vertices are smooth. */
+    uint8_t *sharp;
     uint32_t *degree;
     /* Only for the scheme sqrt3: for each face the vertex in it (HE_NONE if it is cut at a sharp
      * edge) and the first edge inside; for each edge that is cut in three its index among those
@@ -61,7 +63,8 @@ typedef struct he_subdivide_step {
     /* The parents of new rows, starting with the first new row. They are made only if the mesh has
      * attribute columns. */
     uint32_t *vertex_from, *edge_from, *face_from; /* an edge inside a face has HE_NONE */
-    he_corner_source *corner_from;                 /* for every half-edge of `to` */
+    /* How the values of each corner of `to` are computed. */
+    he_corner_source *corner_from;
 } he_subdivide_step;
 
 static inline bool he_subdivide_is_live(const uint32_t *link, uint32_t row)
@@ -105,7 +108,7 @@ static inline void he_subdivide_set(he_content *to, uint32_t h, he_subdivide_lin
 }
 
 /* Writes the links of the finer content `to`, with the vertices' stored half-edges, the features
- * and the parents. */
+ * and the parents of new rows. */
 HE_NODISCARD he_status he_subdivide_split(he_subdivide_step *s, he_error *err);
 HE_NODISCARD he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err);
 

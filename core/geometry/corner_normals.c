@@ -3,17 +3,18 @@
 #include "geometry/scale.h"
 #include "mesh/walk.h"
 
-/* One corner around a vertex, with the normal of its face and the group it belongs to. */
+/* One corner around a vertex, with the normal of its face, and its group. The corners of a group
+ * get one common normal. */
 typedef struct corner {
     uint32_t halfedge;
-    uint32_t group; /* HE_NONE on a boundary half-edge */
-    he_vec3 normal; /* normal of its face; then, in the first corners, the sums of the groups */
+    uint32_t group; /* number of the group; HE_NONE on a boundary half-edge */
+    he_vec3 normal; /* normal of the face; zero if the face is degenerate */
     bool degenerate;
 } corner;
 
 typedef struct fan {
-    corner *corners; /* counter-clockwise around the vertex */
-    he_vec3 *sums;   /* one for each group */
+    corner *corners; /* the corners, counter-clockwise around the vertex */
+    he_vec3 *sums;   /* weighted sum of normals, one for each group */
     size_t count, capacity;
     double crease;
 } fan;
@@ -42,8 +43,8 @@ static he_status grow(fan *f, he_error *err)
     return HE_OK;
 }
 
-/* Lists the corners around a vertex. `normals` are those of all faces, or NULL if they must be
- * computed. */
+/* Lists the corners around a vertex. `normals` has the normals of all faces; if it is NULL, they
+ * are computed. */
 static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 *normals,
                         he_error *err)
 {
@@ -77,13 +78,13 @@ static he_status gather(fan *f, const he_mesh *m, uint32_t first, const he_vec3 
     return HE_OK;
 }
 
-/* Groups the corners around a vertex whose faces are smooth with each other, and returns the number
- * of groups. A boundary half-edge comes before the corners of its fan, and a vertex on the boundary
- * stores one, so only a closed fan continues from its last corner to the first. */
+/* Groups the corners around a vertex that no crease separates: the normals of neighbouring faces of
+ * a group differ by at most the crease angle. Returns the number of groups. A boundary half-edge
+ * comes before the corners of its fan, and a vertex on the boundary stores one, so only a closed
+ * fan continues from its last corner to the first. */
 static uint32_t find_groups(fan *f)
 {
-    const corner *last = NULL,
-                 *leader = NULL; /* corners with a normal: the latest, and the first of all */
+    const corner *last = NULL, *leader = NULL; /* the latest and the first corner with a normal */
     uint32_t group = 0;
     bool closed = true;
     for (size_t i = 0; i < f->count; i++) {
@@ -107,8 +108,9 @@ static uint32_t find_groups(fan *f)
     bool merged = he_vec3_angle(last->normal, leader->normal) <= f->crease;
     for (size_t i = 0; i < f->count; i++) {
         corner *c = &f->corners[i];
-        bool leads = c < leader; /* corners before the first that has a normal: clockwise of them is
-                                    the last one */
+        /* Degenerate corners before the first corner with a normal: they join the group of the
+         * corner next to them clockwise, which is the last one. */
+        bool leads = c < leader;
         c->group = leads || (merged && c->group == group) ? (merged ? 0 : group) : c->group;
     }
     return group + 1;

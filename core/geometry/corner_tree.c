@@ -6,7 +6,7 @@
 
 static const he_corner_box EMPTY = {{DBL_MAX, DBL_MAX}, {-DBL_MAX, -DBL_MAX}};
 
-/* --- order --- */
+/* --- the order of the corners --- */
 
 typedef struct keyed {
     uint64_t key;
@@ -110,7 +110,7 @@ static bool fill_order(he_corner_tree *t, const uint32_t *corners)
     return true;
 }
 
-/* --- boxes --- */
+/* --- the boxes of the nodes --- */
 
 static void include(he_corner_box *box, const he_corner_box *other)
 {
@@ -230,8 +230,8 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 
 /* --- searching --- */
 
-/* The area that he_flat_turns_left takes for rounding, relative to the squared size of the
- * triangle. It has a margin for points beside the triangle and for the rounding of a
+/* The area up to which he_flat_turns_left regards a triangle as flat, relative to the squared size
+ * of the triangle. It has a margin for points beside the triangle and for the rounding of a
  * determinant. */
 static const double ABOUT = 4e-12;
 
@@ -383,7 +383,7 @@ static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
     return of_a != of_b ? of_a < of_b : a < b;
 }
 
-/* Returns corner p of the list if it is in the triangle and comes before `found` along the curve;
+/* Returns corner p of the list if it is in the triangle and comes before `found` along the Z curve;
  * otherwise `found`. */
 static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uint32_t p,
                               uint32_t found)
@@ -395,8 +395,8 @@ static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uin
     return found == HE_NONE || is_before(f, p, found) ? p : found;
 }
 
-/* Finds a corner of a plain list in the triangle: the first along the curve, which a tree would
- * find. In a list that was short when it was made, it finds the first of the list. */
+/* Finds a corner in the triangle in a plain list: the first one along the Z curve, which a search
+ * of a tree would find; in a list that was short when it was made, the first one of the list. */
 static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps)
 {
@@ -409,7 +409,7 @@ static uint32_t find_in_list(const he_corner_tree *tree, uint32_t a, uint32_t b,
         if (!is_any_in_box(&box, tree->x + i, tree->y + i)) {
             continue;
         }
-        /* If no corner is in the box around the triangle, its sides are not needed. */
+        /* The sides of the triangle are computed only if a corner is in the box around it. */
         if (!has_sides) {
             t = triangle_of(tree->flat, a, b, c, &box);
             has_sides = true;

@@ -14,9 +14,9 @@
  *
  * Up to HE_CORNER_FEW corners are a plain list instead, without sorting and without boxes: testing
  * all of them takes less time than building and searching the tree (`make bench-space` measures
- * short polygons). A search of the list finds the first corner along the curve, as a search of the
- * tree would. Only a list made of at most HE_CORNER_UNSORTED corners finds the first of the list
- * instead. */
+ * A search of the list finds the corner that comes first along the Z curve, as a search of the tree
+ * would. Only in a list made of at most HE_CORNER_UNSORTED corners it finds the first corner in the
+ * order of the list instead. */
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
@@ -24,8 +24,9 @@
 
 enum {
     HE_CORNER_LEAF = 6,
-    HE_CORNER_FEW = 128,    /* up to this many corners are a list */
-    HE_CORNER_UNSORTED = 16 /* a list made of up to this many is not ordered */
+    HE_CORNER_FEW = 128, /* up to this many corners are kept in a list instead of a tree */
+    /* A list made of up to this many corners is searched in its own order. */
+    HE_CORNER_UNSORTED = 16
 };
 
 /* The box around corners of a subtree. It is empty if the minimum is larger than the maximum. */
@@ -33,23 +34,25 @@ typedef struct he_corner_box {
     double min[2], max[2];
 } he_corner_box;
 
-/* {0} holds no corners. */
+/* A tree, or a list, of corners of a loop. {0} holds no corners. */
 typedef struct he_corner_tree {
     const he_flat *flat;
     void *memory;         /* one block that contains the arrays below */
-    he_corner_box *boxes; /* only in a tree */
-    double *x, *y; /* only in a list, in its order: coordinates, and infinity up to a whole batch */
+    he_corner_box *boxes; /* one box for each node; only in a tree */
+    /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
+     * batches. */
+    double *x, *y;
     uint32_t *place; /* for each corner of the loop, its index in `order`, or HE_NONE */
-    /* The corners along the curve, HE_NONE for each that was removed; or, in a plain list, the
-     * corners in any order and without gaps. */
+    /* The corners in the order of the Z curve, HE_NONE for each that was removed; or, in a plain
+     * list, the corners in any order and without gaps. */
     uint32_t *order;
-    uint32_t count;  /* entries of `order` */
-    uint32_t made;   /* corners that the tree was made of */
+    uint32_t count;  /* number of entries of `order` */
+    uint32_t made;   /* number of corners when the tree was made */
     uint32_t leaves; /* number of leaves; 0 for a list */
 } he_corner_tree;
 
 /* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. he_corner_tree_clear
- * frees.
+ * frees the tree.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat,
                                            const uint32_t *corners, uint32_t count, he_error *err);
@@ -64,10 +67,10 @@ static inline bool he_corner_tree_has(const he_corner_tree *tree, uint32_t corne
 void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 
 /* Returns a corner of the tree inside the closed triangle a, b, c, which must turn left; HE_NONE if
- * there is none. A corner is in it unless it is to the right of a side by more than rounding
- * (flat.h), so corners on a straight side count as inside. Corners at the position of a, b or c do
- * not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners of a list, which
- * cost about as much as a box, count as one. */
+ * there is none. A corner counts as inside unless it is to the right of a side by more than
+ * rounding (flat.h), so corners on a straight side are inside, too. Corners at the position of a, b
+ * or c do not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners of a
+ * list, which cost about as much as a box, count as one. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

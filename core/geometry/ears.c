@@ -8,7 +8,7 @@ typedef struct ring {
     uint32_t *next, *prev;
 } ring;
 
-/* Makes a node an empty list, or takes a corner out of all lists. */
+/* Links an element to itself: a node is then an empty list, and a corner is in no list. */
 static void isolate(ring r, uint32_t i)
 {
     r.next[i] = r.prev[i] = i;
@@ -43,7 +43,7 @@ typedef struct ears {
     const he_flat *f;
     bool avoid; /* avoid diagonals that exist as edges */
     ring loop;  /* the loop that is left, without a node of its own */
-    ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; they begin at n + state */
+    ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; each begins at node n + state */
     /* Lists of PIERCED corners, by the corner that lies in their triangle. Each list begins at n
      * plus that corner; one at 2n has those whose corner is no longer in the tree. */
     ring watch;
@@ -66,7 +66,8 @@ static uint32_t list_of(const ears *e, state s)
     return e->f->n + (uint32_t)s;
 }
 
-/* Removes a corner from the tree: it is no longer inside any triangle. */
+/* Removes a corner from the tree, because it can no longer be inside a triangle. The PIERCED
+ * corners that were listed under it move to the list of those to be tried again. */
 static void leave_tree(ears *e, uint32_t corner)
 {
     uint32_t list = e->f->n + corner, waiting = 2 * e->f->n, i;
@@ -77,8 +78,8 @@ static void leave_tree(ears *e, uint32_t corner)
     }
 }
 
-/* Updates the state of a corner whose neighbour has changed. A candidate is inserted behind
- * `before`. */
+/* Updates the state of a corner whose neighbour has changed. A corner that turns left is inserted
+ * into the list of candidates behind `before`. */
 static void look_at(ears *e, uint32_t i, uint32_t before)
 {
     take_out(e->kinds, i);
@@ -245,8 +246,8 @@ static void lay_out(ears *e, uint32_t *block)
     }
 }
 
-/* Puts every corner into its list, and those that do not turn left into the tree. `room` is the
- * array of the triangulation's corners, which is not written yet. */
+/* Puts every corner into its list, and those that do not turn left into the tree. `room` is scratch
+ * space: the array of the triangulation's corners, which are not written yet. */
 static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
 {
     uint32_t n = e->f->n, flat = 0;

@@ -7,28 +7,29 @@
  *         / \                         order, and tried round and round, so that triangles stay
  *    ----a - -c----                   balanced. After a cut only a and c are tried again.
  *
- * If the triangle contains corners, the one nearest to a - c does not turn left, so only such
- * corners are kept in a tree of boxes (corner_tree.h). A corner whose triangle is PIERCED by one of
- * them is stored with it, and tried again only when that one has been cut off or turns left.
+ * If the triangle contains corners, the one nearest to a - c does not turn left, so it is enough to
+ * test corners that do not turn left: only these are kept in a tree of boxes (corner_tree.h). A
+ * corner whose triangle contains one of them is PIERCED: it is listed under that one, and is tried
+ * again only when that one has been cut off or turns left.
  *
  * A simple polygon has an ear until it is used up, and each corner is tried at most three times. A
  * search of the tree takes logarithmic time in most polygons, but not in all. After HE_EAR_STEPS
  * times n log2 n steps for n corners the cutting is STUCK, and also if there is no ear, as in some
- * loops that intersect themselves in the plane. With HE_ANY_CORNER it goes on even then: it no
- * longer tests whether a triangle is empty, or cuts any corner, one that turns left if there is
- * one. */
+ * loops that intersect themselves in the plane. With HE_ANY_CORNER cutting goes on even then: after
+ * too many steps triangles are no longer tested for being empty, and if there is no ear any corner
+ * is cut, one that turns left if there is one. */
 #ifndef HE_GEOMETRY_EARS_H
 #define HE_GEOMETRY_EARS_H
 
 #include "geometry/triangulation.h"
 
 enum {
-    HE_ANY_CORNER = 4, /* a flag beside those of triangulation.h */
+    HE_ANY_CORNER = 4, /* a further flag of he_ears_cut: cut any corner rather than get stuck */
     HE_EAR_STEPS = 8
 };
 
 /* Fills triangulation->corners and `degenerate` from triangulation->flat, unless cutting gets
- * `stuck`.
+ * stuck, which sets `*stuck` to true.
  * Returns HE_DOUBLED_EDGE with HE_AVOID_EDGES in `flags` if every ear that is left, or every
  * corner, has a diagonal that is an edge.
  * Returns HE_NO_MEMORY if memory is out.

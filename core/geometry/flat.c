@@ -81,7 +81,8 @@ static void project(he_flat *flat, const he_vec3 *at, he_vec3 normal)
 {
     double length = sqrt(dot(normal, normal));
     normal = (he_vec3){normal.x / length, normal.y / length, normal.z / length};
-    /* The first axis of the plane comes from any direction far from the normal. */
+    /* The axes of the plane come from a coordinate axis that is not nearly parallel to the
+     * normal. */
     he_vec3 away = fabs(normal.x) < 0.6 ? (he_vec3){1, 0, 0} : (he_vec3){0, 1, 0};
     he_vec3 v = cross(normal, away);
     length = sqrt(dot(v, v));

@@ -14,7 +14,7 @@ typedef struct he_flat {
     uint32_t n;
     uint32_t *halfedge; /* the half-edge that leaves corner i */
     double *x, *y;
-    bool degenerate; /* no area, so no plane: all coordinates are zero */
+    bool degenerate; /* the loop has no area, so no plane: all coordinates are zero */
     void *memory;    /* one block that contains the arrays */
 } he_flat;
 

@@ -93,7 +93,7 @@ static double dihedral_between(const he_mesh *m, he_edge e, he_vec3 left, he_vec
     he_vec3 along =
         he_direction(he_position(m, he_origin(m, h)), he_position(m, he_target(m, h)), NULL);
     double sine = he_vec3_dot(he_vec3_cross(left, right), along);
-    double angle = atan2(sine, he_vec3_dot(left, right)) + 0.0; /* avoids -0 */
+    double angle = atan2(sine, he_vec3_dot(left, right)) + 0.0; /* turns -0 into 0 */
     return angle > -HE_PI ? angle : HE_PI;
 }
 

@@ -12,10 +12,10 @@
  * powers of two where their products would overflow or underflow, and an area, length or volume
  * that a double cannot hold is DBL_MAX.
  *
- * The functions of one element check nothing, like those of walk.h: the element must be live, and
- * its links as mesh.h promises. If links do not close, a walk still ends after as many steps as
- * there are half-edges, and its value means nothing. Functions of the whole mesh return HE_CORRUPT
- * then. Angles are in radians. */
+ * Functions that take one element check nothing (as in walk.h): the element must be live, and its
+ * links must be as mesh.h promises. If links do not close, a walk still ends after as many steps as
+ * there are half-edges, and its result means nothing. Functions that take the whole mesh return
+ * HE_CORRUPT in that case. Angles are in radians. */
 #ifndef HE_GEOMETRY_GEOMETRY_H
 #define HE_GEOMETRY_GEOMETRY_H
 
@@ -35,21 +35,21 @@ double he_edge_length(const he_mesh *m, he_edge e);
  * b|. Returns false, and 0, on the boundary or beside a degenerate face. */
 bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
 /* Finds the dihedral angles of the whole mesh, into an array with one entry for each issued edge:
- * NaN for edges where he_edge_dihedral returns false, and in dead rows. Each face is measured once,
- * so the time is linear in the half-edges however many corners a face has.
+ * NaN for edges where he_edge_dihedral returns false, and for deleted edges. Each face is measured
+ * once, so the time is linear in the half-edges however many corners a face has.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work; the array is then half written. */
 HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out,
                                          he_error *err);
 
-/* Returns the angle between a half-edge and the one before it; in [0, pi], so a reflex corner gives
- * the smaller angle. At a hole it is the angle between the two boundary edges. 0 if an edge has no
- * length. */
+/* Returns the angle between a half-edge and the one before it, in [0, pi]; so a reflex corner gives
+ * the smaller angle. At a hole it is the angle between the two boundary edges. Returns 0 if one of
+ * the two edges has no length. */
 double he_corner_angle(const he_mesh *m, he_halfedge h);
 
 /* The results of one walk around a face: area, normal and centroid. */
 typedef struct he_face_shape {
-    he_vec3 normal;   /* unit, or zero if degenerate */
+    he_vec3 normal;   /* unit vector, or zero if the face is degenerate */
     he_vec3 centroid; /* mean of the corners, where face_poke puts its vertex */
     double area;
     uint32_t degree;
@@ -65,9 +65,9 @@ he_vec3 he_face_centroid(const he_mesh *m, he_face f);
 
 /* How the faces around a vertex are weighted in the vertex's normal. */
 typedef enum he_weight {
-    HE_WEIGHT_AREA,   /* by the face's area */
-    HE_WEIGHT_ANGLE,  /* by the corner's angle (Thuermer and Wuethrich 1998) */
-    HE_WEIGHT_UNIFORM /* all alike */
+    HE_WEIGHT_AREA,   /* the weight is the face's area */
+    HE_WEIGHT_ANGLE,  /* the weight is the corner's angle (Thuermer and Wuethrich 1998) */
+    HE_WEIGHT_UNIFORM /* all faces weigh the same */
 } he_weight;
 
 /* Finds the unit normal of a vertex. Returns false, with zero, if the vertex is isolated, if all
@@ -75,8 +75,9 @@ typedef enum he_weight {
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* Find the normals of the whole mesh, into an array of one entry for each issued row, in linear
- * time. Dead and degenerate rows are zero. `watch`, which may be NULL, can cancel the work and
- * lends threads to he_face_normals. On failure the array is half written.
+ * time. The rows of deleted elements, and of elements without a normal, are zero. `watch`, which
+ * may be NULL, can cancel the work and lends threads to he_face_normals. On failure the array is
+ * half written.
  * Returns HE_CANCELLED if the watch cancelled the work.
  * Returns HE_CORRUPT if links do not close. */
 HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out,
@@ -87,8 +88,8 @@ HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_
 /* Finds normals of corners, smooth except at creases: the mean, weighted by the corners' angles, of
  * the faces around the half-edge's origin that can be reached without crossing a hole or an edge
  * between faces whose normals differ by more than `crease`, in [0, pi]. A degenerate face is
- * grouped with the next face clockwise, so that it separates no others. Zero on boundary
- * half-edges, and if the mean has no direction.
+ * grouped with the next face clockwise, so that it separates no others. The normal is zero on
+ * boundary half-edges, and if the mean has no direction.
  *
  * he_corner_normal takes time linear in the faces around the origin; he_corner_normals fills an
  * array of one entry for each issued half-edge in linear time, with the threads of `watch`. On
@@ -101,12 +102,13 @@ HE_NODISCARD he_status he_corner_normal(const he_mesh *m, he_halfedge h, double 
 HE_NODISCARD he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch,
                                          he_vec3 *out, he_error *err);
 
-/* Finds the box around all live vertices, isolated ones included. Returns false, and zero, if there
- * are none. */
+/* An axis-aligned box. */
 typedef struct he_box {
     he_vec3 min, max;
 } he_box;
 
+/* Finds the box around all live vertices, isolated ones included. Returns false, and zero, if there
+ * are none. */
 bool he_mesh_box(const he_mesh *m, he_box *out);
 /* Finds the box around the vertices that have edges. Scales and tolerances are taken from this box,
  * so that an isolated vertex far away has no influence. Returns false, and zero, if there are no
@@ -116,12 +118,12 @@ bool he_surface_box(const he_mesh *m, he_box *out);
 /* The sum of the faces' areas, and the volume that a closed mesh encloses: positive if normals
  * point outward, each face taken as the fan from the corner its stored half-edge leaves (divergence
  * theorem); for planar faces any fan gives the same volume. Sums are compensated (Neumaier 1974)
- * and each face is measured in a scale of its own, so neither large faces elsewhere nor the
- * distance to the origin of coordinates cost small faces any digits but those that the sum, being
- * one double, cannot hold. */
+ * and each face is measured in a scale of its own, so small faces count with all the digits that a
+ * sum in one double can hold, whatever large faces there are elsewhere, and however far the mesh is
+ * from the origin. */
 typedef struct he_measures {
     double area;
-    double volume;   /* 0 unless closed */
+    double volume;   /* 0 unless the mesh is closed */
     bool has_volume; /* the mesh is closed: it has faces and no boundary half-edge */
 } he_measures;
 

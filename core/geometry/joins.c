@@ -34,8 +34,8 @@ static bool is_listed(const he_mesh *m, const uint32_t *rank, uint32_t h)
     return to < from && rank[from] != HE_NONE && rank[to] != HE_NONE;
 }
 
-/* Computes where the list of each vertex of large degree begins. The start of each list is stored
- * one place further on; filling the lists moves it back. */
+/* Computes where the list of each vertex of large degree begins. The start of list i is stored at
+ * starts[i + 1], and moves on to the end of the list while the list is filled. */
 static uint32_t measure_lists(const he_mesh *m, const uint32_t *rank, uint32_t count,
                               uint32_t *starts)
 {

@@ -12,7 +12,7 @@
 
 enum { HE_JOINS_DEGREE = 32 };
 
-/* {0} is empty. */
+/* An index of edges. {0} is empty. */
 typedef struct he_joins {
     uint32_t *rank;   /* rank of a vertex among those of large degree, or HE_NONE */
     uint32_t *starts; /* where the list of each rank begins, and where the last one ends */

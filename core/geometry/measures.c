@@ -52,16 +52,16 @@ static void add(total *t, double x)
     t->sum = sum;
 }
 
-/* Terms of any size are summed exactly enough in several totals: terms whose exponents are in one
- * window of WINDOW share a total. The exponent of a volume is at most three times that of a
- * double. */
+/* Terms of very different sizes are summed in several totals, so that small terms are not lost:
+ * terms whose exponents are in one range (window) of WINDOW exponents share a total. The exponent
+ * of a volume is at most three times that of a double. */
 enum { WINDOW = 256, LEAST = -14 * WINDOW, WINDOWS = 28 };
 
 typedef struct sums {
     total of[WINDOWS]; /* the true total of window i is this times 2^(LEAST + WINDOW i) */
 } sums;
 
-/* Adds x times 2^exponent. */
+/* Adds x times 2^exponent to the total of its window. */
 static void add_scaled(sums *s, double x, int exponent)
 {
     int own;
@@ -91,9 +91,9 @@ static double sum_of(sums *s, const total *plain, double divisor)
     return he_clamped(ldexp((all.sum + all.error) / divisor, LEAST + top * WINDOW));
 }
 
-/* Finds the point from which volumes are measured: a vertex with edges nearest to the origin of
- * coordinates, or nearly so. From a point far from the mesh the volume would cancel, and so would
- * that of small near parts if it were measured from a far corner. */
+/* Finds the point from which volumes are measured: a vertex with edges that is nearest to the
+ * origin of coordinates. Measured from a point far from the mesh the terms of the volume would
+ * cancel out, and so would those of small parts measured from a far corner of the mesh. */
 static he_vec3 find_base(const he_mesh *m)
 {
     double least = HUGE_VAL;
@@ -102,7 +102,7 @@ static he_vec3 find_base(const he_mesh *m)
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         if (m->c.vertex_halfedge[v] < HE_DEAD) {
             he_vec3 p = m->c.position[v];
-            double square = he_vec3_dot(p, p); /* may be infinite: any nearer vertex is taken */
+            double square = he_vec3_dot(p, p); /* may be infinite: then another vertex is taken */
             if (square < least || !any) {
                 least = square;
                 base = p;
@@ -158,8 +158,8 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
         } else {
             add_scaled(&area, twice, 2 * exponent);
         }
-        /* The tetrahedra over a fan of triangles from p0 add up to p0 . A, whatever the other
-         * corners, because p0 . (p0 x q) is 0. */
+        /* The volumes of the tetrahedra over a fan of triangles from corner p0 add up to p0 . A / 3
+         * for the area vector A, whatever the other corners, because p0 . (p0 x q) is 0. */
         if (!closed) {
             continue;
         }

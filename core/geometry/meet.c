@@ -154,7 +154,9 @@ static bool flat_meet_beyond_side(const flat_pair *f, int i, int k)
 /* Two triangles, and on which side of each one's plane the corners of the other are. */
 typedef struct meeting {
     const he_vec3 *t[2];
-    int side[2][3]; /* for the corners of t[0], as seen from t[1], and the reverse */
+    /* side[0]: where the corners of t[0] are, as seen from the plane of t[1]; side[1]: the
+     * reverse. */
+    int side[2][3];
 } meeting;
 
 /* Returns true if the side that begins at corner i of triangle `of` intersects the other
@@ -243,8 +245,9 @@ bool he_triangles_meet(const he_vec3 a[3], const he_vec3 b[3])
                              : flat_meet_beyond_side(&f, 3 - sum_a, 3 - sum_b);
     }
     if (shared == 1) {
-        /* Points other than the shared corner that are in both triangles reach the side opposite to
-         * it of one triangle, which then intersects the other one. */
+        /* If both triangles contain more than the shared corner, what they have in common reaches
+         * the side opposite to that corner in one of them, and this side intersects the other
+         * triangle. */
         return side_meets(&m, 0, (at_a + 1) % 3) || side_meets(&m, 1, (at_b + 1) % 3);
     }
     /* If the projections of the triangles are disjoint, the triangles are disjoint, too; this test

@@ -16,7 +16,7 @@
 #define FAR_CELL 0x1p43
 #define LONE     0x1p53
 
-/* The number of slots that are cleared between two steps of the watch, because writing to fresh
+/* The number of slots that are cleared between two reports of progress, because writing to fresh
  * memory is slow. */
 enum { STRETCH = 16 * HE_WATCH_STRIDE };
 

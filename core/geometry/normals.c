@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-/* Returns the weight of a face by its area. Weights have a lower limit: areas around a vertex
- * differ beyond the range of a double only in meshes nobody draws, and the limit keeps their faces
- * from vanishing if there are no larger ones. */
+/* Returns the weight of a face by its area. Weights have a lower limit: the areas around a vertex
+ * exceed the range of a double only in extreme meshes, where the limit keeps small faces from
+ * counting nothing. */
 static double area_weight(const he_ring *r, int exponent, int unit)
 {
     return fmax(ldexp(0.5 * he_vec3_length(r->vector), 2 * exponent - unit), DBL_MIN);
@@ -139,8 +139,9 @@ static inline void look_ahead(const he_mesh *m, uint32_t f)
 
 /* --- faces ------------------------------------------------------------------------------------ */
 
-/* Faces are handled in blocks: first their corners, which prefetches all positions, then their
- * vectors, then the lengths of those, without a branch between them. */
+/* Faces are handled in blocks: first the corners of all faces of a block are found, which
+ * prefetches their positions, then the area vectors are computed, then the lengths of the vectors
+ * in a loop without branches. */
 enum { BLOCK = 64 };
 
 typedef struct faces {
@@ -275,8 +276,8 @@ static void add_to(he_vec3 *sum, he_vec3 normal, double weight)
     *sum = he_vec3_add(*sum, he_vec3_scale(normal, weight));
 }
 
-/* Adds a triangle's share to its corners. `half` is half the unit of area, 0 if a double cannot
- * hold it. Returns false if the share would vanish in that unit. */
+/* Adds a triangle's share to the normals of its three corners. `half` is half the unit of area, 0
+ * if a double cannot hold it. Returns false if the share would vanish in that unit. */
 static bool share_triangle(const triangle *t, he_weight weight, double half, he_vec3 *out)
 {
     if (weight == HE_WEIGHT_AREA) {

@@ -13,7 +13,7 @@ static int sign(double x)
 
 /* --- expansions: components in rising order of size, none of them zero --- */
 
-enum { MOST = 192 }; /* the most that a three-by-three determinant of differences needs */
+enum { MOST = 192 }; /* most components that the determinant of three-by-three differences needs */
 
 typedef struct expansion {
     size_t count;
@@ -102,7 +102,7 @@ static pair product_of(pair a, pair b)
     return exact_sum(p.high, p.low + (a.high * b.low + a.low * b.high));
 }
 
-/* a * d - b * c */
+/* Returns a * d - b * c. */
 static pair minor_of(pair a, pair b, pair c, pair d)
 {
     pair left = product_of(a, d), right = product_of(b, c);

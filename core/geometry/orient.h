@@ -3,7 +3,8 @@
  * The determinant is first computed in doubles. If it is smaller than its possible error, it is
  * computed exactly as an expansion: a sum of doubles of which none overlaps another (J. R.
  * Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates",
- * 1997). Exact as long as no product of three coordinates overflows or falls below 1e-280. */
+ * 1997). The result is exact as long as no product of three coordinates overflows or falls below
+ * 1e-280. */
 #ifndef HE_GEOMETRY_ORIENT_H
 #define HE_GEOMETRY_ORIENT_H
 

@@ -7,9 +7,9 @@
 /* The sums over one walk around a face; coordinates are multiplied by a scale. */
 typedef struct he_ring {
     he_vec3 vector; /* twice the area vector */
-    he_vec3 sum;    /* sum of the corners */
-    /* The sum of |u|^2 |v|^2 over the fan's triangles: the size of the terms of `vector` before
-     * they cancelled. */
+    he_vec3 sum;    /* sum of the positions of the corners */
+    /* The sum of |u|^2 |v|^2 over the triangles of the fan, u and v being two sides of each: how
+     * large the terms of `vector` were before they cancelled. */
     double reach;
     uint32_t degree; /* 0 if the links are broken */
 } he_ring;

@@ -13,8 +13,8 @@
 #define HE_LEAST_PRODUCT 1e-250
 #define HE_MOST_PRODUCT  1e250
 
-/* Returns the exponent by which to divide so that `extent` falls into [1/2, 1). It has a minimum,
- * so that the factor itself stays finite. */
+/* Returns the exponent e for which extent / 2^e is in [1/2, 1). It is at least -1000, so that the
+ * factor 2^-e stays finite. */
 static inline int he_exponent_of(double extent)
 {
     int exponent = 0;

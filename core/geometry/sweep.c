@@ -6,7 +6,8 @@
 
 /* A corner in the chain of an interval. One corner may be in two chains. */
 typedef struct link {
-    uint32_t corner, up, down; /* HE_NONE at the ends */
+    /* `up` and `down` are its neighbours in the chain; HE_NONE at the ends. */
+    uint32_t corner, up, down;
 } link;
 
 typedef struct interval {
@@ -24,7 +25,7 @@ typedef struct sweep {
     interval *intervals;
     link *links;
     uint32_t interval_count, link_count, root;
-    uint32_t *corners, made; /* triangles */
+    uint32_t *corners, made; /* the triangles so far: their corners, and how many triangles */
     uint64_t *steps;
 } sweep;
 
@@ -51,8 +52,8 @@ static bool is_earlier(const he_flat *f, uint32_t a, uint32_t b)
     return f->x[a] != f->x[b] ? f->x[a] < f->x[b] : f->y[a] != f->y[b] ? f->y[a] < f->y[b] : a < b;
 }
 
-/* Sorts the corners by merging runs of 1, 2, 4 and so on. Returns the one of the two arrays that
- * holds the result. */
+/* Sorts the corners by merge sort, in runs of 1, 2, 4 and so on corners. Returns the one of the two
+ * arrays that holds the result. */
 static uint32_t *sort(const he_flat *f, uint32_t *from, uint32_t *to)
 {
     for (size_t run = 1; run < f->n; run *= 2) {
@@ -229,7 +230,7 @@ static void bound(sweep *s, uint32_t which, uint32_t lower, uint32_t upper)
     s->within[lower] = s->within[upper] = which;
 }
 
-/* Handles a corner at which both sides begin, with the inside of the loop between them. */
+/* Handles a corner at which both its sides begin, with the inside of the loop between them. */
 static bool start(sweep *s, uint32_t corner)
 {
     uint32_t made = add_interval(s, find_below(s, corner));
@@ -239,7 +240,7 @@ static bool start(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both sides begin, with the outside of the loop between them. */
+/* Handles a corner at which both its sides begin, with the outside of the loop between them. */
 static bool split(sweep *s, uint32_t corner)
 {
     uint32_t below = find_below(s, corner);
@@ -265,7 +266,7 @@ static bool split(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both sides end, with the outside of the loop between them. */
+/* Handles a corner at which both its sides end, with the outside of the loop between them. */
 static bool merge(sweep *s, uint32_t corner)
 {
     uint32_t below = s->within[corner], above = s->within[before(s, corner)];
@@ -284,7 +285,7 @@ static bool merge(sweep *s, uint32_t corner)
     return true;
 }
 
-/* Handles a corner at which both sides end, with the inside of the loop between them. */
+/* Handles a corner at which both its sides end, with the inside of the loop between them. */
 static bool end(sweep *s, uint32_t corner)
 {
     uint32_t which = s->within[corner];
@@ -378,7 +379,7 @@ static bool put_in_order(const he_flat *f, const uint32_t *from, uint32_t *to, u
     return true;
 }
 
-/* --- both --- */
+/* --- the whole triangulation --- */
 
 static bool sweep_over(sweep *s, const uint32_t *order)
 {

@@ -1,9 +1,10 @@
 /* sweep.h - triangulates a flat loop by a sweep line.
  *
- * Corners are visited in the order of x, then of y. On the line the inside of the loop is a stack
- * of INTERVALS, each between a lower side, along which the loop runs onward, and an upper one,
- * along which it runs back. Behind each interval lies what is not triangulated yet, ahead of a
- * CHAIN of corners from its lower to its upper side, no two of which can be joined:
+ * Corners are visited in the order of x, then of y. The inside of the loop crosses the sweep line
+ * in a stack of INTERVALS, each between a lower side of the loop, which runs onward (in the
+ * direction of the sweep), and an upper side, which runs back. Behind each interval lies a region
+ * that is not triangulated yet. It ends at a CHAIN of corners, from the lower to the upper side, no
+ * two of which can be joined:
  *
  *       _____c3                  A corner on one of the sides is joined to all of the chain that
  *      |    /                    it sees from that end. Where the loop begins to run onward and

@@ -9,7 +9,7 @@
 
 /* --- state that several loops share --- */
 
-/* The number of steps between two steps of the watch, which take less than a millisecond. */
+/* Progress is reported after this many steps, which take less than a millisecond. */
 enum { STEPS_UNTOLD = 1 << 15 };
 
 /* Edges are searched around their ends until this many steps, or as many as making the index of
@@ -61,18 +61,18 @@ he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *e
                    "diagonals of the loop at vertex %u would double edges that are there", v);
 }
 
-/* --- exact: all sub-loops i..k of corners, smallest first --- */
+/* --- exact triangulation: all sub-loops i..k of corners, smallest first --- */
 
 /* The cost of a triangle that does not turn left. It exceeds the cost of all diagonals of a loop,
- * each of which is at most one: its squared length over the largest possible in the frame of
- * flat.h. */
+ * each of which costs at most one: its squared length divided by the largest that is possible in
+ * the coordinates of flat.h. */
 static const double BAD = 4096;
 
 typedef struct table {
     /* The cost of the best triangulation of sub-loop i..k, stored under i, k and under k, i;
      * DBL_MAX if there is none. */
     double *cost;
-    uint8_t *middle; /* the middle corner of its triangle on the side i, k */
+    uint8_t *middle; /* middle corner of the triangle on side i, k of the sub-loop */
     he_triangulation_work *work;
 } table;
 

@@ -1,7 +1,7 @@
 /* triangulation.h - chooses the triangles that fill a loop.
  *
- * A triangulation lists them in an order in which each cuts one corner, its middle one, off what is
- * left of the loop; the last one is what is left.
+ * A triangulation lists its triangles in such an order that each cuts one corner, the middle one of
+ * its three, off the rest of the loop; the last triangle is what then is left.
  *
  * Loops of up to HE_EXACT_CORNERS corners get the triangulation with the fewest triangles that do
  * not turn left in the Newell plane (none for a simple polygon), and among those the one with the
@@ -10,17 +10,17 @@
  * Longer loops are cut by ear clipping, see ears.h.
  *
  * With HE_ANY_DIAGONALS short loops are cut by ear clipping too, and the best triangulation is
- * searched only if that flips a triangle: for callers that need many triangulations fast.
+ * searched only if that flips a triangle. This is for callers that need many triangulations fast.
  *
  * With HE_AVOID_EDGES no diagonal is an existing edge, which an edit would double. In short loops
  * existing edges are avoided if that flips no triangle. In long ones an ear whose diagonal exists
  * is skipped; when only such ears are left the loop is refused, though another order of cuts might
  * have succeeded. If no diagonal of the triangulation exists as an edge, the flag changes nothing.
  *
- * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS cubed / 6 steps, a long one of
- * n corners about n log n. Searching for edges costs a few steps for each diagonal; if it costs
- * more, an index of the edges at vertices of large degree is made (joins.h). So the work for the
- * loops of a mesh is bounded by its corners and needs no limit.
+ * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS^3 / 6 steps each, a long one of
+ * n corners about n log n steps. Searching for edges costs a few steps for each diagonal; if it
+ * costs more, an index of the edges at vertices of large degree is made (joins.h). So the work for
+ * the loops of a mesh is bounded by its corners and needs no limit.
  *
  * If the mesh has a cache of long faces (long_faces.h), their triangulations are taken from it.
  *
@@ -35,22 +35,24 @@
 enum { HE_EXACT_CORNERS = 64 };
 
 typedef struct he_triangulation {
-    he_flat flat;      /* without x and y if the triangulation is from the cache */
+    /* The loop in its plane; without x and y if the triangulation is from the cache. */
+    he_flat flat;
     uint32_t *corners; /* three a triangle, counter-clockwise, for flat.n - 2 triangles */
     bool degenerate;   /* some triangle has no area in the plane, or is flipped */
-    uint64_t steps;    /* steps taken */
+    uint64_t steps;    /* number of steps that this triangulation took */
 } he_triangulation;
 
-/* State shared by many triangulations of a mesh; {0} begins it. The mesh may not change except by
- * the diagonals of its loops, which the caller notes in `own` (he_joins_reserve, he_joins_note). */
+/* State shared by many triangulations of a mesh; {0} begins it. The mesh must not change meanwhile,
+ * except that the caller may make edges of diagonals, if it reports them to `own`
+ * (he_joins_reserve, he_joins_note). */
 typedef struct he_triangulation_work {
     uint64_t steps;        /* steps taken, also for loops that were refused */
-    uint64_t searched;     /* steps of these spent searching edges */
+    uint64_t searched;     /* how many of `steps` were spent searching for edges */
     const he_joins *joins; /* index of edges; NULL: edges are searched around their ends */
     he_joins own;          /* the index, once it is worth making, with the caller's diagonals */
     uint64_t sorted;       /* value of `searched` when the index was made */
-    /* The watch that gets the progress from time to time: `done` of `of`, which the caller
-     * counts. */
+    /* The watch that progress is reported to, as `done` of `of`; the caller counts both. `told` is
+     * the value of `steps` at the last report. */
     he_watch *watch;
     uint64_t done, of, told;
 } he_triangulation_work;

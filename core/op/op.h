@@ -16,7 +16,7 @@ typedef enum he_param_type {
     HE_PARAM_ELEMENT,  /* one id of the row's kind */
     HE_PARAM_ELEMENTS, /* one id under `name`, or a list under `plural` */
     HE_PARAM_NUMBER,   /* a finite double, within min and max where the row has a range */
-    HE_PARAM_POINT,    /* [x, y, z] */
+    HE_PARAM_POINT,    /* a point [x, y, z] */
     HE_PARAM_POINTS,   /* [x, y, z], or a list of those, one for each element */
     HE_PARAM_FLAG,     /* true or false */
     HE_PARAM_CHOICE,   /* one of the strings in `choices` */
@@ -50,7 +50,8 @@ enum {
 
 typedef struct he_param {
     const char *name;
-    const char *plural; /* for HE_PARAM_ELEMENTS, else NULL */
+    /* Name under which a list is given; NULL unless `type` is HE_PARAM_ELEMENTS. */
+    const char *plural;
     he_param_type type;
     he_kind kind; /* kind of the elements */
     unsigned flags;
@@ -59,7 +60,7 @@ typedef struct he_param {
     char group;
     double min, max;
     double fallback;            /* default of a number; 0 or 1 for a flag; index of a choice */
-    const char *const *choices; /* ends in NULL */
+    const char *const *choices; /* names of the choices, ending in NULL */
     const char *doc;
 } he_param;
 
@@ -67,16 +68,16 @@ typedef struct he_param {
  * call. */
 typedef struct he_arg {
     bool given;
-    uint32_t id;         /* for ELEMENT; HE_NONE for null */
-    const uint32_t *ids; /* for ELEMENTS and CYCLE */
+    uint32_t id;         /* value of an HE_PARAM_ELEMENT; HE_NONE for null */
+    const uint32_t *ids; /* values of an HE_PARAM_ELEMENTS or HE_PARAM_CYCLE */
     size_t count;        /* number of ids or points */
-    bool list;           /* for ELEMENTS and POINTS: given as a list */
+    bool list;           /* an HE_PARAM_ELEMENTS or HE_PARAM_POINTS was given as a list */
     double number;
-    const he_vec3 *points; /* for POINT and POINTS */
+    const he_vec3 *points; /* values of an HE_PARAM_POINT or HE_PARAM_POINTS */
     bool flag;
     int choice;
     double matrix[16];
-    const char *text;    /* borrowed */
+    const char *text;    /* value of an HE_PARAM_TEXT; borrowed */
     double color[4];     /* `count` of the numbers are given */
     const he_mesh *mesh; /* borrowed; never the mesh that is edited */
 } he_arg;
@@ -97,7 +98,7 @@ typedef struct he_result_row {
     he_result_type type;
     he_kind kind;
     const char *doc;
-    const char *const *choices; /* ends in NULL */
+    const char *const *choices; /* names of the choices, ending in NULL */
 } he_result_row;
 
 enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
@@ -106,13 +107,13 @@ enum { HE_OP_PARAMS = 10, HE_OP_RESULTS = 8, HE_OP_REFUSALS = 16 };
  * the end the caller clears them. */
 typedef struct he_results {
     bool present[HE_OP_RESULTS];
-    uint32_t id[HE_OP_RESULTS]; /* for a choice, its index */
+    uint32_t id[HE_OP_RESULTS]; /* the element; for a choice, its index */
     he_ids list[HE_OP_RESULTS];
     double number[HE_OP_RESULTS];
 } he_results;
 
-/* How long an operation takes: HE_OP_LOCAL depends on what it touches; HE_OP_WHOLE on the whole
- * mesh, so it may run long. */
+/* How long an operation takes: the time of HE_OP_LOCAL depends on the elements it touches, that of
+ * HE_OP_WHOLE on the whole mesh, so it may run long. */
 typedef enum he_op_size { HE_OP_LOCAL, HE_OP_WHOLE } he_op_size;
 
 /* Marks a change of V, E or F that depends on the mesh. */
@@ -127,7 +128,7 @@ typedef struct he_op {
     /* Every refusal that the operation can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and,
      * under a watch, HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
-    int change[3]; /* change of V, E, F */
+    int change[3]; /* change of the numbers of vertices, edges and faces */
     /* The time of the operation relative to `transform`: for each element of the mesh if it takes
      * the whole mesh, else for each element of its lists. It was measured, and rounded up; 0 means
      * 1. */
@@ -137,7 +138,7 @@ typedef struct he_op {
     /* Finds a refusal from the mesh's counts alone, before the operation begins; NULL if no refusal
      * can be found in this way. HE_OK is no promise of success. */
     he_status (*foresee)(const he_mesh *mesh, const he_arg *args, he_error *err);
-    /* Called by he_op_run only. */
+    /* Performs the operation. Only he_op_run calls it. */
     he_status (*run)(he_mesh *mesh, const he_arg *args, he_results *out, he_error *err);
 } he_op;
 

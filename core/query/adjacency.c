@@ -8,10 +8,10 @@
 #define ALWAYS_INLINE inline __attribute__((always_inline))
 
 typedef struct he_gather {
-    const uint32_t *of; /* NULL: every live element */
-    size_t count;       /* entries of `of`, or the issued rows */
+    const uint32_t *of; /* elements whose neighbours are wanted; NULL: every live element */
+    size_t count;       /* number of entries of `of`; of issued rows if that is NULL */
     he_ids *ids;
-    uint32_t *offsets; /* the next one to write, or NULL */
+    uint32_t *offsets; /* where the next offset will be written; NULL if offsets are not wanted */
     uint64_t budget;   /* half-edges that may still be visited */
     bool capped;       /* was the budget set by the mesh's size? */
     unsigned flags;
@@ -365,7 +365,7 @@ he_status he_relation_append(const he_mesh *m, const he_relation *relation, uint
 }
 
 /* Returns an upper bound of the number of neighbours of all elements, which is exact for most
- * relations; 0 if the mesh's size gives no bound (each half-edge of a big face has the whole
+ * relations; 0 if the mesh's size gives no bound (each half-edge of a large face lists the whole
  * loop). */
 static uint64_t bound(const he_mesh *m, const he_relation *relation)
 {

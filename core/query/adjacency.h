@@ -29,7 +29,7 @@
 
 #include "mesh/mesh.h"
 
-/* Flags. */
+/* Flags of the functions below. */
 enum { HE_CLOCKWISE = 1 };
 
 struct he_gather; /* where a relation's function puts its ids; private to adjacency.c */
@@ -60,7 +60,7 @@ typedef struct he_dense {
     he_ids offsets, ids;
 } he_dense;
 
-/* The question which neighbours many elements have. */
+/* A request for the neighbours of many elements. */
 typedef struct he_neighbours {
     const he_relation *relation;
     const uint32_t *of; /* the elements, which may repeat; NULL: all live ones by rising id */

@@ -17,9 +17,9 @@ enum {
 typedef struct builder {
     he_boxes tree;
     const he_bounds *boxes; /* boxes of things, by their numbers */
-    const uint32_t *group;  /* or NULL */
+    const uint32_t *group;  /* the group of each thing; NULL if there are no groups */
     he_bounds *group_boxes;
-    size_t capacity; /* nodes that fit */
+    size_t capacity; /* number of nodes for which there is memory */
     he_budget *budget;
 } builder;
 
@@ -36,14 +36,14 @@ void he_bounds_include(he_bounds *b, const he_bounds *other)
     }
 }
 
-/* Returns half the surface. */
+/* Returns half the surface area of a box. */
 static double surface(const he_bounds *b)
 {
     double x = b->max[0] - b->min[0], y = b->max[1] - b->min[1], z = b->max[2] - b->min[2];
     return x * y + y * z + z * x;
 }
 
-/* Returns twice the centre. */
+/* Returns twice the coordinate of a box's centre along an axis. */
 static double middle(const he_bounds *b, int axis)
 {
     return b->min[axis] + b->max[axis];
@@ -51,15 +51,15 @@ static double middle(const he_bounds *b, int axis)
 
 /* --- splitting --- */
 
-/* A run of `order`, which lists the things, that will become a node of the tree. */
+/* A run of entries of `order`, the list of all things, that will become a node of the tree. */
 typedef struct run {
     uint32_t node, first, count, depth;
     uint32_t least, most; /* lowest and highest group of its things */
 } run;
 
 typedef struct cut {
-    int axis; /* -1: no cut was found */
-    int bin;  /* things in bins below it go left */
+    int axis; /* axis of the cut; -1 if none was found */
+    int bin;  /* things in the bins below this one go left */
     double low, factor;
 } cut;
 

@@ -10,7 +10,7 @@
  *     order    the things, in the order of leaves
  *
  * Things may belong to GROUPS that get subtrees of their own, such as the triangles about a vertex
- * of very large degree: while a run contains things of more than one group, each thing of a group
+ * of very large degree: while a node contains things of more than one group, each thing of a group
  * counts as having the box of the whole group, so the group stays together. */
 #ifndef HE_QUERY_BOXES_H
 #define HE_QUERY_BOXES_H
@@ -20,8 +20,8 @@
 
 enum {
     HE_BOXES_LEAF = 4,
-    HE_BOXES_DEEP = 48, /* from this depth on, runs are halved */
-    HE_BOXES_STACK = 96 /* more than the length of any path */
+    HE_BOXES_DEEP = 48, /* nodes from this depth on are halved without a search for the best cut */
+    HE_BOXES_STACK = 96 /* size of the stack of a walk; no path from the root is as long */
 };
 
 typedef struct he_bounds {
@@ -31,8 +31,9 @@ typedef struct he_bounds {
 /* A node of the tree, with its box in floats, which are rounded outward. */
 typedef struct he_box_node {
     float min[3], max[3];
-    uint32_t first; /* index in the order, or of the first child */
-    uint32_t count; /* things of a leaf, 0 for an inner node */
+    /* In a leaf, index of its first thing in `order`; else index of the first child. */
+    uint32_t first;
+    uint32_t count; /* number of things in a leaf, 0 for an inner node */
 } he_box_node;
 
 typedef struct he_boxes {
@@ -42,16 +43,17 @@ typedef struct he_boxes {
     he_bounds all;
 } he_boxes;
 
-/* Return a box that contains nothing, and the smallest box that contains both `a` and `b`. */
+/* he_bounds_none returns a box that contains nothing; he_bounds_include enlarges a box so that it
+ * contains another one, too. */
 he_bounds he_bounds_none(void);
 void he_bounds_include(he_bounds *b, const he_bounds *other);
 
 /* The things that a tree is made over, at least one. */
 typedef struct he_boxed {
-    const he_bounds *boxes; /* of each thing */
+    const he_bounds *boxes; /* box of each thing */
     uint32_t count;
     const uint32_t *group; /* the group of each thing, 0 for none; NULL if there are no groups */
-    uint32_t groups;       /* greater than the number of each group */
+    uint32_t groups;       /* larger than every number in `group` */
 } he_boxed;
 
 /* Makes a tree in O(n log n) time. The caller clears `out`.

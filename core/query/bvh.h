@@ -7,7 +7,7 @@
  *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
  *                cube, whatever isolated vertices there are: no finite input overflows. Faces that
  *                are 1e70 times smaller than the largest coordinate of a face count as points for
- *                rays and nearest points. Floats, rounded outward
+ *                rays and nearest points. The boxes are floats, rounded outward
  *     discs      around the same triangles, see bvh_disc.h
  *
  * A tree belongs to the state of the mesh when it was made: the functions take that mesh as an
@@ -28,7 +28,7 @@
 enum { HE_BVH_LOOK = 8, HE_BVH_PAIR = 64 };
 
 typedef struct he_bvh_disc {
-    float center[3], normal[3], thick, radius; /* the thickness is to either side */
+    float center[3], normal[3], thick, radius; /* `thick` is the thickness to either side */
 } he_bvh_disc;
 
 typedef struct he_bvh_triangle {
@@ -58,20 +58,20 @@ typedef struct he_bvh {
 HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err);
 void he_bvh_free(he_bvh *tree);
 
-/* A point on a face. */
+/* The point where a ray hits a face, or the nearest point on a face. */
 typedef struct he_hit {
     uint32_t face;      /* HE_NONE: nothing was hit, and the other fields are not set */
     uint32_t vertex[3]; /* corners of one of its triangles */
     double weight[3];   /* barycentric coordinates of the point: not negative, sum 1 */
     he_vec3 point;
-    double distance; /* at most DBL_MAX */
+    double distance; /* distance of the point; at most DBL_MAX */
 } he_hit;
 
 /* A ray; `max` is the greatest distance from its origin at which it hits, in the mesh's unit. */
 typedef struct he_ray {
     he_vec3 origin;
     he_vec3 direction; /* of any length but zero */
-    double max;        /* may be HUGE_VAL */
+    double max;        /* greatest distance of a hit; may be HUGE_VAL */
 } he_ray;
 
 /* Finds the first face that a ray hits, from either side.

@@ -150,7 +150,7 @@ static he_status walk(approach *a, const he_bvh *tree, const he_mesh *m, he_budg
             uint32_t left = node->first, right = left + 1;
             double to_left = to_node(a->p, tree, left, far),
                    to_right = to_node(a->p, tree, right, far);
-            bool swap = to_left <= to_right; /* puts the nearer one on top */
+            bool swap = to_left <= to_right; /* puts the nearer child on top */
             stack[depth].node = swap ? right : left;
             stack[depth++].near = swap ? to_right : to_left;
             stack[depth].node = swap ? left : right;

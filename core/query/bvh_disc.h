@@ -3,7 +3,7 @@
  *            n                    A box around a patch that is not parallel to the axes is as
  *         ___|___                 thick as the patch is wide; a disc along the patch is only as
  *        |___c___| 2 thick        thick as the patch is rough. If many faces are about as near
- *        |-------|                as the nearest one, that decides how many of them are visited.
+ *        |-------|                as the nearest one, the thickness decides how many are visited.
  *          2 radius */
 #ifndef HE_QUERY_BVH_DISC_H
 #define HE_QUERY_BVH_DISC_H

@@ -16,14 +16,14 @@ typedef struct prism {
 enum { HUBS = HE_HUBS_OF, COMMON = HUBS + 1 };
 
 typedef struct common {
-    uint32_t of[COMMON]; /* the face is last */
+    uint32_t of[COMMON]; /* hubs first, the face last */
 } common;
 
 typedef struct walk {
     he_pair_search search;
     common *commons; /* one for each node; NULL if there are no hubs or large faces */
-    uint32_t done;   /* triangles that were tried with all following ones */
-    uint32_t leaves; /* leaves that were tried with themselves */
+    uint32_t done;   /* number of triangles that were tried with all following ones */
+    uint32_t leaves; /* number of leaves that were tried with themselves */
 } walk;
 
 /* Progress is reported to the watch after each TOLD leaves. */
@@ -91,7 +91,7 @@ static prism load(const he_pair_search *s, uint32_t triangle)
     return p;
 }
 
-/* a and b may be one leaf. */
+/* Tries the triangles of leaf a with those of leaf b, which may be the same leaf. */
 static he_status try_leaves(void *context, const he_box_node *a, const he_box_node *b,
                             he_error *err)
 {
@@ -175,8 +175,8 @@ static void find_commons(walk *w)
     }
 }
 
-/* Returns true if the box lies outside the slab between the two planes of a disc. The disc's normal
- * is rounded to floats, by less than the margin here (bvh_disc.c). */
+/* Returns true if the box lies outside the slab between the two planes of a disc. The test has a
+ * margin that is larger than the rounding of the disc's normal to floats (bvh_disc.c). */
 static bool is_beside(const he_bvh_disc *slab, const he_box_node *box)
 {
     double off = 0, reach = slab->thick, size = 0;
@@ -198,7 +198,8 @@ static bool is_needless(void *context, uint32_t a, uint32_t b)
     const he_bvh *tree = w->search.tree;
     common shared = both(&w->commons[a], &w->commons[b]);
     if (shared.of[0] != HE_NONE || shared.of[HUBS] != HE_NONE) {
-        return true; /* tried at the hub, or parts of one face */
+        /* he_pairs_at_hub tries the pairs at a hub; triangles of one face are never tried. */
+        return true;
     }
     return a != b && (is_beside(&tree->discs[a], &tree->nodes[b]) ||
                       is_beside(&tree->discs[b], &tree->nodes[a]));

@@ -15,7 +15,7 @@ typedef struct he_pair_search {
     const he_bvh *tree;
     const he_mesh *m;
     he_budget *budget;
-    size_t most; /* most ids in the list */
+    size_t most; /* most ids that `pairs` may hold */
     he_ids *pairs;
     uint32_t *hubs_of; /* HE_HUBS_OF numbers for each triangle (hubs.h); NULL without hubs */
 } he_pair_search;

@@ -124,7 +124,7 @@ static he_status walk(const ray *r, const he_bvh *tree, const he_mesh *m, he_bud
             uint32_t a = node->first, b = node->first + 1;
             double to_a = enter(r, &tree->nodes[a], best->far);
             double to_b = enter(r, &tree->nodes[b], best->far);
-            bool swap = to_a <= to_b; /* puts the nearer one on top */
+            bool swap = to_a <= to_b; /* puts the nearer child on top */
             stack[depth].node = swap ? b : a;
             stack[depth++].near = swap ? to_b : to_a;
             stack[depth].node = swap ? a : b;

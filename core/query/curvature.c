@@ -11,8 +11,8 @@
  * chosen, else by its rank among the chosen ones. */
 typedef struct chosen {
     bool all;
-    he_ids ids;   /* sorted, each once; empty when all */
-    he_ids faces; /* faces beside them, sorted, each once; empty if all */
+    he_ids ids;   /* sorted, each once; empty if all elements are chosen */
+    he_ids faces; /* faces beside the chosen elements, sorted, each once; empty if all are chosen */
 } chosen;
 
 static void clear(chosen *c)
@@ -91,7 +91,7 @@ typedef struct triangle {
     uint32_t corner[3];
     bool is_side[3]; /* is the side from corner i to the next one an edge of the mesh? */
     double length[3];
-    double angle[3], cosine[3], sine[3]; /* at its corners */
+    double angle[3], cosine[3], sine[3]; /* angles at the corners, with their cosines and sines */
     he_vec3 along[3];                    /* unit vectors along its sides */
     he_vec3 normal;                      /* unit vector, unless degenerate */
     bool degenerate;
@@ -198,7 +198,7 @@ static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_w
 typedef struct sums {
     double angle, area;
     he_vec3 bend;   /* sum of cotangents times sides towards the vertex */
-    he_vec3 normal; /* weighted by angle */
+    he_vec3 normal; /* sum of the triangles' normals, weighted by angle */
     int exponent;
     bool any;
 } sums;
@@ -222,7 +222,9 @@ static void rescale(sums *s, int exponent)
     }
 }
 
-/* Returns the part of the triangle's area that is nearest to corner i, if no angle is obtuse. */
+/* Returns the share of corner i in the triangle's mixed area: the part that is nearest to the
+ * corner if no angle is obtuse, else half of the area at the obtuse angle and a quarter
+ * elsewhere. */
 static double share(const triangle *t, int i, double ahead, double behind)
 {
     int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -30,7 +30,7 @@ typedef struct he_curvature {
      * seen from outside it is 1 / radius. NaN if the vertex is on the boundary or isolated, or if
      * there is no area around it. */
     double mean;
-    double gaussian; /* the angle defect divided by the area; NaN as `mean` */
+    double gaussian; /* the angle defect divided by the area; NaN if `mean` is NaN */
 } he_curvature;
 
 /* Computes the curvature of each of `count` live vertices, or, if `of` is NULL, of all of them in

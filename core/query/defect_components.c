@@ -9,7 +9,7 @@
 #include <float.h>
 
 typedef struct shell {
-    uint32_t face; /* the lowest face */
+    uint32_t face; /* the face with the lowest id */
     bool open;
     double min[3], max[3]; /* in coordinates times the scale, like the fields below */
     double volume, reach;  /* six times the volume; the most that the sum of its terms could be */

@@ -54,13 +54,13 @@ typedef struct he_thresholds {
  * that have edges, or around all vertices if none has an edge. The seed is 0. */
 he_thresholds he_thresholds_of(const he_mesh *m);
 
-/* The defects that are listed of each code: the first ones by rising id. All are counted. */
+/* The most defects of each code that are listed, the first ones by rising id. All are counted. */
 enum { HE_DEFECTS_LISTED = 100 };
 
 typedef struct he_defect_found {
     uint32_t id;
-    uint32_t other; /* HE_NONE if there is none */
-    double value;   /* 0 if there is none */
+    uint32_t other; /* the other element concerned; HE_NONE if there is none */
+    double value;   /* what was measured, see above; 0 if there is nothing */
 } he_defect_found;
 
 typedef struct he_defect_list {
@@ -73,7 +73,7 @@ typedef struct he_defects {
     he_defect_list of[HE_DEFECTS];
 } he_defects;
 
-/* Adds a defect. */
+/* Counts a defect, and lists it unless HE_DEFECTS_LISTED of its code are listed already. */
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 

@@ -10,9 +10,11 @@
 #include "mesh/mesh.h"
 
 typedef struct he_idmap {
-    he_ids ids;      /* in order of arrival */
-    uint32_t *slots; /* index + 1, or 0 if free; open addressing, at most half full */
-    unsigned log2;   /* logarithm of the number of slots, 0 while there are none */
+    he_ids ids; /* the ids in the order in which they were added */
+    /* Hash table of indices in `ids`, each + 1, or 0 if free; open addressing, at most half
+     * full. */
+    uint32_t *slots;
+    unsigned log2; /* logarithm of the number of slots, 0 while there are none */
 } he_idmap;
 
 /* Returns the index of an id, HE_NONE if the id was never added. */
@@ -22,6 +24,6 @@ uint32_t he_idmap_find(const he_idmap *map, uint32_t id);
  * Returns HE_NO_MEMORY if memory is out; the map is as it was. */
 HE_NODISCARD he_status he_idmap_add(he_idmap *map, uint32_t id, uint32_t *index, bool *added,
                                     he_error *err);
-void he_idmap_clear(he_idmap *map); /* frees */
+void he_idmap_clear(he_idmap *map); /* frees the memory */
 
 #endif

@@ -25,8 +25,8 @@ typedef struct search {
     node *nodes;
     size_t capacity;
     uint32_t *heap; /* nodes, the nearest first; it has room for all of `nodes` */
-    uint32_t count; /* entries of the heap */
-    uint32_t steps; /* half-edges visited */
+    uint32_t count; /* number of entries of the heap */
+    uint32_t steps; /* number of half-edges visited */
 } search;
 
 static void search_clear(search *s)

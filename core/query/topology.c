@@ -245,7 +245,9 @@ he_status he_components_label(const he_mesh *m, uint32_t **labels, uint32_t *cou
     if (status != HE_OK) {
         return status;
     }
-    /* The root of a face's tree has a lower id than the face, so it has its label already. */
+    /* Each entry of `label` holds the face's parent in the forest until the component's number
+     * overwrites it. A parent has a lower id than its face, so the parent's entry is a number by
+     * then. */
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             label[f] = HE_NONE;

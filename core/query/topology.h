@@ -22,7 +22,7 @@ typedef struct he_degree_count {
 } he_degree_count;
 
 typedef struct he_topology {
-    uint32_t vertices, edges, faces; /* live ones */
+    uint32_t vertices, edges, faces; /* numbers of live elements */
     uint32_t isolated_vertices;
     uint32_t boundary_halfedges, boundary_loops;
     uint32_t bowties; /* vertices of two fans or more */
@@ -47,24 +47,26 @@ typedef struct he_boundary {
 } he_boundary;
 
 typedef struct he_boundaries {
-    he_boundary *loops; /* by rising half-edge */
+    he_boundary *loops; /* in the order of rising half-edges */
     size_t count, capacity;
 } he_boundaries;
 
 HE_NODISCARD he_status he_boundaries_find(const he_mesh *m, he_boundaries *out, he_error *err);
 void he_boundaries_clear(he_boundaries *boundaries);
 
-/* COMPONENTS. */
+/* COMPONENTS. The two relations by which faces are joined into components. */
 typedef enum he_connection { HE_JOINED_BY_VERTEX, HE_JOINED_BY_EDGE } he_connection;
 
 typedef struct he_component {
     uint32_t faces;
-    uint32_t vertices; /* components by edge each count a bow-tie that they share */
-    uint32_t face;     /* the lowest id */
+    /* Number of vertices of the component's faces. A bow-tie that components share counts in
+     * each. */
+    uint32_t vertices;
+    uint32_t face; /* the face with the lowest id */
 } he_component;
 
 typedef struct he_components {
-    he_component *components; /* by rising lowest face */
+    he_component *components; /* in the order of their lowest faces */
     size_t count, capacity;
 } he_components;
 

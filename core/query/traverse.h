@@ -10,12 +10,11 @@
 
 #include "mesh/mesh.h"
 
-/* A PATH is made by steps: the list of steps is taken from its beginning, `repeat` times as a
- * whole. */
+/* A PATH follows a list of steps from a half-edge; the whole list is taken `repeat` times. */
 typedef enum he_step { HE_STEP_NEXT, HE_STEP_PREV, HE_STEP_TWIN } he_step;
 typedef enum he_until {
-    HE_UNTIL_COUNT, /* only `repeat` ends it */
-    HE_UNTIL_START, /* ends also at the first return to `from` */
+    HE_UNTIL_COUNT, /* the path ends only after `repeat` rounds */
+    HE_UNTIL_START, /* the path also ends at the first return to `from` */
     /* The path also ends at the first half-edge without a face, or when the whole list of steps was
      * taken and led back to `from`. */
     HE_UNTIL_BOUNDARY
@@ -49,7 +48,7 @@ HE_NODISCARD he_status he_traverse_loop(const he_mesh *m, he_halfedge from, he_i
 typedef struct he_breadth_first {
     he_kind kind;   /* HE_VERTEX or HE_FACE */
     uint32_t from;  /* the vertex or face where the walk begins */
-    uint32_t depth; /* nothing deeper is visited; HE_NONE: no bound */
+    uint32_t depth; /* the greatest depth that is visited; HE_NONE: no bound */
     size_t limit;   /* the walk stops at so many elements, which is no error; 0: no bound */
 } he_breadth_first;
 
@@ -66,9 +65,9 @@ typedef enum he_measure {
 } he_measure;
 
 typedef struct he_path {
-    bool found;       /* false: no path joins them, which is no error */
+    bool found;       /* false: no path joins the two vertices, which is no error */
     he_ids vertices;  /* from, ..., to; only `from` if they are one vertex */
-    he_ids edges;     /* between them, one fewer */
+    he_ids edges;     /* edges between successive vertices, one fewer */
     double length;    /* in the measure asked for; DBL_MAX if a double cannot hold it */
     uint64_t visited; /* half-edges visited, also if no path was found: the cost of the search */
 } he_path;

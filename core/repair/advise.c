@@ -57,8 +57,8 @@ static bool mends_edge(const he_soup *soup, size_t f, const uint32_t *edge_of, c
     return mends;
 }
 
-/* Decides whether each dropped duplicate mends an edge. The wall between two solids does not: both
- * solids need it, and the soup must be split instead. */
+/* Decides whether dropping each of the duplicates makes an invalid edge valid. Dropping the wall
+ * between two solids does not: both solids need it, and the soup must be split instead. */
 static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *out, he_error *err)
 {
     size_t edges = 0;
@@ -98,7 +98,8 @@ static he_status all_mend(const he_soup *soup, const he_repaired *done, bool *ou
     return status;
 }
 
-/* Whether there are duplicates, and whether each that is dropped mends an edge. */
+/* Whether there are duplicates (`some`), and whether dropping each of them makes an invalid edge
+ * valid (`mend`). */
 typedef struct duplicates {
     bool some, mend;
 } duplicates;

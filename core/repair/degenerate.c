@@ -5,10 +5,10 @@
  *     1 2 3 4 3  ->  1 2 3          a spike, there and back
  *
  *     3-----------2    0 1 2 3 0 4 7 6 5 4: a keyhole, whose rim runs to a hole and back along
- *     | 7-----6   |    the same edge, and other loops that come to a vertex twice. Cut into
- *     | |     |   |    triangles, each corner standing for itself, none repeats a vertex but
- *     | 4-----5   |    those without an area between two copies of one, which are left out:
- *     |/          |    their neighbours then meet.
+ *     | 7-----6   |    the same edge, and other loops that come to a vertex twice, are cut into
+ *     | |     |   |    triangles, as if each corner had a vertex of its own. A triangle that has
+ *     | 4-----5   |    two copies of a vertex has no area; it is left out, and its neighbours
+ *     |/          |    then meet.
  *     0-----------1
  *
  * Loops that touch in a vertex, 0 1 2 0 3 4, become separate faces if all of them have the same
@@ -27,21 +27,21 @@
 /* The degenerate faces, in order, and the parts that they keep. */
 typedef struct mending {
     const he_mend *m;
-    uint64_t *bad;   /* faces */
-    uint32_t *stamp; /* for each vertex, for he_soup_find_repeat */
+    uint64_t *bad;   /* one bit for each face: set if the face is degenerate */
+    uint32_t *stamp; /* a mark for each vertex, used by he_soup_find_repeat */
     he_ids loops;    /* corners that are kept, face by face */
-    he_ids ends;     /* end of each loop */
+    he_ids ends;     /* end of each loop in `loops` */
     he_ids cut;      /* for each loop its number in `flat`, or HE_NONE */
-    he_ids done;     /* for each face the end of its loops */
-    he_ids stack;    /* corners of the present loop */
-    uint32_t *place; /* index of a vertex among them */
+    he_ids done;     /* for each degenerate face the end of its loops in `ends` */
+    he_ids stack;    /* corners of the loop that is being divided */
+    uint32_t *place; /* index of each vertex in `stack` */
     he_soup flat;    /* loops to be cut into triangles: every corner is a vertex */
-    he_mesh *mesh;   /* made from `flat` */
+    he_mesh *mesh;   /* mesh made from `flat` */
     he_ids list;     /* vertices of a loop, or of triangles */
     uint64_t *runs;  /* the edges of `list`, sorted by their ends */
     size_t run_capacity;
 
-    he_soup made; /* the faces afterwards */
+    he_soup made; /* the faces after the repair */
     he_ids face_from, corner_from;
     he_triangulation_work work;
 } mending;
@@ -145,7 +145,7 @@ static he_status run_twice(mending *g, size_t degree, bool *out, he_error *err)
         g->runs[i] = (uint64_t)list[i] << 32 | list[next];
     }
     *out = false;
-    if (count > 0) { /* there may be no array yet */
+    if (count > 0) { /* qsort must not get NULL */
         qsort(g->runs, count, sizeof *g->runs, compare);
     }
     for (size_t i = 1; i < count; i++) {
@@ -306,7 +306,7 @@ static he_status find(mending *g, he_error *err)
     return status;
 }
 
-/* --- the faces afterwards --- */
+/* --- the faces after the repair --- */
 
 static he_status add_face(mending *g, const uint32_t *corners, size_t count, uint32_t from,
                           he_error *err)
@@ -335,7 +335,7 @@ static he_status add_triangles(mending *g, uint32_t face, uint32_t cut, size_t f
         return status;
     }
     size_t count = 3 * ((size_t)triangles.flat.n - 2), kept = 0;
-    uint32_t *corners = triangles.corners; /* replaced by those of the soup */
+    uint32_t *corners = triangles.corners; /* overwritten with corners of the soup */
     bool twice = true;
     g->list.count = 0;
     status = he_ids_reserve(&g->list, count, err);
@@ -410,7 +410,7 @@ static he_status add_all(mending *g, he_error *err)
     return status;
 }
 
-/* Nothing here can fail. */
+/* Puts the new faces into the soup. Cannot fail. */
 static void put_in_place(he_mend *m, mending *g)
 {
     he_soup *soup = m->soup;

@@ -8,7 +8,7 @@ static he_status no_memory(const he_soup *soup, he_error *err)
                          soup->face_count);
 }
 
-/* Removes the faces whose bit is set, and moves the others up. */
+/* Removes the faces whose bit is set in `gone`, and moves the others up. */
 static he_status drop(he_mend *m, const uint64_t *gone, he_error *err)
 {
     he_soup *soup = m->soup;

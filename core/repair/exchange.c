@@ -12,17 +12,17 @@
  * corners that had mates still have some: a closed surface stays closed. Either both x and y have
  * mates, or they are the ends of two fans.
  *
- * Corners of an edge are settled one by one, by the numbers of the fans at both ends. The smaller
- * part of a fan that falls in two gets a new number, so that a corner gets one few times: n log n
- * in all. */
+ * The corners of an edge are settled (tested, and given another mate if needed) one by one, by the
+ * numbers of the fans at both ends. The smaller part of a fan that falls in two gets a new number,
+ * so that a corner gets one few times: n log n in all. */
 #include "repair/split.h"
 
 #include <assert.h>
 
-/* A corner of the present edge that is settled, and its fans at the time when it was, which may
- * have changed since. */
+/* A settled corner of the edge that is being handled, with the fans at its ends when it was
+ * settled, which may have changed since. */
 typedef struct slot {
-    uint32_t epoch; /* number of the edge + 1, else the slot is free */
+    uint32_t epoch; /* number of that edge + 1; anything else in a free slot */
     uint32_t corner, from, to;
 } slot;
 
@@ -36,8 +36,9 @@ typedef struct exchanging {
     size_t edges;
     uint32_t fans; /* number of fans so far */
     bool any;
-    uint32_t edge, origin; /* the present edge, and the vertex that most of its corners leave */
-    uint64_t *settled;     /* corners that are settled */
+    /* The edge being handled, and the vertex that most of its corners leave. */
+    uint32_t edge, origin;
+    uint64_t *settled; /* corners that are settled */
     slot *slots;
     size_t mask, used;
 } exchanging;
@@ -57,7 +58,8 @@ static bool is_valid(const exchanging *x, const slot *at)
            s->to[he_corner_after(s, at->corner)] == at->to;
 }
 
-/* Returns the slot of a settled corner of the present edge between two fans, or a free slot. */
+/* Returns the slot of a settled corner of the edge being handled between two fans, or a free
+ * slot. */
 static size_t slot_of(const exchanging *x, uint32_t from, uint32_t to)
 {
     uint64_t sum = (uint64_t)(uintptr_t)x->slots * 0x94D049BB133111EB;

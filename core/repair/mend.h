@@ -1,4 +1,4 @@
-/* mend.h - the soup under repair, shared by the files of this room. */
+/* mend.h - the soup under repair, shared by the files of this folder. */
 #ifndef HE_REPAIR_MEND_H
 #define HE_REPAIR_MEND_H
 
@@ -8,8 +8,9 @@ typedef struct he_mend {
     he_soup *soup;
     he_repaired *out;
     bool has_corner_values; /* there are attributes of corners */
-    uint32_t *corner_from;  /* the input's corner of each; NULL: all kept their numbers */
-    uint64_t *turned;       /* a bit for each face that orient has reversed; NULL: none */
+    /* Number in the input of each corner; NULL if all corners kept their numbers. */
+    uint32_t *corner_from;
+    uint64_t *turned; /* one bit for each face, set if orient reversed it; NULL if none was */
 } he_mend;
 
 static inline void he_mend_name(he_repair_account *account, uint32_t a, uint32_t b)
@@ -22,7 +23,7 @@ static inline uint32_t he_mend_input(const uint32_t *from, uint32_t i)
 {
     return from == NULL ? i : from[i];
 }
-/* Returns a list 0, 1, 2... of `count`, with room for `room`. NULL if memory is out. */
+/* Returns a list of the `count` numbers from 0 on, with room for `room`; NULL if memory is out. */
 uint32_t *he_mend_same(size_t count, size_t room);
 bool he_mend_has_corner_values(const he_soup *soup);
 /* Makes the list m->corner_from, which says from which corner of the input each corner comes, if it
@@ -33,8 +34,8 @@ bool he_mend_has_bad_index(const he_soup *soup);
 /* Sets face_of[c] to the face that has corner c. */
 void he_mend_faces(const he_soup *soup, uint32_t *face_of);
 
-/* Each of the following functions performs one repair. All but the first ones require valid faces,
- * as he_soup_check_faces defines them. */
+/* Each of the following functions performs one repair. All except the first two require valid
+ * faces, as he_soup_check_faces defines them. */
 HE_NODISCARD he_status he_mend_weld(he_mend *m, double tolerance, he_error *err);
 HE_NODISCARD he_status he_mend_drop_degenerate(he_mend *m, he_error *err);
 HE_NODISCARD he_status he_mend_drop_duplicates(he_mend *m, he_error *err);

@@ -27,7 +27,8 @@ static he_status find_mates(orienting *o, he_error *err)
         return status;
     }
     uint32_t *met = he_mem_zero(
-        edges + 1, sizeof *met); /* for each edge how many corners; then the first of two */
+        /* Number of corners of each edge; later the first corner of an edge of two. */
+        edges + 1, sizeof *met);
     if (met == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to orient %zu faces", soup->face_count);
     }
@@ -97,8 +98,8 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     return status;
 }
 
-/* Counts the edges of queue[begin..end) that clash with faces `turned`, or as they are; each is
- * counted from both sides. */
+/* Counts the edges of queue[begin..end) that clash after the faces are reversed as `state` says, or
+ * before if `turned` is false. Each edge is counted from both sides. */
 static uint64_t clashes_of(const orienting *o, uint32_t begin, uint32_t end, bool turned)
 {
     const he_soup *soup = o->soup;

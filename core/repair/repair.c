@@ -197,7 +197,7 @@ static he_status run(he_mend *m, const he_repair_plan *plan, he_repair repair, h
         return he_mend_split(m, err);
     case HE_REPAIR_FILL:
     case HE_REPAIR_COUNT:
-        break; /* a repair of meshes */
+        break; /* fill is a repair of meshes, not of soups */
     }
     return HE_OK;
 }

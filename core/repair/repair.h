@@ -67,9 +67,10 @@ static inline unsigned he_repair_bit(he_repair repair)
 }
 
 typedef struct he_repair_plan {
-    unsigned which;    /* a set of repairs; 0: none */
-    double tolerance;  /* for weld: finite, not negative */
-    size_t hole_edges; /* for fill */
+    unsigned which; /* a set of repairs; 0: none */
+    /* The largest distance between vertices that weld merges; finite, not negative. */
+    double tolerance;
+    size_t hole_edges; /* the most edges of a hole that fill closes */
 } he_repair_plan;
 
 /* The number of elements that are listed for each repair: the first ones. */
@@ -91,9 +92,9 @@ typedef struct he_repair_account {
     uint64_t moved; /* weld: values of vertices that differed and moved to corners */
     uint64_t left;  /* orient: components that cannot be oriented; fill: holes left open */
     /* The elements concerned, as pairs. weld: the merged vertex, the one it was merged into;
-     * drop_degenerate: the face, and 0 or more faces made of it; drop_duplicates: the dropped face,
-     * the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent; fill:
-     * the face, its corners. */
+     * drop_degenerate: the face, and how many faces were made of it; drop_duplicates: the dropped
+     * face, the one kept; orient: the reversed face, HE_NONE; split: the new vertex, its parent;
+     * fill: the face, and how many corners it has. */
     he_repair_pair pairs[HE_REPAIR_NAMED];
     size_t named;
 } he_repair_account;
@@ -107,7 +108,7 @@ typedef struct he_repaired {
     /* The number in the input of each vertex and face of the soup; NULL if all kept their
      * numbers. */
     uint32_t *vertex_from, *face_from;
-    size_t vertices, faces; /* entries of these arrays */
+    size_t vertices, faces; /* lengths of the two arrays */
     he_repair_account accounts[HE_REPAIR_COUNT];
     /* The first places at which orient found that a component cannot be oriented;
      * accounts[HE_REPAIR_ORIENT].left is their number. */

@@ -80,7 +80,8 @@ static he_status add_copy(he_splitting *s, uint32_t parent, he_error *err)
     return HE_OK;
 }
 
-/* Finds the corners of the fan that begins with corner c, or of a part of it if it is open. */
+/* Finds all corners of the fan of corner c, and gives them a vertex: the first fan of a vertex
+ * keeps the vertex, every other one gets a copy. */
 static he_status find_fan(he_splitting *s, uint32_t c, he_error *err)
 {
     uint32_t v = s->soup->corners[c], vertex = v;

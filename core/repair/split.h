@@ -16,16 +16,18 @@
 
 typedef struct he_splitting {
     const he_soup *soup;
-    uint32_t *mate; /* for each corner the one that runs along its edge the other way; HE_NONE */
+    /* The mate of each corner, which runs along its edge the other way; HE_NONE if there is
+     * none. */
+    uint32_t *mate;
     uint32_t *face_of;
-    uint32_t *to;      /* for each corner its vertex afterwards, which is its fan */
-    uint32_t *parents; /* parents of the copies */
+    uint32_t *to;      /* vertex of each corner after the split, which stands for its fan */
+    uint32_t *parents; /* for each copy of a vertex the vertex it is copied from */
     size_t copies, capacity;
     bool is_crowded;  /* an edge has more than two corners, or two in one direction */
     bool has_closed;  /* a vertex has a closed fan and another fan */
-    uint64_t *done;   /* corners whose fan is found */
-    uint64_t *taken;  /* vertices that belong to a fan already */
-    uint64_t *closed; /* vertices whose first fan is closed */
+    uint64_t *done;   /* one bit for each corner: set if its fan was found */
+    uint64_t *taken;  /* one bit for each vertex: set if it belongs to a fan already */
+    uint64_t *closed; /* one bit for each vertex: set if its first fan is closed */
 } he_splitting;
 
 static inline uint32_t he_corner_after(const he_splitting *s, uint32_t c)
@@ -41,8 +43,8 @@ static inline uint32_t he_corner_before(const he_splitting *s, uint32_t c)
 }
 
 /* Exchanges the partners of mates (corners of two faces that stay joined along an edge) until no
- * two edges would join the same two vertices. `to` has the fans of the mates before; if *exchanged
- * is true, the caller must find the fans again.
+ * two edges would join the same two vertices. Before the call `to` must have the fans that follow
+ * from the mates; if *exchanged is true, the caller must find the fans again.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_CANCELLED if the watch cancelled the work. */
 HE_NODISCARD he_status he_splitting_exchange(he_splitting *s, bool *exchanged, he_error *err);

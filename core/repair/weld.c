@@ -3,8 +3,8 @@
 #include "geometry/near.h"
 #include "repair/mend.h"
 
-/* Finds the vertices that are kept and moves their positions down; into[v] is the new number of v,
- * or of the vertex it is merged into. */
+/* Finds the vertices that are kept, and moves their positions to the front of the array. into[v] is
+ * the new number of v, or of the vertex it is merged into. */
 static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *from,
                            uint32_t *kept, he_error *err)
 {

@@ -3,7 +3,7 @@
  *     token 0.31        one of a thousand tokens is found
  *     metrics 0.04      a GET is counted
  *
- * Each is the least of several runs, as other programs only ever add to it. */
+ * Each figure is the least of several runs, because other programs can only make a run longer. */
 #include "api/describe/routes.h"
 #include "api/metric/metrics.h"
 #include "api/token/token_set.h"
@@ -74,7 +74,7 @@ static void count_requests(void *context)
 static double measure(void (*run)(void *context), void *context)
 {
     double least = 1e9;
-    run(context); /* whose caches are cold */
+    run(context); /* not measured, because the caches are cold */
     for (int i = 0; i < RUNS; i++) {
         const uint64_t begun = st_clock_micros();
         run(context);

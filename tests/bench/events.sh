@@ -1,6 +1,6 @@
 #!/bin/sh
-# A thousand listeners of one mesh: the memory that they take, and the time until an edit has
-# reached all of them.
+# Measures a thousand listeners of one mesh: the memory that they take, and the time until an edit
+# has reached all of them.
 #
 #   events.sh HEDGED LISTENERS_PROGRAM [LISTENERS [ROUNDS]]
 set -eu

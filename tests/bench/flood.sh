@@ -1,6 +1,6 @@
 #!/bin/sh
-# Clients that keep their rate, together with one that floods the daemon: how long the first ones
-# wait, and what the other is answered.
+# Measures clients that keep their rate, together with one that floods the daemon: how long the
+# first ones wait, and how the flooding one is answered.
 #
 #   flood.sh HEDGED PACED [SECONDS]
 #

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Requests a second of hedged and of a bare libmicrohttpd program that sends the same bytes, in turn
-# and in one run: each server has one worker, wrk has one thread and 64 connections.
+# Measures the requests a second of hedged and of a bare libmicrohttpd program that sends the same
+# bytes, in turn and in one run: each server has one worker, wrk has one thread and 64 connections.
 #
-# Besides that, what a check of a token and the counting of a request cost by themselves (checks.c).
+# It also measures what checking a token and counting a request cost by themselves (checks.c).
 #
 #   http.sh HEDGED BARE CHECKS [ROUNDS [SECONDS]]
 set -eu

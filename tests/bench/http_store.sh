@@ -1,6 +1,6 @@
 #!/bin/sh
-# Edits a second through the daemon with meshes in memory and on a disk, in turn: 1, 8 and 64
-# writers, on 64 meshes and on one.
+# Measures the edits a second through the daemon with meshes in memory and on a disk, in turn: 1, 8
+# and 64 writers, on 64 meshes and on one.
 #
 #   http_store.sh HEDGED FOLDER [ROUNDS [SECONDS]]      FOLDER on the disk to be measured
 set -eu

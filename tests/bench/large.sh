@@ -1,6 +1,6 @@
 #!/bin/sh
-# A million quads through the daemon: upload, questions, edits and their undo, export; seconds as a
-# client sees them, and the daemon's memory.
+# Measures the daemon with a mesh of a million quads: upload, questions, edits and their undo,
+# export; in seconds as a client sees them, with the daemon's memory.
 #
 #   large.sh HEDGED [SIDE]      SIDE x SIDE quads (1024)
 set -eu
@@ -11,7 +11,8 @@ meshes=$base/v1/meshes
 
 memory() { awk '/VmRSS/ { r = $2 } /VmHWM/ { h = $2 }
     END { printf "%.0f MB, at most %.0f MB", r / 1000, h / 1000 }' "/proc/$daemon/status"; }
-# step NAME STATUS CURL-ARGUMENTS...
+# step NAME STATUS CURL-ARGUMENTS...: sends a request, which must be answered by STATUS, and prints
+# its time
 step() {
     name=$1 status=$2
     shift 2

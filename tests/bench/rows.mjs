@@ -48,10 +48,11 @@ const kernel = (name, order) => ({
 });
 
 // A row `of a list` tells our kernel which edges come next, as delaunay does. The peers have no
-// such call: it stands beside our own edits without. One edit after another waits for memory, and
-// the links of a half-edge are in four arrays, so that each place costs four lines where a record
-// costs one. That is what makes traversal fast. A line takes 130 to 150 ns on the machine this was
-// written on, and 16 are on their way at a time.
+// such call, so the row is compared with our own edits without it. When edits are made one after
+// another, each waits for memory: the links of a half-edge are in four arrays, so each random
+// half-edge costs four cache lines, where one record for all links would cost one. These arrays are
+// what makes traversal fast. A cache line takes 130 to 150 ns to arrive on the machine of these
+// figures, and 16 are fetched at a time.
 // `work` is what an edit takes in nanoseconds where all of the mesh is in the cache.
 const waits = (deep, lines, work) => {
     const reads = 10 * Math.round(14 * Math.max(deep, lines / 16));
@@ -107,8 +108,8 @@ const farthest =
     'the farthest point is told within a few hundredths: 421 by 250,000 points a side, 441 by a ' +
     "million; CGAL's 439 and 425";
 
-// Rows of memory: what was allocated on the heap, or the largest resident memory beyond that before
-// the row.
+// Rows of memory: the bytes that were allocated on the heap, or the maximum of resident memory less
+// what was resident before the row.
 const memory = (meter, title, ours, more) => ({
     title: `bytes a face ${title}`,
     ours,

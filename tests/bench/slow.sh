@@ -1,6 +1,7 @@
 #!/bin/sh
-# A thousand clients that read an answer at 6 bytes a second (slowhttptest -X): how long other
-# clients wait meanwhile, how much memory the daemon holds, and when the last slow client is closed.
+# Measures a thousand clients that read an answer at 6 bytes a second (slowhttptest -X): how long
+# other clients wait meanwhile, how much memory the daemon holds, and when the last slow client is
+# closed.
 #
 #   slow.sh HEDGED BARE [CLIENTS [SIDE]]
 #
@@ -58,7 +59,7 @@ row() {
     ' "$work/wrk"
 }
 
-# slow_clients ADDRESS
+# slow_clients ADDRESS: connects the slow clients to this server
 slow_clients() {
     chrt --idle 0 slowhttptest -X -c "$clients" -r "$clients" -w 512 -y 1024 -n 5 -z 32 -l 20 -p 3 \
         -u "$1" >"$work/slow" 2>&1 3>&- &

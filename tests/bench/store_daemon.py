@@ -22,13 +22,13 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'durable'))
 from daemon import Daemon  # pylint: disable=wrong-import-position
 
-EDITS = 10000        # that a start brings forward
+EDITS = 10000        # edits that the daemon applies again when it starts
 SAMPLES = 500        # edits in a round without snapshots
-ABOVE_QUIET = 0.010  # seconds
-FIRST_ANSWER = 5     # seconds
-BASE_SECONDS = 5     # in which a base is written
-WAL = 256 << 20      # bytes
-READS = 0.9          # of the memory store's
+ABOVE_QUIET = 0.010  # seconds that the 99th percentile may rise
+FIRST_ANSWER = 5     # seconds; the longest that is allowed
+BASE_SECONDS = 5     # seconds in which a base is surely written
+WAL = 256 << 20      # bytes; the largest write-ahead log that is allowed
+READS = 0.9          # least rate of reads, as a share of that with the store in memory
 LOADED = 6           # large meshes that take turns in memory
 LOAD_BUDGET = 512 << 20
 LOAD_SECONDS = 20

@@ -43,6 +43,7 @@ typedef struct fuzz_tape {
 bool fuzz_at_end(const fuzz_tape *tape);
 uint32_t fuzz_byte(fuzz_tape *tape);
 uint32_t fuzz_below(fuzz_tape *tape, uint32_t n); /* returns 0..n-1; n is not 0 */
-double fuzz_double(fuzz_tape *tape);              /* finite; mostly small */
+/* Returns a finite number, in most cases a small one. */
+double fuzz_double(fuzz_tape *tape);
 
 #endif

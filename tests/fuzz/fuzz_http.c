@@ -76,8 +76,8 @@ static size_t find_fault(passed *p, const char *bytes, size_t size)
     return size;
 }
 
-/* As the value of a traceparent, the bytes are answered by one that is well formed: of their own
- * trace if they are, else of another. */
+/* Checks that the bytes as a traceparent header get a well-formed one in the answer: of the same
+ * trace if they are well-formed themselves, else of another. */
 static void check_trace(const uint8_t *input, size_t size)
 {
     static srv_spans spans = {.seed = 1, .next = 1};

@@ -9,7 +9,8 @@
 static he_status read_library(const char *bytes, size_t size, he_import *import)
 {
     he_error err = {0};
-    char *copy = malloc(size == 0 ? 1 : size); /* so that the sanitizer sees a read beyond it */
+    /* A copy, so that the sanitizer notices reads beyond its end. */
+    char *copy = malloc(size == 0 ? 1 : size);
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     he_status status = he_mtl_read(copy, size, import, &err);

@@ -35,7 +35,8 @@ void fuzz_one(const uint8_t *bytes, size_t size)
 {
     api_token_list list;
     char message[API_TOKENS_MESSAGE] = "";
-    char *copy = malloc(size == 0 ? 1 : size); /* so that the sanitizer sees a read beyond it */
+    /* A copy, so that the sanitizer notices reads beyond its end. */
+    char *copy = malloc(size == 0 ? 1 : size);
     assert_non_null(copy);
     memcpy(copy, bytes, size);
     if (api_token_file_read(copy, size, &list, message)) {

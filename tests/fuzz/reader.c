@@ -49,8 +49,8 @@ static uint32_t corners_of(const he_mesh *mesh)
     return 2 * he_mesh_edges(mesh) - he_mesh_boundary_halfedges(mesh);
 }
 
-/* After how many rounds of writing and reading the files of a mesh must be equal: never; at once;
- * or, if positions are rounded and polygons cut by this, from the second round on. */
+/* The round of writing and reading from which on the files of a mesh must be equal: none; the first
+ * one; or the second one, if the first may round positions and cut polygons. */
 enum { NEVER, AT_ONCE, ROUNDED };
 
 /* Writes a mesh in one encoding of a format and reads it again: it must have the same size, except
@@ -204,7 +204,7 @@ static void mend_as_advised(subject *s, unsigned which)
     }
 }
 
-/* --- all of it --- */
+/* --- the whole check --- */
 
 static void require_place(const he_error *err)
 {

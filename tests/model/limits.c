@@ -14,7 +14,7 @@ typedef struct limit {
     uint32_t id;
     const char *number;     /* name of its second argument, which is 0.1 */
     const char *name;       /* value of its argument `name` */
-    he_mesh *(*mesh)(void); /* its argument `mesh` */
+    he_mesh *(*mesh)(void); /* makes its argument `mesh`; NULL: none */
 } limit;
 
 static he_mesh *all_materials(void)

@@ -10,10 +10,13 @@ enum { MD_START_NAME = 64 };
 
 typedef struct md_start {
     char name[MD_START_NAME];
-    double share;                           /* its share of all edits; the sum is 1 */
-    void (*fill)(or_mesh *o, md_random *r); /* NULL for a file */
+    double share; /* its share of all edits; the sum is 1 */
+    /* Fills the oracle with a random mesh; NULL for a file. */
+    void (*fill)(or_mesh *o, md_random *r);
     he_mesh *file;
-    bool far; /* coordinates up to the largest doubles: not for operations that compute with them */
+    /* Coordinates go up to the largest doubles, so operations that compute with them are not
+     * drawn. */
+    bool far;
 } md_start;
 
 typedef struct md_starts {

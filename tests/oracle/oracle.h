@@ -26,8 +26,8 @@
 
 #include "mesh/mesh.h"
 
-/* Rows of the tables are an odd number of cache lines long, so that the entries of a column use
- * different cache sets. */
+/* The rows of `left` and `joined` are an odd number of cache lines long, so that the entries of one
+ * column use different cache sets. */
 enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200, OR_LIST = 1200 };
 
 #define OR_NONE        UINT32_MAX
@@ -36,7 +36,9 @@ enum { OR_VERTICES = 2352, OR_EDGES = 10000, OR_FACES = 6000, OR_CORNERS = 1200,
 typedef struct or_vertex {
     bool alive;
     bool locked;
-    bool near;   /* `at` was computed here: compared with a tolerance, then replaced by hedge's */
+    /* The oracle computed `at`: it is compared with a tolerance, then replaced by hedge's
+     * position. */
+    bool near;
     bool inside; /* `at` is not specified: any position within low..high is correct */
     he_vec3 at, low, high;
 } or_vertex;
@@ -54,7 +56,8 @@ typedef struct or_face {
 
 typedef struct or_mesh {
     uint32_t vertices, edges, faces; /* numbers of ids issued */
-    uint32_t fresh;                  /* faces after `faces` that have no ids yet */
+    /* Number of faces that come after the first `faces` and have no ids yet. */
+    uint32_t fresh;
     /* Faces that hedge cut as it liked, with their old corners: into triangles or, by plane_split,
      * into parts on one side of the plane. `id` is OR_NONE if all triangles are new, because they
      * fill a hole. For plane_split, or_adopt adds the new vertices to `was`. */
@@ -65,14 +68,14 @@ typedef struct or_mesh {
     uint32_t cuts;
     bool by_plane;
     bool chosen[OR_FACES];        /* faces that plane_split cuts */
-    double distance[OR_VERTICES]; /* from the plane; 0: in it */
+    double distance[OR_VERTICES]; /* distance of each vertex from the plane; 0 in the plane */
     /* The refusals that depend on how hedge cut those faces, or on rounding: hedge may report one
      * of them or succeed. `before` has the lists to which the oracle returns if hedge refuses; NULL
      * if nothing was changed. */
     uint64_t may;
     struct or_lists *before;
-    bool bridging;     /* loop_bridge: new faces of hedge's choice connect these two loops */
-    or_face bridge[2]; /* in the direction around their holes */
+    bool bridging;     /* loop_bridge: hedge joins the loops in `bridge` by faces of its choice */
+    or_face bridge[2]; /* the two loops, in the direction around their holes */
     double twist;      /* the least twist without a doubled edge, if the loops are equally long */
     bool either;       /* edge_join: one of the two edges in `joining` survives */
     uint32_t joining[2];
@@ -105,7 +108,7 @@ typedef struct or_lists {
     uint32_t vertices, edges, faces;
     or_vertex *vertex;
     or_edge *edge;
-    or_face **face; /* each allocated for as many corners as it has */
+    or_face **face; /* the faces, each allocated for as many corners as it has */
 } or_lists;
 
 or_lists *or_save(const or_mesh *o);

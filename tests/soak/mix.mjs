@@ -9,7 +9,8 @@
 import { countIssued, numbersFrom, randomEdit } from '../web/random.mjs';
 
 const GUESTS = 4;
-// The mesh that the keeper is made from; an edit of all of it can still be undone.
+// The mesh that the keeper is made from. It is so small that an edit of all of it can still be
+// undone.
 const KEEPER = { shape: 'torus', major_segments: 60, minor_segments: 60 };
 const FORMATS = ['obj', 'off', 'ply', 'ply&encoding=ascii', 'stl', 'stl&encoding=ascii', 'glb', 'json'];
 // Formats that keep polygons, and so the number of faces.
@@ -113,7 +114,7 @@ export class Mix {
             await this.delete();
         }
         const { keeper, client } = this;
-        // A redo of nothing and an export bring the keeper into the same state each time.
+        // Undo, compact and an export bring the keeper into the same state each time.
         await client.send('POST', this.path(keeper, '/undo'), [204, 409], {
             body: { to_revision: keeper.revision },
             headers: minimal,
@@ -297,7 +298,7 @@ export class Mix {
         if (status === 204) {
             const { value } = await this.client.json('GET', this.path(mesh), [200]);
             Object.assign(mesh, { ...this.describe(mesh.id, value), clean: false });
-            // The numbers of issued ids must not decrease, unless the mesh was compacted.
+            // `issued` must be an upper bound of the ids, and deleted ids are not in the counts.
             for (const kind of Object.keys(mesh.issued)) {
                 mesh.issued[kind] += 100;
             }

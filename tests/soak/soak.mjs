@@ -45,8 +45,8 @@ const { values: options } = parseArgs({
     },
 });
 
-const STEPS = 60; // of a round
-const SAMPLES = 250; // milliseconds between two looks at what is resident under load
+const STEPS = 60; // number of steps in a round
+const SAMPLES = 250; // milliseconds between two measurements of the memory under load
 // The memory for undo of a mesh: it is soon full, because undone and compacted entries stay in a
 // history.
 const UNDO_BUDGET = '512K';
@@ -58,13 +58,13 @@ const BOUNDS =
     Number(options.minutes ?? 0) < 10
         ? { slope: { share: 0, least: 4 }, counted: { share: 0, least: STARTING } }
         : { slope: { share: 0.01, least: 1 }, counted: { share: 0, least: 0.0625 } };
-const REST_ABOVE = 16; // the level after warming up, at any time
+const REST_ABOVE = 16; // MiB that memory at rest may be above its level after warming up
 const LOADED_SLOPE = { share: 0.1, least: 2 };
-// What a client left behind when it went is found out and freed a moment later.
+// The daemon frees what a client left behind only a moment after the client disconnected.
 const MOST_LOOKS = 1000;
 const LEFT_BEHIND = 0.0625;
-// In a run of minutes: so often it is quiet for as long as the daemon needs to give back what it
-// freed, which it does in the second after one without work.
+// In a run of minutes the clients pause this often, for as long as the daemon needs to return freed
+// memory to the system, which it does in the second after its last work.
 const REST_EVERY = 10; // seconds
 const MOST_REST = 5;
 const REST_NOISE = 0.25; // MiB

@@ -8,8 +8,8 @@ import { Agent, request } from 'node:http';
 import { createInterface } from 'node:readline';
 
 const MIB = 1024 * 1024;
-const TICKS = 100; // of processor time in a second, as /proc tells it
-const SLOWEST = 5; // requests that are told of in the end
+const TICKS = 100; // clock ticks of processor time in a second of /proc
+const SLOWEST = 5; // number of slowest requests that are listed in the end
 
 export class Daemon {
     constructor(child, url) {
@@ -115,7 +115,7 @@ export class Client {
         for await (const piece of answer) {
             pieces.push(piece);
             if (cut) {
-                break; // which destroys the connection
+                break; // ends the loop, which destroys the connection
             }
         }
         const result = {

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* ppoll */
+#define _GNU_SOURCE /* for ppoll */
 /* A client that sends requests at a fixed rate, whether or not earlier ones are answered. The time
  * of an answer counts from when its request was due, so that a slow answer also shows in the
  * requests that had to wait behind it (no coordinated omission).
@@ -104,7 +104,7 @@ static void hold_idle(int port, int idle)
     files.rlim_cur = files.rlim_max;
     setrlimit(RLIMIT_NOFILE, &files);
     for (int i = 0; i < idle; i++) {
-        once.fd = connect_to(port); /* stays open */
+        once.fd = connect_to(port); /* the connection stays open */
         ask(&once, 1);
         while (take(&once) == 0) {
         }

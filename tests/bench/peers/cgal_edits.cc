@@ -32,7 +32,7 @@ void split(bench_side *side, bench_result *out)
     double start = bench_seconds();
     for (Halfedge h : picks) {
         Point p = CGAL::midpoint(mesh.point(mesh.source(h)), mesh.point(mesh.target(h)));
-        /* The new half-edge ends in the new vertex, where h begins then. */
+        /* The new half-edge ends at the new vertex, where h begins afterwards. */
         Halfedge before = Euler::split_edge(h, mesh);
         mesh.point(mesh.target(before)) = p;
         Euler::split_face(before, mesh.next(h), mesh);
@@ -44,7 +44,7 @@ void split(bench_side *side, bench_result *out)
     bench_exact(out, cgal_hash(mesh));
 }
 
-/* flip_edge leaves its preconditions to the caller. */
+/* Tests the preconditions of flip_edge, which CGAL leaves to the caller. */
 bool is_flip_ok(const Mesh &mesh, Halfedge h)
 {
     Halfedge back = mesh.opposite(h);
@@ -73,9 +73,10 @@ void flip(bench_side *side, bench_result *out)
     bench_near(out, static_cast<double>(done));
 }
 
-/* The time of all collapses, and their number. Of the two edges that become one beside the face on
- * the right, CGAL keeps the one whose number the others drop. Later picks of those numbers
- * therefore mean other edges, and only how many collapses were possible can be compared. */
+/* Returns the time of all collapses, and sets `done` to their number. Of the two edges that become
+ * one beside the face on the right, CGAL keeps the one whose number the others drop. Later picks of
+ * those numbers therefore mean other edges, and only how many collapses were possible can be
+ * compared. */
 double collapse_all(const bench_side *side, Mesh &mesh, size_t *picked, uint64_t *done)
 {
     std::vector<Halfedge> picks = find_picks(side, mesh, COLLAPSES);

@@ -69,7 +69,7 @@ void import_stl(bench_side *side, bench_result *out)
 }, out);
 }
 
-/* Text with the 17 digits from which any double reads back. */
+/* Writes text with 17 digits, from which any double is read back exactly. */
 void export_obj(bench_side *side, bench_result *out)
 {
     std::string path = file_in(side, "output.obj");

@@ -135,7 +135,8 @@ void vertex_normals(bench_side *side, bench_result *out)
     mesh.remove_property_map(normals);
 }
 
-/* The walk that CGAL's own functions about borders make, with the length of each loop. */
+/* Finds the boundary loops and their lengths, by the walk that CGAL's own functions about borders
+ * make. */
 void loops(bench_side *side, bench_result *out)
 {
     const Mesh &mesh = cgal_mesh(side);

@@ -1,4 +1,4 @@
-/* CGAL's side of the bench: side.h says how it is spoken to. */
+/* CGAL's program in the benchmark; side.h describes its input and output. */
 #include "bench/peers/cgal.h"
 
 int main(int argc, char **argv)

@@ -32,7 +32,8 @@ void catmull_clark(bench_side *side, bench_result *out)
     cgal_describe(mesh, out);
 }
 
-/* To a tenth of the faces. The result stays in the folder, for its error to be measured. */
+/* Decimates to a tenth of the faces. The result stays in the folder, so that its error can be
+ * measured. */
 void decimate(bench_side *side, bench_result *out)
 {
     namespace SMS = CGAL::Surface_mesh_simplification;
@@ -42,7 +43,8 @@ void decimate(bench_side *side, bench_result *out)
     double start = bench_seconds();
     Policies policies(mesh);
     SMS::Bounded_normal_change_filter<> filter;
-    /* The ratio is of edges, three to two faces. */
+    /* The ratio is of the number of edges; a closed mesh has three edges for two faces, so it holds
+     * for faces, too. */
     SMS::Count_ratio_stop_predicate<Mesh> stop(0.1);
     SMS::edge_collapse(mesh, stop,
                        CGAL::parameters::get_cost(policies.get_cost())

@@ -1,4 +1,5 @@
-/* meshoptimizer's side of the bench: decimation only, of an indexed triangle list in floats. */
+/* meshoptimizer's program in the benchmark: only decimation, of an indexed triangle list in
+ * floats. */
 #include <meshoptimizer.h>
 
 #include <cstdio>
@@ -11,7 +12,7 @@ extern "C" {
 
 namespace
 {
-/* In binary PLY, as the other sides leave it. */
+/* Writes the result in binary PLY, as the other programs do. */
 void write(const bench_side *side, const std::vector<float> &points,
            const std::vector<unsigned> &corners)
 {
@@ -35,7 +36,7 @@ void write(const bench_side *side, const std::vector<float> &points,
     std::fclose(file);
 }
 
-/* To a tenth of the faces. Vertices that are no longer used stay in the file. */
+/* Decimates to a tenth of the faces. Vertices that are no longer used stay in the file. */
 void decimate(bench_side *side, bench_result *out)
 {
     const bench_input &in = side->input;

@@ -57,7 +57,7 @@ void flip(bench_side *side, bench_result *out)
     bench_near(out, static_cast<double>(done));
 }
 
-/* The time of all collapses, and their number. */
+/* Returns the time of all collapses, and sets `done` to their number. */
 double collapse_all(const bench_side *side, TriMesh &mesh, size_t *picked, uint64_t *done)
 {
     mesh.request_vertex_status();

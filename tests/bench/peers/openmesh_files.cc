@@ -30,7 +30,7 @@ void import(bench_side *side, const char *name, bench_result *out)
     delete mesh;
 }
 
-/* Text with the 17 digits from which any double reads back. */
+/* Writes text with 17 digits, from which any double is read back exactly. */
 void write(bench_side *side, const char *name, OpenMesh::IO::Options options, bench_result *out)
 {
     char path[PATH];

@@ -1,4 +1,5 @@
-/* Building and reading a whole mesh with OpenMesh. Its triangle mesh where faces are triangles. */
+/* Building and reading a whole mesh with OpenMesh: with its triangle mesh if all faces are
+ * triangles, else with its polygon mesh. */
 #include "bench/peers/openmesh.h"
 
 #include <cmath>
@@ -64,7 +65,7 @@ void face_normals(bench_side *side, bench_result *out)
     mesh.release_face_normals();
 }
 
-/* OpenMesh makes them from those of the faces, which are therefore part of the work. */
+/* OpenMesh computes vertex normals from face normals, so those are part of the measured work. */
 void vertex_normals(bench_side *side, bench_result *out)
 {
     TriMesh &mesh = mesh_of<TriMesh>(side);
@@ -84,7 +85,7 @@ void vertex_normals(bench_side *side, bench_result *out)
     mesh.release_face_normals();
 }
 
-/* OpenMesh has no function for this; the loop is what its users write. */
+/* Finds the boundary loops. OpenMesh has no function for this; the loop is what its users write. */
 void loops(bench_side *side, bench_result *out)
 {
     const PolyMesh &mesh = mesh_of<PolyMesh>(side);
@@ -113,7 +114,7 @@ void loops(bench_side *side, bench_result *out)
     bench_exact(out, hash);
 }
 
-/* Nor for this: a flood over faces. */
+/* Finds the components, by a flood fill over faces, because OpenMesh has no function for this. */
 void components(bench_side *side, bench_result *out)
 {
     const TriMesh &mesh = mesh_of<TriMesh>(side);

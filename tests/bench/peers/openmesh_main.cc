@@ -1,4 +1,4 @@
-/* OpenMesh's side of the bench: side.h says how it is spoken to. */
+/* OpenMesh's program in the benchmark; side.h describes its input and output. */
 #include "bench/peers/openmesh.h"
 
 int main(int argc, char **argv)

@@ -43,7 +43,8 @@ void catmull_clark(bench_side *side, bench_result *out)
     subdivide<PolyMesh, OpenMesh::Subdivider::Uniform::CatmullClarkT<PolyMesh, double>>(side, out);
 }
 
-/* To a tenth of the faces. The result stays in the folder, for its error to be measured. */
+/* Decimates to a tenth of the faces. The result stays in the folder, so that its error can be
+ * measured. */
 void decimate(bench_side *side, bench_result *out)
 {
     typedef OpenMesh::Decimater::DecimaterT<TriMesh> Decimater;

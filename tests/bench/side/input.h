@@ -17,8 +17,8 @@
 #include <stdint.h>
 
 typedef struct bench_input {
-    double *positions; /* three per vertex */
-    uint32_t *corners; /* of all faces, one face after the other */
+    double *positions; /* three coordinates for each vertex */
+    uint32_t *corners; /* corners of all faces, one face after the other */
     uint32_t *starts;  /* first corner of each face */
     uint32_t vertices, faces, degree;
 } bench_input;
