@@ -492,10 +492,10 @@ static void note_edges(upload *u, const he_mesh *mesh)
     if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
         he_notes_add(&u->import.notes,
-                     &(he_warning){.code = "edge_count",
-                                   .text = "ignored, because it is wrong: the number of edges",
-                                   .place = HE_PLACE_LINE,
-                                   .at = import->edges_line});
+                     &(he_occurrence){.code = "edge_count",
+                                      .text = "ignored, because it is wrong: the number of edges",
+                                      .place = HE_PLACE_LINE,
+                                      .at = import->edges_line});
     }
 }
 

@@ -278,11 +278,12 @@ static void note_unused(he_import *import)
     for (size_t i = 0; beside != NULL && i < beside->count; i++) {
         const he_beside_file *file = &beside->files[i];
         if (!file->used) {
-            he_notes_add(&import->notes,
-                         &(he_warning){.code = "ignored_file",
-                                       .text = "ignored, because no other file refers to it: file",
-                                       .subject = file->name,
-                                       .length = strlen(file->name)});
+            he_notes_add(
+                &import->notes,
+                &(he_occurrence){.code = "ignored_file",
+                                 .text = "ignored, because no other file refers to it: file",
+                                 .subject = file->name,
+                                 .length = strlen(file->name)});
         }
     }
 }

@@ -245,10 +245,10 @@ static he_status make(finding *f, he_notes *notes, he_error *err)
     for (size_t tries = 0; !found && tries < 2; tries++) {
         he_notes_add(
             notes,
-            &(he_warning){.code = "not_apart",
-                          .text = "too many to be separate parts for other programs, so merged:",
-                          .subject = told[tries],
-                          .length = strlen(told[tries])});
+            &(he_occurrence){.code = "not_apart",
+                             .text = "too many to be separate parts for other programs, so merged:",
+                             .subject = told[tries],
+                             .length = strlen(told[tries])});
         g->names[HE_GLB_OBJECT] = g->names[HE_GLB_GROUP] = NULL;
         g->names[HE_GLB_MATERIAL] = tries > 0 ? NULL : g->names[HE_GLB_MATERIAL];
         found = find_groups(f);

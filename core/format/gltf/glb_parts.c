@@ -251,10 +251,11 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
         return; /* other programs see the attribute too, so there is no warning */
     }
-    he_notes_add(notes, &(he_warning){.code = "in_extras",
-                                      .text = "stored so that only hedge reads it back: attribute",
-                                      .subject = subject,
-                                      .length = (size_t)length});
+    he_notes_add(notes,
+                 &(he_occurrence){.code = "in_extras",
+                                  .text = "stored so that only hedge reads it back: attribute",
+                                  .subject = subject,
+                                  .length = (size_t)length});
 }
 
 /* Adds the attributes that all programs read. Those that only hedge reads follow the triangles, see

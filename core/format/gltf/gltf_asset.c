@@ -8,12 +8,12 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
     char name[HE_NOTE_SUBJECT];
     size_t length =
         subject == HE_NONE ? 0 : he_json_string(&asset->json, subject, name, sizeof name);
-    he_notes_add(&asset->into->notes, &(he_warning){.code = code,
-                                                    .text = text,
-                                                    .subject = name,
-                                                    .length = length,
-                                                    .place = HE_PLACE_BYTE,
-                                                    .at = he_json_place(&asset->json, place)});
+    he_notes_add(&asset->into->notes, &(he_occurrence){.code = code,
+                                                       .text = text,
+                                                       .subject = name,
+                                                       .length = length,
+                                                       .place = HE_PLACE_BYTE,
+                                                       .at = he_json_place(&asset->json, place)});
 }
 
 /* Reports progress. How much work there is in all is not known, so the fraction only approaches 1:

@@ -131,12 +131,12 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
         double value = values[i];
         if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
             he_notes_add(&s->asset->into->notes,
-                         &(he_warning){.code = "not_finite",
-                                       .text = "set to 0: values that are not finite of",
-                                       .subject = column->name,
-                                       .length = strlen(column->name),
-                                       .place = HE_PLACE_BYTE,
-                                       .at = place});
+                         &(he_occurrence){.code = "not_finite",
+                                          .text = "set to 0: values that are not finite of",
+                                          .subject = column->name,
+                                          .length = strlen(column->name),
+                                          .place = HE_PLACE_BYTE,
+                                          .at = place});
             value = 0;
         }
         if (column->type == HE_FLOAT) {
@@ -185,12 +185,12 @@ static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
                          const char *semantic, uint32_t value)
 {
     he_notes_add(&s->asset->into->notes,
-                 &(he_warning){.code = code,
-                               .text = text,
-                               .subject = semantic,
-                               .length = strlen(semantic),
-                               .place = HE_PLACE_BYTE,
-                               .at = he_json_place(&s->asset->json, value)});
+                 &(he_occurrence){.code = code,
+                                  .text = text,
+                                  .subject = semantic,
+                                  .length = strlen(semantic),
+                                  .place = HE_PLACE_BYTE,
+                                  .at = he_json_place(&s->asset->json, value)});
 }
 
 static bool is_direction(const he_gltf_semantic *known)
@@ -331,10 +331,10 @@ void he_gltf_note_attributes(he_gltf_surface *surface)
         }
         size_t before = into->notes.count;
         he_notes_add(&into->notes,
-                     &(he_warning){.code = "vertices_without",
-                                   .text = "set to 0 at vertices without a value: attribute",
-                                   .subject = column->name,
-                                   .length = strlen(column->name)});
+                     &(he_occurrence){.code = "vertices_without",
+                                      .text = "set to 0 at vertices without a value: attribute",
+                                      .subject = column->name,
+                                      .length = strlen(column->name)});
         if (into->notes.count > before) {
             into->notes.items[before].count = all - given;
         }

@@ -18,7 +18,7 @@ static void note_stale(he_gltf_surface *s, uint32_t value)
 {
     he_notes_add(
         &s->asset->into->notes,
-        &(he_warning){
+        &(he_occurrence){
             .code = "stale_extras",
             .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
             .place = HE_PLACE_BYTE,

@@ -83,11 +83,12 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     }
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
-        he_notes_add(&asset->into->notes,
-                     &(he_warning){.code = "rotation_made_unit",
-                                   .text = "normalized to length 1: the quaternion of a rotation",
-                                   .place = HE_PLACE_BYTE,
-                                   .at = he_json_place(json, node)});
+        he_notes_add(
+            &asset->into->notes,
+            &(he_occurrence){.code = "rotation_made_unit",
+                             .text = "normalized to length 1: the quaternion of a rotation",
+                             .place = HE_PLACE_BYTE,
+                             .at = he_json_place(json, node)});
     }
     for (int i = 0; i < 4; i++) {
         q[i] = q[i] / largest / sqrt(sum);
@@ -139,10 +140,10 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
     if (composed) {
         he_notes_add(
             &asset->into->notes,
-            &(he_warning){.code = "matrix_and_more",
-                          .text = "ignored: a translation, rotation or scale beside a matrix",
-                          .place = HE_PLACE_BYTE,
-                          .at = he_json_place(json, node)});
+            &(he_occurrence){.code = "matrix_and_more",
+                             .text = "ignored: a translation, rotation or scale beside a matrix",
+                             .place = HE_PLACE_BYTE,
+                             .at = he_json_place(json, node)});
     }
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) {
         return he_json_fail(json, he_json_find(json, node, "matrix"), err, HE_BAD_VALUE,
@@ -285,10 +286,10 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
         *out = scenes.ids[0];
     }
     if (status == HE_OK && scenes.count > 1) {
-        he_notes_add(&asset->into->notes, &(he_warning){.code = "other_scenes",
-                                                        .text = "ignored: all scenes but one",
-                                                        .place = HE_PLACE_BYTE,
-                                                        .at = he_json_place(json, list)});
+        he_notes_add(&asset->into->notes, &(he_occurrence){.code = "other_scenes",
+                                                           .text = "ignored: all scenes but one",
+                                                           .place = HE_PLACE_BYTE,
+                                                           .at = he_json_place(json, list)});
     }
     he_ids_clear(&scenes);
     return status;

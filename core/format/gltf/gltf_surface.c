@@ -19,10 +19,10 @@ void he_gltf_surface_clear(he_gltf_surface *surface)
 
 static void note(he_gltf *asset, uint32_t value, const char *code, const char *text)
 {
-    he_notes_add(&asset->into->notes, &(he_warning){.code = code,
-                                                    .text = text,
-                                                    .place = HE_PLACE_BYTE,
-                                                    .at = he_json_place(&asset->json, value)});
+    he_notes_add(&asset->into->notes, &(he_occurrence){.code = code,
+                                                       .text = text,
+                                                       .place = HE_PLACE_BYTE,
+                                                       .at = he_json_place(&asset->json, value)});
 }
 
 /* --- reading a primitive --- */
@@ -402,11 +402,12 @@ static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const h
         return he_spans_merge(spans, soup->face_count, column, own, err);
     }
     if (spans->changes.count > 0) {
-        he_notes_add(&into->notes, &(he_warning){.code = "attribute_types",
-                                                 .text = "ignored, because an earlier part of the "
-                                                         "file has it with another type: attribute",
-                                                 .subject = name,
-                                                 .length = strlen(name)});
+        he_notes_add(&into->notes,
+                     &(he_occurrence){.code = "attribute_types",
+                                      .text = "ignored, because an earlier part of the "
+                                              "file has it with another type: attribute",
+                                      .subject = name,
+                                      .length = strlen(name)});
     }
     return HE_OK;
 }

@@ -15,7 +15,7 @@ static void note_stale(he_gltf *asset, uint32_t value)
 {
     he_notes_add(
         &asset->into->notes,
-        &(he_warning){
+        &(he_occurrence){
             .code = "stale_extras",
             .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
             .place = HE_PLACE_BYTE,

@@ -102,10 +102,10 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
         for (uint32_t i = 0; i < column->components; i++) {
             if (!isfinite(component_of(column, row, i))) {
                 he_notes_add(notes,
-                             &(he_warning){.code = "not_finite",
-                                           .text = "written as 0: values that are not finite of",
-                                           .subject = name,
-                                           .length = strlen(name)});
+                             &(he_occurrence){.code = "not_finite",
+                                              .text = "written as 0: values that are not finite of",
+                                              .subject = name,
+                                              .length = strlen(name)});
             }
         }
     }
@@ -125,10 +125,10 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
             char subject[HE_COLUMN_NAME + 16];
             int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
                                   column->name);
-            he_notes_add(notes, &(he_warning){.code = "attribute_lost",
-                                              .text = "not written: attribute",
-                                              .subject = subject,
-                                              .length = (size_t)length});
+            he_notes_add(notes, &(he_occurrence){.code = "attribute_lost",
+                                                 .text = "not written: attribute",
+                                                 .subject = subject,
+                                                 .length = (size_t)length});
         }
     }
 }

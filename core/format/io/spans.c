@@ -106,12 +106,13 @@ he_status he_line_name(const he_line *line, const char *p, he_notes *notes, he_n
     const char *text = name;
     if (!he_is_utf8(name, length)) {
         if (notes != NULL) {
-            he_notes_add(notes, &(he_warning){.code = "not_utf8",
-                                              .text = "read as Latin-1: a name that is not UTF-8",
-                                              .subject = name,
-                                              .length = length,
-                                              .place = HE_PLACE_LINE,
-                                              .at = line->number});
+            he_notes_add(notes,
+                         &(he_occurrence){.code = "not_utf8",
+                                          .text = "read as Latin-1: a name that is not UTF-8",
+                                          .subject = name,
+                                          .length = length,
+                                          .place = HE_PLACE_LINE,
+                                          .at = line->number});
         }
         length = widen(name, length, name + room);
         text = name + room;

@@ -20,8 +20,9 @@ typedef struct library {
 
 static void note(library *l, const char *code, const char *text, const char *subject, size_t length)
 {
-    he_notes_add(&l->into->notes,
-                 &(he_warning){.code = code, .text = text, .subject = subject, .length = length});
+    he_notes_add(
+        &l->into->notes,
+        &(he_occurrence){.code = code, .text = text, .subject = subject, .length = length});
 }
 
 /* Finds the number of a name among l->names, or adds the name; *fresh says whether it is new. */

@@ -63,10 +63,10 @@ static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         }
         he_obj_note_name(row->name, notes);
         if (row->look.two_sided) {
-            he_notes_add(notes, &(he_warning){.code = "two_sided_lost",
-                                              .text = "not written: two_sided of material",
-                                              .subject = row->name,
-                                              .length = row->length});
+            he_notes_add(notes, &(he_occurrence){.code = "two_sided_lost",
+                                                 .text = "not written: two_sided of material",
+                                                 .subject = row->name,
+                                                 .length = row->length});
         }
     }
     *state = w;

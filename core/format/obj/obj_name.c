@@ -6,10 +6,11 @@ void he_obj_note_name(const char *name, he_notes *notes)
 {
     for (const char *p = name; *p != '\0'; p++) {
         if (he_obj_printable(p, p == name) != *p) {
-            he_notes_add(notes, &(he_warning){.code = "names_changed",
-                                              .text = "changed so that it fits in a line: a name",
-                                              .subject = name,
-                                              .length = strlen(name)});
+            he_notes_add(notes,
+                         &(he_occurrence){.code = "names_changed",
+                                          .text = "changed so that it fits in a line: a name",
+                                          .subject = name,
+                                          .length = strlen(name)});
             break;
         }
     }

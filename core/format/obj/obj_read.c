@@ -25,7 +25,7 @@ typedef struct obj {
 } obj;
 
 /* Adds a warning about a line. */
-static void note(obj *o, const he_line *line, he_warning warning)
+static void note(obj *o, const he_line *line, he_occurrence warning)
 {
     warning.place = HE_PLACE_LINE;
     warning.at = line->number;
@@ -56,9 +56,9 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, number
             return status;
         }
         if (!is_finite) {
-            note(
-                o, line,
-                (he_warning){.code = "not_finite", .text = "set to 0: a value that is not finite"});
+            note(o, line,
+                 (he_occurrence){.code = "not_finite",
+                                 .text = "set to 0: a value that is not finite"});
         }
         if (n < most) {
             values[n] = value;
@@ -72,7 +72,7 @@ static he_status read_numbers(obj *o, const he_line *line, const char *p, number
 static void note_extra(obj *o, const he_line *line)
 {
     note(o, line,
-         (he_warning){.code = "extra_numbers", .text = "ignored: extra numbers on a line"});
+         (he_occurrence){.code = "extra_numbers", .text = "ignored: extra numbers on a line"});
 }
 
 static he_status read_vertex(obj *o, const he_line *line, const char *p, he_error *err)
@@ -103,7 +103,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     }
     if (count == 4 && n[3] != 1) {
         note(o, line,
-             (he_warning){.code = "vertex_weight", .text = "ignored: the weight of a vertex"});
+             (he_occurrence){.code = "vertex_weight", .text = "ignored: the weight of a vertex"});
     }
     return he_line_locate(status, line, err);
 }
@@ -166,13 +166,13 @@ static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
 {
     he_notes_add(
         &o->into->notes,
-        &(he_warning){.code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
-                      .text =
-                          pool == &o->uv
-                              ? "set to 0, because it does not exist: a corner's texture coordinate"
-                              : "set to 0, because it does not exist: a corner's normal",
-                      .place = HE_PLACE_LINE,
-                      .at = at});
+        &(he_occurrence){
+            .code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
+            .text = pool == &o->uv
+                        ? "set to 0, because it does not exist: a corner's texture coordinate"
+                        : "set to 0, because it does not exist: a corner's normal",
+            .place = HE_PLACE_LINE,
+            .at = at});
 }
 
 static he_status read_value(obj *o, const he_line *line, const char **p, he_pool *pool,
@@ -345,20 +345,20 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
         if (*passed_over[i] == *p && strlen(passed_over[i]) == length &&
             memcmp(p, passed_over[i], length) == 0) {
             note(o, line,
-                 (he_warning){.code = "ignored_keyword",
-                              .text = "ignored: lines that begin with",
-                              .subject = p,
-                              .length = length});
+                 (he_occurrence){.code = "ignored_keyword",
+                                 .text = "ignored: lines that begin with",
+                                 .subject = p,
+                                 .length = length});
             return HE_OK;
         }
     }
     o->understood--;
     o->unknown = o->unknown == 0 ? line->number : o->unknown;
     note(o, line,
-         (he_warning){.code = "unknown_keyword",
-                      .text = "ignored: unknown keyword",
-                      .subject = p,
-                      .length = length});
+         (he_occurrence){.code = "unknown_keyword",
+                         .text = "ignored: unknown keyword",
+                         .subject = p,
+                         .length = length});
     return HE_OK;
 }
 
@@ -373,10 +373,10 @@ static he_status read_line(void *context, const he_line *line, he_error *err)
     }
     if (*p == '$') { /* some programs begin comments with this byte */
         note(o, line,
-             (he_warning){.code = "ignored_keyword",
-                          .text = "ignored: lines that begin with",
-                          .subject = p,
-                          .length = 1});
+             (he_occurrence){.code = "ignored_keyword",
+                             .text = "ignored: lines that begin with",
+                             .subject = p,
+                             .length = 1});
         return HE_OK;
     }
     if (*p == 'v' && he_token_ends(p + 1, end)) {
@@ -495,15 +495,15 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
 {
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
     if (file == NULL) {
-        he_notes_add(&o->into->notes,
-                     &(he_warning){.code = "library_missing",
-                                   .text =
-                                       "not sent with the file (send both as multipart/form-data): "
-                                       "the material library",
-                                   .subject = name,
-                                   .length = length,
-                                   .place = HE_PLACE_LINE,
-                                   .at = line});
+        he_notes_add(
+            &o->into->notes,
+            &(he_occurrence){.code = "library_missing",
+                             .text = "not sent with the file (send both as multipart/form-data): "
+                                     "the material library",
+                             .subject = name,
+                             .length = length,
+                             .place = HE_PLACE_LINE,
+                             .at = line});
         return HE_OK;
     }
     he_error failure = {0};

@@ -96,10 +96,10 @@ static const he_column *find_libraries(obj_writer *w, he_notes *notes)
         he_obj_note_name(w->libraries[i], notes);
     }
     if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
-        he_notes_add(
-            notes,
-            &(he_warning){.code = "in_library",
-                          .text = "written to the material library (format=mtl) only: materials"});
+        he_notes_add(notes,
+                     &(he_occurrence){
+                         .code = "in_library",
+                         .text = "written to the material library (format=mtl) only: materials"});
     }
     return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
 }
@@ -139,10 +139,10 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->color = he_colors_find(mesh, HE_VERTEX, notes);
     if (w->color != NULL && w->color->components == 4) {
-        he_notes_add(notes, &(he_warning){.code = "alpha_lost",
-                                          .text = "not written: the fourth component of",
-                                          .subject = "vertex color",
-                                          .length = strlen("vertex color")});
+        he_notes_add(notes, &(he_occurrence){.code = "alpha_lost",
+                                             .text = "not written: the fourth component of",
+                                             .subject = "vertex color",
+                                             .length = strlen("vertex color")});
     }
     const he_column *used[SPANS + 4] = {w->color, w->uv.column, w->normal.column};
     used[SPANS + 3] = find_libraries(w, notes);

@@ -19,10 +19,11 @@ void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned h
     values->vertex_colors.fractions = values->face_colors.fractions = true;
     he_places_init(&values->into->vertices, HE_PLACE_BYTE, (uint32_t)vertex_numbers(binary) * WORD);
     he_places_init(&values->into->faces, HE_PLACE_BYTE, SHORTEST_FACE);
-    he_notes_add(&values->into->notes, &(he_warning){.code = "binary_off",
-                                                     .text = "read as big-endian binary: the body",
-                                                     .place = HE_PLACE_BYTE,
-                                                     .at = offset});
+    he_notes_add(&values->into->notes,
+                 &(he_occurrence){.code = "binary_off",
+                                  .text = "read as big-endian binary: the body",
+                                  .place = HE_PLACE_BYTE,
+                                  .at = offset});
 }
 
 static uint32_t word_at(const unsigned char *p)
@@ -44,10 +45,10 @@ static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t 
     memcpy(&value, &bits, sizeof value);
     if (!isfinite(value)) {
         he_notes_add(&b->values->into->notes,
-                     &(he_warning){.code = "not_finite",
-                                   .text = "set to 0: a value that is not finite",
-                                   .place = HE_PLACE_BYTE,
-                                   .at = at});
+                     &(he_occurrence){.code = "not_finite",
+                                      .text = "set to 0: a value that is not finite",
+                                      .place = HE_PLACE_BYTE,
+                                      .at = at});
         return 0;
     }
     return (double)value;
@@ -169,10 +170,10 @@ static he_status take_color_count(he_off_binary *b, const unsigned char *p, he_e
     he_status status = take_count(p, "numbers of a colour", 0, at, &count, err);
     if (status == HE_OK && count != 0 && count != 3 && count != 4) {
         he_notes_add(&b->values->into->notes,
-                     &(he_warning){.code = "extra_numbers",
-                                   .text = "ignored: numbers after a face that are not a colour",
-                                   .place = HE_PLACE_BYTE,
-                                   .at = at});
+                     &(he_occurrence){.code = "extra_numbers",
+                                      .text = "ignored: numbers after a face that are not a colour",
+                                      .place = HE_PLACE_BYTE,
+                                      .at = at});
     }
     b->left = b->color_count = (uint32_t)count;
     b->part = HE_OFF_COLOR;
@@ -242,10 +243,10 @@ static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
 {
     if (b->trailing == 0) {
         he_notes_add(&b->values->into->notes,
-                     &(he_warning){.code = "trailing_bytes",
-                                   .text = "ignored: bytes after the last face",
-                                   .place = HE_PLACE_BYTE,
-                                   .at = b->offset});
+                     &(he_occurrence){.code = "trailing_bytes",
+                                      .text = "ignored: bytes after the last face",
+                                      .place = HE_PLACE_BYTE,
+                                      .at = b->offset});
     }
     b->trailing += n;
     b->offset += n;

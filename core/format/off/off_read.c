@@ -46,7 +46,7 @@ static void note(off *o, const char *code, const char *text, const he_line *line
 {
     he_notes_add(
         &o->into->notes,
-        &(he_warning){.code = code, .text = text, .place = HE_PLACE_LINE, .at = line->number});
+        &(he_occurrence){.code = code, .text = text, .place = HE_PLACE_LINE, .at = line->number});
 }
 
 /* Returns the flags that a header word such as STCNOFF stands for; -1 if it is no header, -2 if

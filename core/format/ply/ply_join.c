@@ -71,7 +71,7 @@ static void join_copies(he_import *into, size_t mark)
     } else if (soup->vertex_count > 0) {
         he_notes_add(
             &into->notes,
-            &(he_warning){
+            &(he_occurrence){
                 .code = "stale_copies",
                 .text = "not joined, because their positions differ: vertices marked as copies"});
     }

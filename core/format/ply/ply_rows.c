@@ -22,12 +22,12 @@ static void note_ignored(const he_ply_rows *rows, const he_ply_property *propert
 {
     he_notes_add(
         &rows->into->notes,
-        &(he_warning){.code = property->list ? "ignored_list" : "ignored_property",
-                      .text = property->list ? "ignored: list property" : "ignored: property",
-                      .subject = property->name,
-                      .length = strlen(property->name),
-                      .place = HE_PLACE_LINE,
-                      .at = property->line});
+        &(he_occurrence){.code = property->list ? "ignored_list" : "ignored_property",
+                         .text = property->list ? "ignored: list property" : "ignored: property",
+                         .subject = property->name,
+                         .length = strlen(property->name),
+                         .place = HE_PLACE_LINE,
+                         .at = property->line});
 }
 
 static bool has_column(const he_soup *soup, he_kind domain, const char *name)
@@ -153,7 +153,7 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
     if (property->type >= HE_PLY_FLOAT) {
         he_notes_add(
             &rows->into->notes,
-            &(he_warning){
+            &(he_occurrence){
                 .code = "fraction_indices",
                 .text = "read although it is not a type of whole numbers: vertex indices of type",
                 .subject = he_ply_type_name(property->type),
@@ -201,12 +201,12 @@ static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_erro
         return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
     }
     if (strcmp(e->name, "tristrips") != 0) {
-        he_notes_add(&rows->into->notes, &(he_warning){.code = "ignored_element",
-                                                       .text = "ignored: element",
-                                                       .subject = e->name,
-                                                       .length = strlen(e->name),
-                                                       .place = HE_PLACE_LINE,
-                                                       .at = e->line});
+        he_notes_add(&rows->into->notes, &(he_occurrence){.code = "ignored_element",
+                                                          .text = "ignored: element",
+                                                          .subject = e->name,
+                                                          .length = strlen(e->name),
+                                                          .place = HE_PLACE_LINE,
+                                                          .at = e->line});
         return HE_OK;
     }
     status = map_corners(rows, e, HE_PLY_STRIP, err);
@@ -344,12 +344,12 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
     bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
     if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
         he_notes_add(&rows->into->notes,
-                     &(he_warning){.code = "not_finite",
-                                   .text = "set to 0: values that are not finite of",
-                                   .subject = column->name,
-                                   .length = strlen(column->name),
-                                   .place = rows->unit,
-                                   .at = rows->at});
+                     &(he_occurrence){.code = "not_finite",
+                                      .text = "set to 0: values that are not finite of",
+                                      .subject = column->name,
+                                      .length = strlen(column->name),
+                                      .place = rows->unit,
+                                      .at = rows->at});
         value = 0;
     }
     if (target->full != 1) {
@@ -503,12 +503,12 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
     unsigned char *at = he_column_row(rows->uv, corner);
     if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
         he_notes_add(&rows->into->notes,
-                     &(he_warning){.code = "not_finite",
-                                   .text = "set to 0: values that are not finite of",
-                                   .subject = "uv",
-                                   .length = strlen("uv"),
-                                   .place = rows->unit,
-                                   .at = rows->at});
+                     &(he_occurrence){.code = "not_finite",
+                                      .text = "set to 0: values that are not finite of",
+                                      .subject = "uv",
+                                      .length = strlen("uv"),
+                                      .place = rows->unit,
+                                      .at = rows->at});
         value = 0;
     }
     float narrow = (float)value;
@@ -527,7 +527,7 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
     if (count != 2 * corners) {
         he_notes_add(
             &rows->into->notes,
-            &(he_warning){
+            &(he_occurrence){
                 .code = count == 0 ? "faces_without_uv" : "texcoord_count",
                 .text = count == 0 ? "set to 0, because it has none: texture coordinates of a face"
                                    : "set to 0, because there are not two for each corner: texture "

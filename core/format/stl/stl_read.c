@@ -141,12 +141,12 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     } else if (is(word, end, "endfacet")) {
         return end_facet(o, line, word, err);
     } else if (!is(word, end, "outer") && !is(word, end, "loop") && !is(word, end, "endloop")) {
-        he_notes_add(&o->into->notes, &(he_warning){.code = "unknown_keyword",
-                                                    .text = "ignored: unknown keyword",
-                                                    .subject = word,
-                                                    .length = (size_t)(end - word),
-                                                    .place = HE_PLACE_LINE,
-                                                    .at = line->number});
+        he_notes_add(&o->into->notes, &(he_occurrence){.code = "unknown_keyword",
+                                                       .text = "ignored: unknown keyword",
+                                                       .subject = word,
+                                                       .length = (size_t)(end - word),
+                                                       .place = HE_PLACE_LINE,
+                                                       .at = line->number});
         o->unknown = o->unknown == 0 ? line->number : o->unknown;
         *p = line->end;
     }
@@ -191,10 +191,10 @@ static he_status finish_text(stl *o, he_error *err)
     }
     if (o->in_solid) {
         he_notes_add(&o->into->notes,
-                     &(he_warning){.code = "no_endsolid",
-                                   .text = "the file ends before its last endsolid",
-                                   .place = HE_PLACE_LINE,
-                                   .at = last_line});
+                     &(he_occurrence){.code = "no_endsolid",
+                                      .text = "the file ends before its last endsolid",
+                                      .place = HE_PLACE_LINE,
+                                      .at = last_line});
     }
     return he_spans_finish(&o->object, &o->into->soup, "object", err);
 }
@@ -258,10 +258,11 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
         status = add_facet(o, at, err);
     }
     if (p[0] != 0 || p[1] != 0) {
-        he_notes_add(&o->into->notes, &(he_warning){.code = "attribute_bytes",
-                                                    .text = "ignored: attribute bytes of a facet",
-                                                    .place = HE_PLACE_BYTE,
-                                                    .at = at});
+        he_notes_add(&o->into->notes,
+                     &(he_occurrence){.code = "attribute_bytes",
+                                      .text = "ignored: attribute bytes of a facet",
+                                      .place = HE_PLACE_BYTE,
+                                      .at = at});
     }
     o->left--;
     return at_place(status, HE_PLACE_BYTE, at, err);
@@ -272,10 +273,11 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
-        he_notes_add(&o->into->notes, &(he_warning){.code = "trailing_bytes",
-                                                    .text = "ignored: bytes after the last facet",
-                                                    .place = HE_PLACE_BYTE,
-                                                    .at = o->offset});
+        he_notes_add(&o->into->notes,
+                     &(he_occurrence){.code = "trailing_bytes",
+                                      .text = "ignored: bytes after the last facet",
+                                      .place = HE_PLACE_BYTE,
+                                      .at = o->offset});
     }
     o->trailing += n < FACET ? n : FACET;
     if (o->trailing >= FACET || o->count == 0) {

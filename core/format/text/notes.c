@@ -12,14 +12,14 @@ void he_quote(const char *begin, const char *end, char *text, size_t size)
     text[length] = '\0';
 }
 
-static void add_spot(he_notes *notes, size_t note, const he_warning *warning)
+static void add_spot(he_notes *notes, size_t note, const he_occurrence *warning)
 {
     if (warning->place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
         notes->spots[notes->spot_count++] = (he_note_spot){note, warning->at};
     }
 }
 
-void he_notes_add(he_notes *notes, const he_warning *warning)
+void he_notes_add(he_notes *notes, const he_occurrence *warning)
 {
     char name[HE_NOTE_SUBJECT];
     const char *subject = warning->subject;
@@ -52,7 +52,7 @@ void he_notes_add_count(he_notes *notes, const char *code, const char *text, uin
     if (count == 0) {
         return;
     }
-    he_notes_add(notes, &(he_warning){.code = code, .text = text});
+    he_notes_add(notes, &(he_occurrence){.code = code, .text = text});
     if (notes->count > before) {
         notes->items[before].count = count;
     }

@@ -22,14 +22,14 @@ typedef struct he_note {
 } he_note;
 
 /* One occurrence of a warning, as a reader or writer reports it. */
-typedef struct he_warning {
+typedef struct he_occurrence {
     const char *code;    /* a stable slug, static */
     const char *text;    /* one sentence without the subject, static */
     const char *subject; /* what it is about; NULL if there is nothing to name */
     size_t length;       /* bytes of the subject, which need not end in NUL */
     he_place place;      /* HE_PLACE_NONE if it has no place in the file */
     uint64_t at;
-} he_warning;
+} he_occurrence;
 
 /* The place of one occurrence that a note counts. */
 typedef struct he_note_spot {
@@ -46,7 +46,7 @@ typedef struct he_notes {
 } he_notes;
 
 /* Adds one occurrence of a warning. Its subject is cut to fit and made printable. */
-void he_notes_add(he_notes *notes, const he_warning *warning);
+void he_notes_add(he_notes *notes, const he_occurrence *warning);
 /* Adds `count` occurrences of a warning that have no place in the file; nothing if `count` is 0. */
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
 /* Writes a text such as "ignored: unknown keyword 'xyz', 3 times, first on line 7". */
