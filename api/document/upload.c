@@ -580,7 +580,7 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
 }
 
 /* A warning as its members show it. */
-typedef struct warning {
+typedef struct shown_warning {
     const char *code, *detail;
     uint64_t count;
     uint64_t at; /* place of the first occurrence */
@@ -589,12 +589,12 @@ typedef struct warning {
     size_t note;
     const uint32_t *vertices;
     size_t named; /* number of vertices */
-} warning;
+} shown_warning;
 
 /* Writes where a warning applies, for the first occurrences that it counts. */
 static void write_spots(api_out *out, const void *value)
 {
-    const warning *w = value;
+    const shown_warning *w = value;
     api_out_array_begin(out);
     for (size_t k = 0; k < w->notes->spot_count; k++) {
         if (w->notes->spots[k].note == w->note) {
@@ -606,23 +606,24 @@ static void write_spots(api_out *out, const void *value)
 
 static void write_warned(api_out *out, const void *value)
 {
-    const warning *w = value;
+    const shown_warning *w = value;
     api_out_ids(out, w->vertices, w->named);
 }
 
 static const api_field warning_fields[] = {
-    API_FIELD("code", "text", warning, code, .required = true),
-    API_FIELD("detail", "text", warning, detail, .required = true),
-    API_FIELD("count", "count", warning, count, .required = true, .doc = "How often it occurred."),
-    API_FIELD("line", "count", warning, at, .known = API_KNOWN(warning, has_line),
+    API_FIELD("code", "text", shown_warning, code, .required = true),
+    API_FIELD("detail", "text", shown_warning, detail, .required = true),
+    API_FIELD("count", "count", shown_warning, count, .required = true,
+              .doc = "How often it occurred."),
+    API_FIELD("line", "count", shown_warning, at, .known = API_KNOWN(shown_warning, has_line),
               .doc = "The first line, in a text file."),
-    API_FIELD("byte", "count", warning, at, .known = API_KNOWN(warning, has_byte),
+    API_FIELD("byte", "count", shown_warning, at, .known = API_KNOWN(shown_warning, has_byte),
               .doc = "The first byte, in a binary file."),
-    API_FIELD_MADE("lines", "*count", write_spots, .known = API_KNOWN(warning, has_lines),
+    API_FIELD_MADE("lines", "*count", write_spots, .known = API_KNOWN(shown_warning, has_lines),
                    .doc = "The lines, at most 100 for all warnings together."),
-    API_FIELD_MADE("bytes", "*count", write_spots, .known = API_KNOWN(warning, has_bytes),
+    API_FIELD_MADE("bytes", "*count", write_spots, .known = API_KNOWN(shown_warning, has_bytes),
                    .doc = "The bytes in a binary file, at most 100 for all warnings together."),
-    API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(warning, has_vertices),
+    API_FIELD_MADE("vertices", "*id", write_warned, .known = API_KNOWN(shown_warning, has_vertices),
                    .doc = "For bowtie and isolated_vertices: the first 100 of these vertices."),
 };
 const api_record api_warning_record = {"warning", warning_fields,
@@ -634,22 +635,22 @@ static void write_note(api_out *out, const he_notes *notes, size_t i)
     const he_note *note = &notes->items[i];
     const bool many = note->count != 1;
     he_note_text(note, text, sizeof text);
-    const warning value = {.code = note->code,
-                           .detail = text,
-                           .count = note->count,
-                           .at = note->at,
-                           .has_line = note->place == HE_PLACE_LINE,
-                           .has_byte = note->place == HE_PLACE_BYTE,
-                           .has_lines = many && note->place == HE_PLACE_LINE,
-                           .has_bytes = many && note->place == HE_PLACE_BYTE,
-                           .notes = notes,
-                           .note = i};
+    const shown_warning value = {.code = note->code,
+                                 .detail = text,
+                                 .count = note->count,
+                                 .at = note->at,
+                                 .has_line = note->place == HE_PLACE_LINE,
+                                 .has_byte = note->place == HE_PLACE_BYTE,
+                                 .has_lines = many && note->place == HE_PLACE_LINE,
+                                 .has_bytes = many && note->place == HE_PLACE_BYTE,
+                                 .notes = notes,
+                                 .note = i};
     api_record_write(out, &api_warning_record, &value);
 }
 
 /* Writes a warning about vertices of the mesh, with the place of the first of them in the file. The
  * caller sets code, detail and count. */
-static void write_vertices(api_out *out, const upload *u, warning value, const he_ids *ids)
+static void write_vertices(api_out *out, const upload *u, shown_warning value, const he_ids *ids)
 {
     const he_places *places = u->has_import ? &u->import.vertices : NULL;
     if (value.count == 0) {
@@ -672,10 +673,11 @@ static void write_vertices(api_out *out, const upload *u, warning value, const h
  * different values. */
 static void write_seams(api_out *out, const upload *u)
 {
-    const warning value = {.code = "open_seams",
-                           .detail = "faces lie apart though their edges coincide: repair=weld "
+    const shown_warning value = {.code = "open_seams",
+                                 .detail =
+                                     "faces lie apart though their edges coincide: repair=weld "
                                      "sews them and keeps what their corners say",
-                           .count = u->seams};
+                                 .count = u->seams};
     if (u->seams > 0) {
         api_record_write(out, &api_warning_record, &value);
     }
@@ -711,10 +713,11 @@ static void write_repairs(api_out *out, const void *value)
 static void write_warnings(api_out *out, const void *value)
 {
     const upload *u = ((const report *)value)->u;
-    const warning bowties = {.code = "bowtie",
-                             .detail = "fans of faces meet at a vertex without sharing an edge",
-                             .count = u->bowties.count};
-    const warning isolated = {
+    const shown_warning bowties = {.code = "bowtie",
+                                   .detail =
+                                       "fans of faces meet at a vertex without sharing an edge",
+                                   .count = u->bowties.count};
+    const shown_warning isolated = {
         .code = "isolated_vertices", .detail = "no face has these vertices", .count = u->isolated};
     api_out_array_begin(out);
     for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {

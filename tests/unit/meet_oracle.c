@@ -1,4 +1,4 @@
-#include "unit/meet_oracle.h"
+#include "tests/unit/meet_oracle.h"
 
 #include <math.h>
 

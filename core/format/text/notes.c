@@ -12,23 +12,23 @@ void he_quote(const char *begin, const char *end, char *text, size_t size)
     text[length] = '\0';
 }
 
-static void add_spot(he_notes *notes, size_t note, const he_occurrence *warning)
+static void add_spot(he_notes *notes, size_t note, const he_occurrence *seen)
 {
-    if (warning->place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
-        notes->spots[notes->spot_count++] = (he_note_spot){note, warning->at};
+    if (seen->place != HE_PLACE_NONE && notes->spot_count < HE_NOTE_SPOTS) {
+        notes->spots[notes->spot_count++] = (he_note_spot){note, seen->at};
     }
 }
 
-void he_notes_add(he_notes *notes, const he_occurrence *warning)
+void he_notes_add(he_notes *notes, const he_occurrence *seen)
 {
     char name[HE_NOTE_SUBJECT];
-    const char *subject = warning->subject;
-    he_quote(subject, subject == NULL ? NULL : subject + warning->length, name, sizeof name);
+    const char *subject = seen->subject;
+    he_quote(subject, subject == NULL ? NULL : subject + seen->length, name, sizeof name);
     for (size_t i = 0; i < notes->count; i++) {
         he_note *note = &notes->items[i];
-        if (strcmp(note->code, warning->code) == 0 && strcmp(note->subject, name) == 0) {
+        if (strcmp(note->code, seen->code) == 0 && strcmp(note->subject, name) == 0) {
             note->count++;
-            add_spot(notes, i, warning);
+            add_spot(notes, i, seen);
             return;
         }
     }
@@ -37,13 +37,10 @@ void he_notes_add(he_notes *notes, const he_occurrence *warning)
         return;
     }
     he_note *note = &notes->items[notes->count++];
-    *note = (he_note){.code = warning->code,
-                      .text = warning->text,
-                      .count = 1,
-                      .place = warning->place,
-                      .at = warning->at};
+    *note = (he_note){
+        .code = seen->code, .text = seen->text, .count = 1, .place = seen->place, .at = seen->at};
     memcpy(note->subject, name, sizeof name);
-    add_spot(notes, notes->count - 1, warning);
+    add_spot(notes, notes->count - 1, seen);
 }
 
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count)

@@ -46,7 +46,7 @@ typedef struct he_notes {
 } he_notes;
 
 /* Adds one occurrence of a warning. Its subject is cut to fit and made printable. */
-void he_notes_add(he_notes *notes, const he_occurrence *warning);
+void he_notes_add(he_notes *notes, const he_occurrence *seen);
 /* Adds `count` occurrences of a warning that have no place in the file; nothing if `count` is 0. */
 void he_notes_add_count(he_notes *notes, const char *code, const char *text, uint64_t count);
 /* Writes a text such as "ignored: unknown keyword 'xyz', 3 times, first on line 7". */
