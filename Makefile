@@ -258,7 +258,7 @@ $(BUILD)/tests/api/test_events: private LDFLAGS += $(call wrap,he_changes_find h
 $(BUILD)/tests/api/test_snapshots: private LDFLAGS += $(call wrap,st_snapshot_take st_snapshot_held)
 $(BUILD)/tests/unit/test_srv_journal_faults: private LDFLAGS += $(call wrap,fstatvfs posix_fallocate fsync st_clock_wait)
 $(BUILD)/tests/unit/test_srv_evict: private LDFLAGS += $(call wrap,st_clock_wait)
-$(BUILD)/tests/api/test_mesh_access: private LDFLAGS += $(call wrap,he_slots_new)
+$(BUILD)/tests/api/test_mesh_access: private LDFLAGS += $(call wrap,he_draw_slots_new)
 $(BUILD)/tests/api/test_space_threads: private LDFLAGS += \
     $(call wrap,st_derived_begin st_derived_end st_derived_wait)
 

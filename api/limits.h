@@ -21,16 +21,16 @@
                          */
 
 /* Compressed bodies. The decompressed size counts against the limits above, and so does the
- * compressed size. Each gzip member or zstd frame may decompress to API_UNPACK_RATIO times the
- * compressed data read of it; all together may exceed that by API_UNPACK_FREE bytes. (Mesh files
- * decompress to ten times their size, zeros to a thousand times.) After API_UNPACK_TURN
+ * compressed size. Each gzip member or zstd frame may decompress to API_DECOMPRESS_RATIO times the
+ * compressed data read of it; all together may exceed that by API_DECOMPRESS_FREE bytes. (Mesh
+ * files decompress to ten times their size, zeros to a thousand times.) After API_DECOMPRESS_TURN
  * decompressed bytes the thread serves other requests. A zstd frame may use a window of 8 MiB, the
  * largest that RFC 9659 allows. The decoders of all bodies in transfer may allocate
- * API_MAX_UNPACKING bytes together. */
-#define API_UNPACK_FREE   ((uint64_t)1 << 20)
-#define API_UNPACK_TURN   ((size_t)1 << 20)
-#define API_MAX_UNPACKING ((size_t)256 << 20)
-enum { API_UNPACK_RATIO = 100, API_UNPACK_WINDOW = 23 /* log2 of the window */ };
+ * API_MAX_DECOMPRESSING bytes together. */
+#define API_DECOMPRESS_FREE   ((uint64_t)1 << 20)
+#define API_DECOMPRESS_TURN   ((size_t)1 << 20)
+#define API_MAX_DECOMPRESSING ((size_t)256 << 20)
+enum { API_DECOMPRESS_RATIO = 100, API_DECOMPRESS_WINDOW = 23 /* log2 of the window */ };
 
 /* A body of several files (multipart). All of it counts against the limits above. Files that a
  * reader needs beside the mesh file are kept until the reader is done. */
@@ -40,10 +40,10 @@ enum {
     API_MAX_PART_NAME = 1000     /* bytes of a file name, a field name or a media type */
 };
 
-/* Answers longer than API_PACK_FROM bytes are compressed. Those up to API_PACK_AT_ONCE are
+/* Answers longer than API_COMPRESS_FROM bytes are compressed. Those up to API_COMPRESS_AT_ONCE are
  * compressed in one call, which takes half a millisecond. Longer ones are compressed in pieces of
- * that size, and the thread serves other requests after API_PACK_TURN bytes. */
-enum { API_PACK_FROM = 1024, API_PACK_AT_ONCE = 64 * 1024, API_PACK_TURN = 1 << 20 };
+ * that size, and the thread serves other requests after API_COMPRESS_TURN bytes. */
+enum { API_COMPRESS_FROM = 1024, API_COMPRESS_AT_ONCE = 64 * 1024, API_COMPRESS_TURN = 1 << 20 };
 
 /* JSON */
 enum {
@@ -78,7 +78,7 @@ enum {
     API_MAX_EDITS_ROWS = 1 << 26,
     API_HUB_USES = 256,        /* uses of a cached vertex degree: see api/write/edit_cost.h */
     API_MAX_IDS = 1 << 24,     /* ids per list, including the ids that references expand to */
-    API_MAX_OTHERS = 16,       /* other meshes that one request may name */
+    API_MAX_NAMED_MESHES = 16, /* other meshes that one request may name */
     API_MAX_AS = 64,           /* characters of a result name ("as") */
     API_MAX_QUERIES = 10000,   /* questions per query request */
     API_MAX_PATH_STEPS = 4096, /* steps in the path of a traversal */
@@ -129,7 +129,7 @@ enum {
  * finding the intersections 1.2 s more, curvatures 0.5 to 0.8 s, a flood fill over a million
  * elements 0.24 s, a shortest path 0.4 s. Writing numbers as text runs at
  * API_MEASURE_PER_SECOND. */
-#define API_TREE_PER_SECOND    3.5e6
+#define API_BVH_PER_SECOND     3.5e6
 #define API_SEARCH_PER_SECOND  5e6
 #define API_MEASURE_PER_SECOND 1e7
 #define API_FLOOD_PER_SECOND   4e6

@@ -53,17 +53,17 @@ static bool find_intersections(api_asker *a, report *r)
 
 static bool examine(api_asker *a, report *r)
 {
-    he_watch *watch = &a->x->watch;
+    he_progress *progress = &a->x->progress;
     he_error err = {0};
-    if (he_check_watched(a->mesh, watch, r->problems, NAMED, &r->broken, &err) != HE_OK) {
+    if (he_check_with_progress(a->mesh, progress, r->problems, NAMED, &r->broken, &err) != HE_OK) {
         return api_fail_core(a->x, &err);
     }
     if (r->broken > 0) {
         return true; /* the other tests rely on valid links */
     }
-    he_watch_span(watch, r->meets ? FOUND : 1);
+    he_progress_span(progress, r->meets ? FOUND : 1);
     r->thresholds = read_thresholds(a->x, a->mesh);
-    if (he_defects_find(a->mesh, &r->thresholds, watch, &r->defects, &err) != HE_OK) {
+    if (he_defects_find(a->mesh, &r->thresholds, progress, &r->defects, &err) != HE_OK) {
         return api_fail_core(a->x, &err);
     }
     return !r->meets || find_intersections(a, r);

@@ -15,7 +15,7 @@
 typedef struct options {
     he_weight weight;
     double crease;
-    he_watch *watch; /* the exchange's */
+    he_progress *progress; /* the exchange's */
     /* Limits the sum of the squared numbers of corners of the faces around listed elements. */
     uint64_t most;
 } options;
@@ -85,7 +85,7 @@ static he_status vertex_normals(const he_mesh *m, const selection *of, const opt
     if (rows == NULL) {
         return HE_NO_MEMORY;
     }
-    he_status status = he_vertex_normals(m, o->weight, o->watch, rows, err);
+    he_status status = he_vertex_normals(m, o->weight, o->progress, rows, err);
     if (status == HE_OK) {
         compress(m, HE_VERTEX, rows, out);
     }
@@ -102,7 +102,7 @@ static he_status curvature(const he_mesh *m, const selection *of, const options 
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the curvature of %zu vertices",
                              of->count);
     }
-    he_status status = he_curvatures(m, of->ids, of->count, o->most, o->watch, all, err);
+    he_status status = he_curvatures(m, of->ids, of->count, o->most, o->progress, all, err);
     for (size_t i = 0; i < of->count && status == HE_OK; i++) {
         memcpy(&out[i], (const char *)&all[i] + at, sizeof out[i]);
     }
@@ -149,7 +149,7 @@ static he_status corner_normals(const he_mesh *m, const selection *of, const opt
     if (rows == NULL) {
         return HE_NO_MEMORY;
     }
-    he_status status = he_corner_normals(m, o->crease, o->watch, rows, err);
+    he_status status = he_corner_normals(m, o->crease, o->progress, rows, err);
     if (status == HE_OK) {
         compress(m, HE_HALFEDGE, rows, out);
     }
@@ -186,7 +186,7 @@ static he_status dihedrals(const he_mesh *m, const selection *of, const options 
     if (rows == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the dihedrals of a mesh");
     }
-    he_status status = he_edge_dihedrals(m, o->watch, rows, err);
+    he_status status = he_edge_dihedrals(m, o->progress, rows, err);
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
         if (he_mesh_is_live(m, HE_EDGE, e)) {
             *out++ = rows[e];
@@ -199,7 +199,7 @@ static he_status dihedrals(const he_mesh *m, const selection *of, const options 
 static he_status edge_cotangents(const he_mesh *m, const selection *of, const options *o,
                                  double *out, he_error *err)
 {
-    return he_edge_cotangents(m, of->ids, of->count, o->most, o->watch, out, err);
+    return he_edge_cotangents(m, of->ids, of->count, o->most, o->progress, out, err);
 }
 
 /* --- faces --- */
@@ -330,7 +330,7 @@ static uint64_t about(const he_mesh *m, he_vertex v, uint64_t most)
     }
     do {
         cost += beside(m, h);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i && cost <= most);
     return cost;
 }
@@ -398,7 +398,7 @@ static bool pay(api_asker *a, const api_in *question, const asked *q, const sele
 
 /* --- answers --- */
 
-static he_status each(const he_mesh *m, const asked *q, const selection *of, he_watch *watch,
+static he_status each(const he_mesh *m, const asked *q, const selection *of, he_progress *progress,
                       double *out, he_error *err)
 {
     const measure *what = q->measure;
@@ -409,7 +409,7 @@ static he_status each(const he_mesh *m, const asked *q, const selection *of, he_
     }
     uint32_t issued = of->ids == NULL ? he_mesh_issued(m, q->target.kind) : 0;
     for (uint32_t id = 0; id < issued && status == HE_OK; id++) {
-        status = he_watch_at(watch, id, issued, err);
+        status = he_progress_at(progress, id, issued, err);
         if (status == HE_OK && he_mesh_is_live(m, q->target.kind, id)) {
             status = what->one(m, id, &q->options, out, err);
             out += what->components;
@@ -428,10 +428,10 @@ static bool find(api_asker *a, const api_in *question, const asked *q, const sel
     bool all = of->ids == NULL;
     bool whole = q->measure->one == NULL || (all && q->measure->many != NULL);
     options chosen = q->options;
-    chosen.watch = &a->x->watch;
+    chosen.progress = &a->x->progress;
     chosen.most = all ? UINT64_MAX : api_asker_left(a);
     he_status status = whole ? q->measure->many(a->mesh, of, &chosen, out, &err)
-                             : each(a->mesh, q, of, &a->x->watch, out, &err);
+                             : each(a->mesh, q, of, &a->x->progress, out, &err);
     return status == HE_OK || api_asker_refuse(a, question, &err);
 }
 
@@ -498,7 +498,7 @@ static bool ask_many(api_asker *a, const api_in *question, const asked *q)
     he_error err = {0};
     he_status status = HE_OK;
     for (size_t i = 0; i < count && status == HE_OK; i++) {
-        status = he_watch_at(&a->x->watch, i, count, &err);
+        status = he_progress_at(&a->x->progress, i, count, &err);
         write_value(a->out, q->measure, values + i * q->measure->components);
     }
     api_out_array_end(a->out);

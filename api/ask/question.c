@@ -1,6 +1,6 @@
 #include "api/ask/question.h"
 
-#include "api/ask/tree.h"
+#include "api/ask/bvh_cache.h"
 #include "api/read/elements.h"
 #include "mesh/walk.h"
 
@@ -34,7 +34,7 @@ static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), 
                    .revision = x->info.revision,
                    .out = &x->out,
                    .arena = &x->arena,
-                   .budget = {.watch = &x->watch},
+                   .budget = {.progress = &x->progress},
                    .asked = "this",
                    .on_worker = x->phase == API_PHASE_BODY,
                    .reads_only = reads_only};
@@ -42,7 +42,7 @@ static bool run(api_exchange *x, void (*answer)(api_exchange *x, api_asker *a), 
     answer(x, &a);
     he_ids_clear(&a.first);
     he_ids_clear(&a.second);
-    api_tree_release(a.tree);
+    api_bvh_release(a.tree);
     return a.spent;
 }
 
@@ -361,8 +361,8 @@ static uint64_t smaller_degree(const he_mesh *mesh, he_vertex a, he_vertex b, ui
     he_halfedge x = first_a, y = first_b;
     uint64_t steps = 0;
     do {
-        x = he_turn_ccw(mesh, x);
-        y = he_turn_ccw(mesh, y);
+        x = he_swing_ccw(mesh, x);
+        y = he_swing_ccw(mesh, y);
         steps++;
     } while (x.i != first_a.i && y.i != first_b.i && steps < most);
     return steps;
@@ -375,7 +375,7 @@ static uint64_t degree_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     uint64_t degree = 0;
     if (!he_is_none(first.i)) {
         do {
-            h = he_turn_ccw(mesh, h);
+            h = he_swing_ccw(mesh, h);
             degree++;
         } while (h.i != first.i && degree < most);
     }
@@ -476,7 +476,7 @@ bool api_question_ask(api_asker *a, const api_in *question)
             return api_asker_exceed(a, question);
         }
         he_error err = {0};
-        if (he_watch_step(&a->x->watch, 0, 1, &err) != HE_OK) {
+        if (he_progress_step(&a->x->progress, 0, 1, &err) != HE_OK) {
             return api_asker_refuse(a, question, &err);
         }
         api_asker_pay(a, QUESTION_COST);

@@ -27,7 +27,7 @@
 #include "base/budget.h"
 #include "query/adjacency.h"
 
-struct api_tree;
+struct api_bvh;
 
 typedef struct api_asker {
     api_exchange *x;
@@ -35,7 +35,7 @@ typedef struct api_asker {
     uint64_t revision;
     api_out *out;
     api_arena *arena;
-    he_budget budget;  /* steps left; it also polls the watch of the exchange */
+    he_budget budget;  /* steps left; it also polls the progress of the exchange */
     const char *asked; /* name of the current question, for refusals */
     bool on_worker;    /* little budget: a request that needs more moves to the job pool */
     bool reads_only;   /* only reads the body: no search, no output */
@@ -43,7 +43,7 @@ typedef struct api_asker {
     double seconds;    /* estimate of work outside the budget: see api_asker_waits */
     bool has_met;      /* the search for intersections that has its own budget is done */
     he_ids first, second;
-    struct api_tree *tree; /* once needed: see tree.h */
+    struct api_bvh *tree; /* once needed: see bvh_cache.h */
 } api_asker;
 
 /* Calls `answer` with the mesh in x->content. It writes to x->out and answers, or leaves a problem

@@ -56,7 +56,7 @@ bool api_ray_ask(api_asker *a, const api_in *question)
     if (cast.direction.x == 0 && cast.direction.y == 0 && cast.direction.z == 0) {
         return api_in_fail(&along, HE_BAD_VALUE, "the ray's direction must not be zero");
     }
-    const he_bvh *tree = api_asker_tree(a, question);
+    const he_bvh *tree = api_asker_bvh(a, question);
     if (tree == NULL) {
         return false;
     }
@@ -79,7 +79,7 @@ bool api_closest_ask(api_asker *a, const api_in *question)
         !api_in_vec3(&in, &point) || !read_max(question, &max)) {
         return false;
     }
-    const he_bvh *tree = api_asker_tree(a, question);
+    const he_bvh *tree = api_asker_bvh(a, question);
     if (tree == NULL) {
         return false;
     }
@@ -113,18 +113,19 @@ static uint64_t granted_for(const api_asker *a)
 
 bool api_asker_intersections(api_asker *a, const api_in *in, bool *complete)
 {
-    he_watch *watch = &a->x->watch;
+    he_progress *progress = &a->x->progress;
     a->asked = "self_intersections";
-    he_watch_span(watch, 0.5 * (1 + watch->done)); /* the tree takes about half of the time */
-    const he_bvh *tree = api_asker_tree(a, in);
+    he_progress_span(progress,
+                     0.5 * (1 + progress->done)); /* the tree takes about half of the time */
+    const he_bvh *tree = api_asker_bvh(a, in);
     if (tree == NULL) {
         return false;
     }
     uint64_t granted = granted_for(a), left = a->budget.left;
-    he_budget budget = {.left = left + granted, .watch = watch};
+    he_budget budget = {.left = left + granted, .progress = progress};
     he_error err = {0};
     a->first.count = 0;
-    he_watch_span(watch, 1);
+    he_progress_span(progress, 1);
     if (he_bvh_intersections(tree, a->mesh, API_MAX_PAIRS, &budget, &a->first, complete, &err) !=
         HE_OK) {
         return api_asker_refuse(a, in, &err);

@@ -2,7 +2,7 @@
 #ifndef HE_API_ASK_SPATIAL_H
 #define HE_API_ASK_SPATIAL_H
 
-#include "api/ask/tree.h"
+#include "api/ask/bvh_cache.h"
 
 /* Finds faces that intersect where they should not, spending at most the asker's steps, and leaves
  * the pairs in a->first (query/bvh.h defines their order). Sets `complete` to false if

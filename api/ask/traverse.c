@@ -138,7 +138,7 @@ static bool ask_path(api_asker *a, const api_in *walk)
         return api_asker_exceed(a, walk);
     }
     p.steps.limit = limit;
-    if (he_traverse_path(a->mesh, (he_halfedge){p.from.id}, &p.steps, &a->x->watch, &a->first,
+    if (he_traverse_path(a->mesh, (he_halfedge){p.from.id}, &p.steps, &a->x->progress, &a->first,
                          &err) != HE_OK) {
         return api_asker_refuse(a, walk, &err);
     }

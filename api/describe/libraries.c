@@ -1,6 +1,6 @@
 #include "api/describe/libraries.h"
 
-#include "api/header/packing.h"
+#include "api/header/compression.h"
 
 #include <cjson/cJSON.h>
 

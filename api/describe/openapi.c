@@ -308,7 +308,7 @@ static void write_success_headers(api_out *out, const api_route *route, int stat
     if (status == 201) {
         write_header(out, "Location", "The path of the new mesh.", true);
     }
-    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+    if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
         write_header(out, "Idempotency-Replayed",
                      "true: this is the answer of the first request with this key.", false);
     }
@@ -461,7 +461,7 @@ static void write_header_parameters(api_out *out, const api_route *route)
     } else if (minimal) {
         write_header_parameter(out, "Prefer", "return=minimal: answer 204 without a body.");
     }
-    if (route->flags & (API_KEYED | API_KEYED_NEW)) {
+    if (route->flags & (API_IDEMPOTENCY_KEY | API_IDEMPOTENCY_KEY_NEW)) {
         write_header_parameter(
             out, "Idempotency-Key",
             "1 to 255 visible characters that the client chooses. For a day, a request with the "

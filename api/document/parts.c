@@ -1,7 +1,7 @@
 #include "api/document/parts.h"
 
 #include "api/header/multipart.h"
-#include "api/request/keyed.h"
+#include "api/request/idempotency.h"
 
 #include <string.h>
 
@@ -155,13 +155,13 @@ static bool is_taken(const api_parts *p, const char *name)
 
 static void hash_text(api_exchange *x, const char *text)
 {
-    api_keyed_add(x, text == NULL ? "" : text, text == NULL ? 1 : strlen(text) + 1);
+    api_idempotency_add(x, text == NULL ? "" : text, text == NULL ? 1 : strlen(text) + 1);
 }
 
 static api_parts_step begin(api_exchange *x, api_parts *p, const api_part *head,
                             api_parts_piece *out)
 {
-    char quoted[HE_NOTE_SUBJECT];
+    char quoted[HE_WARNING_SUBJECT];
     size_t length = strlen(head->name);
     if (is_taken(p, head->name)) {
         he_quote(head->name, head->name + length, quoted, sizeof quoted);
@@ -190,7 +190,7 @@ static api_parts_step take(api_exchange *x, api_parts *p, const char *bytes, siz
                            api_parts_piece *out)
 {
     part *one = &p->parts[p->count - 1];
-    api_keyed_add(x, bytes, length);
+    api_idempotency_add(x, bytes, length);
     if (one == p->mesh) {
         out->bytes = bytes;
         out->length = length;

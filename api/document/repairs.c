@@ -66,15 +66,16 @@ static void write_parents(api_out *out, const he_repair_account *account)
 }
 
 /* Writes where in the input the things were that a repair removed. */
-static void write_places(api_out *out, const he_repair_account *account, const he_places *places)
+static void write_source_map(api_out *out, const he_repair_account *account,
+                             const he_source_map *map)
 {
-    if (places == NULL || places->unit == HE_PLACE_NONE || places->count == 0) {
+    if (map == NULL || map->unit == HE_PLACE_NONE || map->count == 0) {
         return;
     }
-    api_out_key(out, places->unit == HE_PLACE_LINE ? "lines" : "bytes");
+    api_out_key(out, map->unit == HE_PLACE_LINE ? "lines" : "bytes");
     api_out_array_begin(out);
     for (size_t i = 0; i < account->named; i++) {
-        api_out_u64(out, he_places_find(places, account->pairs[i].a));
+        api_out_u64(out, he_source_map_find(map, account->pairs[i].a));
     }
     api_out_array_end(out);
 }
@@ -106,14 +107,14 @@ static void write_one(api_out *out, he_repair repair, const he_repair_plan *plan
         api_out_key_number(out, "tolerance", plan->tolerance);
         write_ids(out, "gone", account, FIRST);
         write_ids(out, "into", account, SECOND);
-        write_places(out, account, import == NULL ? NULL : &import->vertices);
+        write_source_map(out, account, import == NULL ? NULL : &import->vertices);
         api_out_key_u64(out, "moved", account->moved);
         break;
     case HE_REPAIR_DROP_DEGENERATE: {
         he_repair_account gone = degenerate_ones(account, true);
         he_repair_account mended = degenerate_ones(account, false);
         write_ids(out, "gone", &gone, FIRST);
-        write_places(out, &gone, import == NULL ? NULL : &import->faces);
+        write_source_map(out, &gone, import == NULL ? NULL : &import->faces);
         api_out_key_u64(out, "mended", account->parts);
         write_ids(out, "faces", &mended, FIRST);
         break;
@@ -121,7 +122,7 @@ static void write_one(api_out *out, he_repair repair, const he_repair_plan *plan
     case HE_REPAIR_DROP_DUPLICATES:
         write_ids(out, "gone", account, FIRST);
         write_ids(out, "into", account, SECOND);
-        write_places(out, account, import == NULL ? NULL : &import->faces);
+        write_source_map(out, account, import == NULL ? NULL : &import->faces);
         break;
     case HE_REPAIR_ORIENT:
         api_out_key_u64(out, "components", account->parts);

@@ -398,7 +398,7 @@ const char *api_upload_name(const api_exchange *x)
 }
 
 /* Finds the repairs with which the body would be accepted. When memory is out it finds none, and
- * the refusal stays as it is. Returns HE_CANCELLED if the watch cancelled the work. */
+ * the refusal stays as it is. Returns HE_CANCELLED if the work was cancelled. */
 static he_status advise(upload *u, unsigned *which, he_error *err)
 {
     *which = 0;
@@ -491,11 +491,12 @@ static void note_edges(upload *u, const he_mesh *mesh)
     const he_import *import = &u->import;
     if (u->has_import && u->plan.which == 0 && import->edges_line != 0 && import->edges != 0 &&
         import->edges != (double)he_mesh_count(mesh, HE_EDGE)) {
-        he_notes_add(&u->import.notes,
-                     &(he_occurrence){.code = "edge_count",
-                                      .text = "ignored, because it is wrong: the number of edges",
-                                      .place = HE_PLACE_LINE,
-                                      .at = import->edges_line});
+        he_warnings_add(
+            &u->import.warnings,
+            &(he_occurrence){.code = "edge_count",
+                             .text = "ignored, because it is wrong: the number of edges",
+                             .place = HE_PLACE_LINE,
+                             .at = import->edges_line});
     }
 }
 
@@ -509,8 +510,8 @@ static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
                                     &x->problem)) {
         return false;
     }
-    he_mesh_watch(mesh, &x->watch);
-    he_watch_span(&x->watch, FILL_SHARE);
+    he_mesh_set_progress(mesh, &x->progress);
+    he_progress_span(&x->progress, FILL_SHARE);
     he_status status = he_repair_mesh(mesh, &u->plan, &u->repaired, &err);
     if (status == HE_OK) {
         status = he_bowties_find(mesh, &u->bowties, &err);
@@ -525,7 +526,7 @@ static bool finish(api_exchange *x, upload *u, he_mesh *mesh)
         status = name_attributes(u, mesh, &err);
     }
     note_edges(u, mesh);
-    he_mesh_watch(mesh, NULL);
+    he_mesh_set_progress(mesh, NULL);
     return status == HE_OK || api_fail_core(x, &err);
 }
 
@@ -535,22 +536,22 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
     he_soup made, *soup = soup_of(u);
     he_error err = {0};
     he_mesh *mesh = NULL;
-    u->limits.watch = &x->watch;
+    u->limits.progress = &x->progress;
     if (is_unread(u)) {
-        he_watch_span(&x->watch, READ_SHARE);
-        he_reader_watch(u->reader, &x->watch);
+        he_progress_span(&x->progress, READ_SHARE);
+        he_reader_set_progress(u->reader, &x->progress);
         if (!finish_reading(x, u)) {
             return false;
         }
     }
     if (u->shape != NULL) {
-        he_watch_span(&x->watch, SHAPE_SHARE);
+        he_progress_span(&x->progress, SHAPE_SHARE);
         if (he_shape_make(u->shape, u->args, &u->limits, &made, &err) != HE_OK) {
             return api_fail_core(x, &err);
         }
         soup = &made;
     }
-    soup->limits.watch = &x->watch;
+    soup->limits.progress = &x->progress;
     u->vertices = soup->vertex_count;
     u->faces = soup->face_count;
     he_status status = HE_OK;
@@ -558,11 +559,11 @@ bool api_upload_build(api_exchange *x, he_mesh **out)
         if (u->document != NULL && !api_document_in_lend(u->document, &x->problem)) {
             return false;
         }
-        he_watch_span(&x->watch, REPAIR_SHARE);
+        he_progress_span(&x->progress, REPAIR_SHARE);
         status = he_repair_soup(soup, &u->plan, &u->repaired, &err);
     }
     if (status == HE_OK) {
-        he_watch_span(&x->watch, BUILD_SHARE);
+        he_progress_span(&x->progress, BUILD_SHARE);
         status = he_build(soup, HE_BUILD_TAKE, &mesh, &u->report, &err);
     }
     if (soup == &made) {
@@ -585,8 +586,8 @@ typedef struct shown_warning {
     uint64_t count;
     uint64_t at; /* place of the first occurrence */
     bool has_line, has_byte, has_lines, has_bytes, has_vertices;
-    const he_notes *notes; /* for the places of all occurrences of a note */
-    size_t note;
+    const he_warnings *warnings; /* for the places of all occurrences of a note */
+    size_t warning;
     const uint32_t *vertices;
     size_t named; /* number of vertices */
 } shown_warning;
@@ -596,9 +597,9 @@ static void write_spots(api_out *out, const void *value)
 {
     const shown_warning *w = value;
     api_out_array_begin(out);
-    for (size_t k = 0; k < w->notes->spot_count; k++) {
-        if (w->notes->spots[k].note == w->note) {
-            api_out_u64(out, w->notes->spots[k].at);
+    for (size_t k = 0; k < w->warnings->spot_count; k++) {
+        if (w->warnings->spots[k].warning == w->warning) {
+            api_out_u64(out, w->warnings->spots[k].at);
         }
     }
     api_out_array_end(out);
@@ -629,22 +630,22 @@ static const api_field warning_fields[] = {
 const api_record api_warning_record = {"warning", warning_fields,
                                        sizeof warning_fields / sizeof *warning_fields};
 
-static void write_note(api_out *out, const he_notes *notes, size_t i)
+static void write_warning(api_out *out, const he_warnings *warnings, size_t i)
 {
     char text[HE_ERROR_TEXT];
-    const he_note *note = &notes->items[i];
-    const bool many = note->count != 1;
-    he_note_text(note, text, sizeof text);
-    const shown_warning value = {.code = note->code,
+    const he_warning *warning = &warnings->items[i];
+    const bool many = warning->count != 1;
+    he_warning_text(warning, text, sizeof text);
+    const shown_warning value = {.code = warning->code,
                                  .detail = text,
-                                 .count = note->count,
-                                 .at = note->at,
-                                 .has_line = note->place == HE_PLACE_LINE,
-                                 .has_byte = note->place == HE_PLACE_BYTE,
-                                 .has_lines = many && note->place == HE_PLACE_LINE,
-                                 .has_bytes = many && note->place == HE_PLACE_BYTE,
-                                 .notes = notes,
-                                 .note = i};
+                                 .count = warning->count,
+                                 .at = warning->at,
+                                 .has_line = warning->place == HE_PLACE_LINE,
+                                 .has_byte = warning->place == HE_PLACE_BYTE,
+                                 .has_lines = many && warning->place == HE_PLACE_LINE,
+                                 .has_bytes = many && warning->place == HE_PLACE_BYTE,
+                                 .warnings = warnings,
+                                 .warning = i};
     api_record_write(out, &api_warning_record, &value);
 }
 
@@ -652,19 +653,19 @@ static void write_note(api_out *out, const he_notes *notes, size_t i)
  * caller sets code, detail and count. */
 static void write_vertices(api_out *out, const upload *u, shown_warning value, const he_ids *ids)
 {
-    const he_places *places = u->has_import ? &u->import.vertices : NULL;
+    const he_source_map *map = u->has_import ? &u->import.vertices : NULL;
     if (value.count == 0) {
         return;
     }
     value.has_vertices = true;
     value.vertices = ids->ids;
     value.named = ids->count < API_PROBLEM_ELEMENTS ? ids->count : (size_t)API_PROBLEM_ELEMENTS;
-    if (places != NULL && places->unit != HE_PLACE_NONE && places->count > 0) {
+    if (map != NULL && map->unit != HE_PLACE_NONE && map->count > 0) {
         uint32_t v = ids->ids[0];
         v = u->repaired.vertex_from == NULL ? v : u->repaired.vertex_from[v];
-        value.has_line = places->unit == HE_PLACE_LINE;
+        value.has_line = map->unit == HE_PLACE_LINE;
         value.has_byte = !value.has_line;
-        value.at = he_places_find(places, v);
+        value.at = he_source_map_find(map, v);
     }
     api_record_write(out, &api_warning_record, &value);
 }
@@ -720,8 +721,8 @@ static void write_warnings(api_out *out, const void *value)
     const shown_warning isolated = {
         .code = "isolated_vertices", .detail = "no face has these vertices", .count = u->isolated};
     api_out_array_begin(out);
-    for (size_t i = 0; u->has_import && i < u->import.notes.count; i++) {
-        write_note(out, &u->import.notes, i);
+    for (size_t i = 0; u->has_import && i < u->import.warnings.count; i++) {
+        write_warning(out, &u->import.warnings, i);
     }
     write_vertices(out, u, bowties, &u->bowties);
     write_vertices(out, u, isolated, &u->isolated_ids);
@@ -754,7 +755,7 @@ void api_upload_write_report(api_exchange *x)
                                                        : "json",
                           .vertices = u->vertices,
                           .faces = u->faces,
-                          .more = u->has_import ? u->import.notes.more : 0,
+                          .more = u->has_import ? u->import.warnings.more : 0,
                           .has_attributes = u->attribute_count > 0};
     api_out_key(&x->out, "import");
     api_record_write(&x->out, &api_import_record, &value);

@@ -1,6 +1,6 @@
 #include "api/event/events.h"
 
-#include "api/event/changes.h"
+#include "api/event/change_json.h"
 #include "api/event/event_values.h"
 #include "api/limits.h"
 #include "format/text/number.h"

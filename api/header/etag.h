@@ -7,7 +7,7 @@
 #ifndef HE_API_HEADER_ETAG_H
 #define HE_API_HEADER_ETAG_H
 
-#include "api/header/coding.h"
+#include "api/header/content_coding.h"
 #include "store/store.h"
 
 enum { API_ETAG = 128 };

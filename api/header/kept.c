@@ -1,6 +1,6 @@
 #include "api/header/kept.h"
 
-#include "api/header/pack.h"
+#include "api/header/compressor.h"
 #include "base/mem.h"
 
 #include <inttypes.h>
@@ -73,15 +73,15 @@ static form *compress(const api_kept *kept, api_coding coding)
     const size_t room = kept->length + kept->length / 4 + 512; /* more than either library needs */
     const api_plain plain = {.bytes = kept->bytes, .length = kept->length};
     form *made = he_mem_alloc(sizeof *made + room);
-    api_pack *pack = api_pack_new(coding, &plain);
-    bool ok = made != NULL && pack != NULL && api_pack_begin(pack);
+    api_compressor *compressor = api_compressor_new(coding, &plain);
+    bool ok = made != NULL && compressor != NULL && api_compressor_begin(compressor);
     int64_t got = ok ? 1 : 0;
     for (size_t at = 0; ok && got > 0; at += (size_t)got) {
-        got = api_pack_read(pack, made->bytes + at, room - at);
+        got = api_compressor_read(compressor, made->bytes + at, room - at);
         made->length = at;
         ok = got >= 0;
     }
-    api_pack_free(pack);
+    api_compressor_free(compressor);
     form *fitted = ok ? he_mem_resize(made, sizeof *made + made->length) : NULL;
     if (fitted == NULL) {
         he_mem_free(made);

@@ -6,7 +6,7 @@
 #ifndef HE_API_HEADER_KEPT_H
 #define HE_API_HEADER_KEPT_H
 
-#include "api/header/coding.h"
+#include "api/header/content_coding.h"
 
 #include <stddef.h>
 

@@ -231,15 +231,15 @@ void api_out_id(api_out *out, uint32_t id)
 /* The output reserves space once for this many ids, and the longest text of an id. */
 enum { IDS_AT_ONCE = 256, ID_TEXT = 11 };
 
-/* Returns false if writing must stop: memory is out or the watch cancelled it. In both cases the
+/* Returns false if writing must stop: memory is out or the work was cancelled. In both cases the
  * text is marked as failed, because the caller drops the text of a cancelled request anyway. */
 static bool goes_on(api_out *out)
 {
     he_error err = {0};
-    /* The watch is asked only once for many parts, because asking costs as much as writing a short
-     * list, and each operation may write one. */
-    bool looks = ++out->parts % (HE_WATCH_STRIDE / IDS_AT_ONCE) == 0;
-    if (looks && he_watch_step(out->watch, 0, 1, &err) != HE_OK) {
+    /* Progress is reported only once for many parts, because a report costs as much as writing a
+     * short list, and each operation may write one. */
+    bool looks = ++out->parts % (HE_PROGRESS_STRIDE / IDS_AT_ONCE) == 0;
+    if (looks && he_progress_step(out->progress, 0, 1, &err) != HE_OK) {
         out->text->failed = true;
     }
     return !out->text->failed;

@@ -25,9 +25,9 @@ typedef struct api_out {
     uint64_t objects; /* bit d is set: level d is an object */
     uint64_t filled;  /* bit d is set: level d has a value already */
     unsigned depth;
-    bool keyed;             /* a key was written and its value is missing */
-    struct he_watch *watch; /* polled in long lists, may end them; NULL: no polling */
-    unsigned parts;         /* parts of id lists written since the watch was set */
+    bool keyed;                   /* a key was written and its value is missing */
+    struct he_progress *progress; /* polled in long lists, may end them; NULL: no polling */
+    unsigned parts;               /* parts of id lists written since `progress` was set */
 } api_out;
 
 void api_out_init(api_out *out, api_text *text);

@@ -79,23 +79,23 @@ static bool choose(api_exchange *x, const he_format **format)
 enum { MOST_WARNINGS = 1000, MORE_WARNINGS = 40 };
 
 /* Lists what the file cannot represent, so that the client does not lose it unawares. */
-static void answer_losses(api_exchange *x, const he_notes *notes)
+static void answer_losses(api_exchange *x, const he_warnings *warnings)
 {
     char list[MOST_WARNINGS] = "", text[HE_ERROR_TEXT], more[MORE_WARNINGS] = "";
     size_t length = 0, said = 0;
-    for (; said < notes->count; said++) {
-        size_t size = he_note_text(&notes->items[said], text, sizeof text);
+    for (; said < warnings->count; said++) {
+        size_t size = he_warning_text(&warnings->items[said], text, sizeof text);
         if (length + sizeof "; " + size + sizeof more > sizeof list) {
             break;
         }
         length += (size_t)snprintf(list + length, sizeof list - length, "%s%s",
                                    said > 0 ? "; " : "", text);
     }
-    uint64_t left = notes->count - said + notes->more;
+    uint64_t left = warnings->count - said + warnings->more;
     if (left > 0) {
         snprintf(more, sizeof more, "; and %llu more", (unsigned long long)left);
     }
-    if (notes->count > 0) {
+    if (warnings->count > 0) {
         api_answer_header_format(x, "Export-Warnings", "%s%s", list, more);
     }
 }
@@ -135,13 +135,14 @@ static bool begin(api_exchange *x, const choice *chosen, content *c)
         c->document = api_document_out_new(x->content, x->info.name);
         return c->document != NULL || api_fail_memory(x);
     }
-    he_watch_span(&x->watch, 0.5); /* in a job, the copy is about half of the time */
+    he_progress_span(&x->progress, 0.5); /* in a job, the copy is about half of the time */
     bool long_faces = format->writing != NULL && format->writing->cuts;
-    if ((long_faces && he_long_faces_keep(x->content, &x->watch, &err) != HE_OK) ||
-        he_writer_new(format, x->content, chosen->encoding, &x->watch, &c->writer, &err) != HE_OK) {
+    if ((long_faces && he_long_faces_keep(x->content, &x->progress, &err) != HE_OK) ||
+        he_writer_new(format, x->content, chosen->encoding, &x->progress, &c->writer, &err) !=
+            HE_OK) {
         return api_fail_core(x, &err);
     }
-    answer_losses(x, he_writer_notes(c->writer));
+    answer_losses(x, he_writer_warnings(c->writer));
     return true;
 }
 

@@ -36,7 +36,7 @@ static void free_geometry(void *stream)
 
 static void free_slots(void *value)
 {
-    he_slots_free(value);
+    he_draw_slots_free(value);
 }
 
 static bool is_working(const api_exchange *x)
@@ -49,7 +49,7 @@ static bool is_working(const api_exchange *x)
 /* Brings the slots up to date. On a worker it returns HE_LIMIT if that takes long, and another
  * thread does it. There it may take a while, but less than making the slots again, which visits all
  * rows. */
-static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_mesh *mesh,
+static he_status bring_forward(const api_exchange *x, he_draw_slots *slots, const he_mesh *mesh,
                                he_error *err)
 {
     uint64_t most = API_COSTLY_ELEMENTS;
@@ -69,7 +69,7 @@ static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_
         }
     }
     if (status == HE_OK && slots->revision != x->info.revision) {
-        status = he_slots_advance(slots, mesh, &touched, x->info.revision, most, err);
+        status = he_draw_slots_advance(slots, mesh, &touched, x->info.revision, most, err);
     }
     he_touched_clear(&touched);
     return status == HE_LIMIT && is_working(x) ? HE_UNSUPPORTED : status;
@@ -77,7 +77,7 @@ static he_status bring_forward(const api_exchange *x, he_slots *slots, const he_
 
 enum { REPRESENTATION = 64 };
 
-static void name_representation(const he_slots *slots, uint64_t base, char out[REPRESENTATION])
+static void name_representation(const he_draw_slots *slots, uint64_t base, char out[REPRESENTATION])
 {
     int used = snprintf(out, REPRESENTATION, "geometry-%" PRIx64, slots->layout);
     if (base != 0) {
@@ -85,7 +85,7 @@ static void name_representation(const he_slots *slots, uint64_t base, char out[R
     }
 }
 
-static bool is_not_modified(api_exchange *x, const he_slots *slots, uint64_t base)
+static bool is_not_modified(api_exchange *x, const he_draw_slots *slots, uint64_t base)
 {
     char representation[REPRESENTATION];
     name_representation(slots, base, representation);
@@ -98,7 +98,7 @@ static geometry_step fail(api_exchange *x, const he_error *err)
     return ANSWERED;
 }
 
-static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *slots)
+static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_draw_slots *slots)
 {
     he_error err = {0};
     if (is_not_modified(g->x, slots, 0)) {
@@ -111,7 +111,7 @@ static geometry_step take_all(geometry *g, const he_mesh *mesh, const he_slots *
 }
 
 /* Fills g->rows from slots that are up to date with the present revision. */
-static geometry_step take(geometry *g, const he_mesh *mesh, const he_slots *slots)
+static geometry_step take(geometry *g, const he_mesh *mesh, const he_draw_slots *slots)
 {
     api_exchange *x = g->x;
     uint64_t since = api_param_u64(x, "since", 0), layout = api_param_u64(x, "layout", 0);
@@ -153,7 +153,7 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
         } else if (status == HE_LIMIT) {
             outcome = LATER;
         } else if (status == HE_UNSUPPORTED) {
-            he_slots_free(kept->value);
+            he_draw_slots_free(kept->value);
             kept->value = NULL;
         } else {
             outcome = fail(x, &err);
@@ -165,11 +165,11 @@ static geometry_step take_kept(geometry *g, const he_mesh *mesh)
 
 /* Keeps new slots. If two requests made slots at the same time, the second one uses those of the
  * first; if these are of another revision by now, it uses its own without keeping them. */
-static geometry_step keep_or_take(geometry *g, he_slots *slots)
+static geometry_step keep_or_take(geometry *g, he_draw_slots *slots)
 {
     api_exchange *x = g->x;
     st_derived *kept = st_derived_begin(x->mesh, ST_DERIVED_SLOTS);
-    const he_slots *first = kept->value;
+    const he_draw_slots *first = kept->value;
     bool fits = first != NULL && first->revision == x->info.revision;
     geometry_step outcome = take_all(g, x->content, fits ? first : slots);
     bool keeps = first == NULL;
@@ -178,7 +178,7 @@ static geometry_step keep_or_take(geometry *g, he_slots *slots)
     }
     st_derived_end(x->mesh, ST_DERIVED_SLOTS);
     if (!keeps) {
-        he_slots_free(slots);
+        he_draw_slots_free(slots);
     }
     return outcome;
 }
@@ -195,7 +195,7 @@ static void answer_stream(api_exchange *x, geometry *g)
 {
     he_error err = {0};
     const he_mesh *mesh = x->content;
-    if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->watch, &err) != HE_OK) ||
+    if ((g->rows.base == 0 && he_long_faces_keep(mesh, &x->progress, &err) != HE_OK) ||
         api_rows_draw(&g->rows, mesh, UINT64_MAX, &err) != HE_OK) {
         free_geometry(g);
         api_fail_core(x, &err);
@@ -235,10 +235,10 @@ static geometry_step make_slots(geometry *g)
 {
     api_exchange *x = g->x;
     he_error err = {0};
-    he_slots *slots = NULL;
+    he_draw_slots *slots = NULL;
     /* The number of the layout has 53 bits, so that JSON readers represent it exactly. */
     uint64_t layout = st_random() >> 11 | 1;
-    if (he_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
+    if (he_draw_slots_new(x->content, layout, x->info.revision, &slots, &err) != HE_OK) {
         return fail(x, &err);
     }
     return keep_or_take(g, slots);
@@ -273,7 +273,7 @@ static bool name_kept(api_exchange *x)
     if (representation == NULL) {
         return api_fail_memory(x);
     }
-    const he_slots *slots = st_derived_begin(x->mesh, ST_DERIVED_SLOTS)->value;
+    const he_draw_slots *slots = st_derived_begin(x->mesh, ST_DERIVED_SLOTS)->value;
     if (slots != NULL && slots->revision == x->info.revision && since <= slots->revision) {
         name_representation(slots, layout == slots->layout ? since : 0, representation);
         x->reading.tag = representation;

@@ -12,13 +12,13 @@ void api_rows_clear(api_rows *r)
     he_ids_clear(&r->vertex_ids);
     he_ids_clear(&r->slot_ids);
     he_mem_free(r->owner);
-    he_drawing_clear(&r->drawing);
+    he_draw_arrays_clear(&r->drawing);
     *r = (api_rows){0};
 }
 
 /* --- choosing rows --- */
 
-static he_status take(api_rows *r, const he_slots *slots, uint64_t since, size_t triangles,
+static he_status take(api_rows *r, const he_draw_slots *slots, uint64_t since, size_t triangles,
                       he_error *err)
 {
     r->owner = he_mem_array(NULL, triangles + 1, sizeof *r->owner);
@@ -34,7 +34,7 @@ static he_status take(api_rows *r, const he_slots *slots, uint64_t since, size_t
     return HE_OK;
 }
 
-he_status api_rows_take_all(api_rows *r, const he_slots *slots, he_error *err)
+he_status api_rows_take_all(api_rows *r, const he_draw_slots *slots, he_error *err)
 {
     he_status status = take(r, slots, 0, slots->count, err);
     if (status == HE_OK && slots->count > 0) {
@@ -43,10 +43,10 @@ he_status api_rows_take_all(api_rows *r, const he_slots *slots, he_error *err)
     return status;
 }
 
-he_status api_rows_take_changes(api_rows *r, const he_slots *slots, uint64_t since, uint64_t most,
-                                he_error *err)
+he_status api_rows_take_changes(api_rows *r, const he_draw_slots *slots, uint64_t since,
+                                uint64_t most, he_error *err)
 {
-    he_status status = he_slots_changed(slots, since, most, &r->vertex_ids, &r->slot_ids, err);
+    he_status status = he_draw_slots_changed(slots, since, most, &r->vertex_ids, &r->slot_ids, err);
     if (status == HE_OK) {
         status = take(r, slots, since, r->slot_ids.count, err);
     }
@@ -81,12 +81,12 @@ uint64_t api_rows_count(const api_rows *r)
 he_status api_rows_draw(api_rows *r, const he_mesh *mesh, uint64_t most, he_error *err)
 {
     if (r->base == 0) {
-        return he_drawing_init(&r->drawing, mesh, &r->frame, err);
+        return he_draw_arrays_init(&r->drawing, mesh, &r->frame, err);
     }
     he_ids faces = {0};
     he_status status = he_ids_reserve(&faces, r->slot_ids.count, err);
     for (size_t i = 0; i < r->slot_ids.count && status == HE_OK; i++) {
-        if ((r->owner[i] & HE_SLOT_DEAD) == 0) {
+        if ((r->owner[i] & HE_DRAW_SLOT_DEAD) == 0) {
             faces.ids[faces.count++] = r->owner[i];
         }
     }
@@ -94,8 +94,8 @@ he_status api_rows_draw(api_rows *r, const he_mesh *mesh, uint64_t most, he_erro
         status = he_ids_sort(&faces, err);
     }
     if (status == HE_OK) {
-        status =
-            he_drawing_init_faces(&r->drawing, mesh, &r->frame, faces.ids, faces.count, most, err);
+        status = he_draw_arrays_init_faces(&r->drawing, mesh, &r->frame, faces.ids, faces.count,
+                                           most, err);
     }
     he_ids_clear(&faces);
     return status;
@@ -179,7 +179,7 @@ static bool put_vertex(api_rows *r)
         return false;
     }
     float row[HE_DRAWN_ROW];
-    he_drawing_vertex(&r->drawing, r->base == 0 ? r->next : r->vertex_ids.ids[r->next], row);
+    he_draw_arrays_vertex(&r->drawing, r->base == 0 ? r->next : r->vertex_ids.ids[r->next], row);
     r->next++;
     for (unsigned i = 0; i < HE_DRAWN_ROW; i++) {
         uint32_t bits;
@@ -197,11 +197,11 @@ static bool put_triangle(api_rows *r)
         return false;
     }
     uint32_t row[HE_DRAWN_ROW] = {0}, face = r->owner[r->next++];
-    if ((face & HE_SLOT_DEAD) == 0) {
+    if ((face & HE_DRAW_SLOT_DEAD) == 0) {
         if (r->walk.left == 0) {
-            he_drawing_begin(&r->drawing, face, &r->walk);
+            he_draw_arrays_begin(&r->drawing, face, &r->walk);
         }
-        he_drawing_next(&r->drawing, &r->walk, row);
+        he_draw_arrays_next(&r->drawing, &r->walk, row);
     }
     for (unsigned i = 0; i < HE_DRAWN_ROW; i++) {
         put_u32(r, row[i]);

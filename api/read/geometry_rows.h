@@ -18,7 +18,7 @@
  *     else        u32 each: the row numbers, ascending, and zeros up to a multiple of 16 bytes;
  *                 then the rows, vertices f32 x 4, triangles u32 x 4
  *
- * See draw/drawing.h for the rows; slots without a face are four zeros. Each list begins at a
+ * See draw/draw_arrays.h for the rows; slots without a face are four zeros. Each list begins at a
  * multiple of 16. Within a layout the numbers of rows never decrease, and new rows that are not
  * listed are zeros.
  *
@@ -30,7 +30,7 @@
 #ifndef HE_API_READ_GEOMETRY_ROWS_H
 #define HE_API_READ_GEOMETRY_ROWS_H
 
-#include "draw/slots.h"
+#include "draw/draw_slots.h"
 #include "store/store.h"
 
 enum { API_ROWS_AT_ONCE = 1024, API_ROW_BYTES = 16 };
@@ -41,9 +41,9 @@ typedef struct api_rows {
     he_frame frame;
     uint32_t vertices, triangles; /* numbers of rows at the revision */
     he_ids vertex_ids, slot_ids;  /* the rows to send, if base is not 0 */
-    uint32_t *owner;              /* the owner of each triangle to send: see slots.h */
-    he_drawing drawing;
-    he_drawing_walk walk;
+    uint32_t *owner;              /* the owner of each triangle to send: see draw_slots.h */
+    he_draw_arrays drawing;
+    he_draw_arrays_walk walk;
     int part;
     uint32_t next;     /* next row of the part */
     size_t begin, end; /* the unread bytes in the buffer */
@@ -55,9 +55,9 @@ typedef struct api_rows {
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_UNSUPPORTED if only all rows can answer the request.
  * Returns HE_LIMIT if more than `most` changes would have to be visited. */
-HE_NODISCARD he_status api_rows_take_all(api_rows *rows, const he_slots *slots, he_error *err);
-HE_NODISCARD he_status api_rows_take_changes(api_rows *rows, const he_slots *slots, uint64_t since,
-                                             uint64_t most, he_error *err);
+HE_NODISCARD he_status api_rows_take_all(api_rows *rows, const he_draw_slots *slots, he_error *err);
+HE_NODISCARD he_status api_rows_take_changes(api_rows *rows, const he_draw_slots *slots,
+                                             uint64_t since, uint64_t most, he_error *err);
 /* Returns the number of rows of the answer. */
 uint64_t api_rows_count(const api_rows *rows);
 /* Prepares to read the rows from a mesh at their revision, which must not change until the last row

@@ -1,7 +1,7 @@
 /* history.c - GET .../edits: what each revision changed. */
 #include "api/request/handlers.h"
 
-#include "api/event/changes.h"
+#include "api/event/change_json.h"
 #include "api/read/records.h"
 
 #include <string.h>

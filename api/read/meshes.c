@@ -282,16 +282,16 @@ static bool make_copy(api_exchange *x, he_mesh **out, api_summary *summary)
 {
     he_mesh *fresh = NULL;
     he_error err = {0};
-    he_watch_span(&x->watch, COPY_SHARE);
-    if (he_mesh_copy_watched(x->content, &x->watch, &fresh, &err) != HE_OK) {
+    he_progress_span(&x->progress, COPY_SHARE);
+    if (he_mesh_copy_with_progress(x->content, &x->progress, &fresh, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
-    he_watch_span(&x->watch, 1);
+    he_progress_span(&x->progress, 1);
     if (!api_summary_find(x, fresh, summary)) {
         he_mesh_free(fresh);
         return false;
     }
-    he_mesh_watch(fresh, NULL);
+    he_mesh_set_progress(fresh, NULL);
     *out = fresh;
     return true;
 }

@@ -57,7 +57,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     he_error err = {0};
     he_box box = {0};
     const he_decimate_options options = options_of(x);
-    if (he_progressive_new(mesh, &options, &x->watch, &p->mesh, &err) != HE_OK) {
+    if (he_progressive_new(mesh, &options, &x->progress, &p->mesh, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
     if (he_mesh_box(mesh, &box)) {
@@ -70,7 +70,7 @@ static bool make(api_exchange *x, const he_mesh *mesh, api_progressive *p)
     uint64_t most = api_param_u64(x, "splits", HE_MAX_ROWS);
     p->revision = x->info.revision;
     p->wanted = p->mesh.count < most ? p->mesh.count : (size_t)most;
-    return api_progressive_write(p, &x->watch, &err) == HE_OK || api_fail_core(x, &err);
+    return api_progressive_write(p, &x->progress, &err) == HE_OK || api_fail_core(x, &err);
 }
 
 /* Returns false if the mesh has other faces than triangles, as far as its counts show that. */

@@ -107,7 +107,7 @@ static void fit(he_progressive *mesh)
     }
 }
 
-he_status api_progressive_write(api_progressive *p, he_watch *watch, he_error *err)
+he_status api_progressive_write(api_progressive *p, he_progress *progress, he_error *err)
 {
     static const he_kind kinds[] = {HE_VERTEX, HE_EDGE, HE_FACE};
     const he_mesh *base = p->mesh.base;
@@ -123,7 +123,7 @@ he_status api_progressive_write(api_progressive *p, he_watch *watch, he_error *e
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         for (uint32_t id = he_mesh_next_live(base, kinds[k], 0); id != HE_NONE;
              id = he_mesh_next_live(base, kinds[k], (uint64_t)id + 1)) {
-            he_status status = he_watch_at(watch, written++, p->base_bytes / ROW, err);
+            he_status status = he_progress_at(progress, written++, p->base_bytes / ROW, err);
             if (status != HE_OK) {
                 return status;
             }

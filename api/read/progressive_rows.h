@@ -55,9 +55,10 @@ typedef struct api_progressive {
 void api_progressive_clear(api_progressive *p);
 
 /* Writes the base, and frees its mesh and the splits that are not wanted. All members down to
- * `high` must be set. `watch` may be NULL.
+ * `high` must be set. `progress` may be NULL.
  * Returns HE_NO_MEMORY or HE_CANCELLED. */
-HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_watch *watch, he_error *err);
+HE_NODISCARD he_status api_progressive_write(api_progressive *p, he_progress *progress,
+                                             he_error *err);
 /* Returns the size of the answer in bytes; it must be called after api_progressive_write. */
 int64_t api_progressive_bytes(const api_progressive *p);
 /* Reads the next bytes of the answer; returns 0 at its end. */

@@ -1,7 +1,7 @@
 #include "api/request/admit.h"
 
 #include "api/json/known_names.h"
-#include "api/request/coded.h"
+#include "api/request/content_encoding.h"
 #include "api/request/gate.h"
 #include "api/request/rating.h"
 #include "format/text/number.h"
@@ -306,7 +306,7 @@ bool api_refuse_size(api_exchange *x)
         return api_fail(x, API_UNEXPECTED_BODY, "%s must not have a body here", x->request.method);
     }
     return api_fail(x, API_BODY_TOO_LARGE, "the body %s %llu bytes",
-                    x->unpack == NULL ? "exceeds" : "decompresses to more than",
+                    x->decompressor == NULL ? "exceeds" : "decompresses to more than",
                     (unsigned long long)api_body_cap(x));
 }
 
@@ -389,7 +389,8 @@ static bool check_body(api_exchange *x)
         return api_refuse_size(x);
     }
     /* A body of unknown length may turn out to be empty; it then counts as no body. */
-    return x->route->body_kind == API_BODY_NONE || (api_coded_body(x) && check_content_type(x));
+    return x->route->body_kind == API_BODY_NONE ||
+           (api_content_encoding_body(x) && check_content_type(x));
 }
 
 static bool check_accept(api_exchange *x)
@@ -411,5 +412,6 @@ static bool check_accept(api_exchange *x)
 
 bool api_admit(api_exchange *x)
 {
-    return find_route(x) && find_mesh(x) && check_body(x) && check_accept(x) && api_coded_accept(x);
+    return find_route(x) && find_mesh(x) && check_body(x) && check_accept(x) &&
+           api_content_encoding_accept(x);
 }

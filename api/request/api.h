@@ -30,7 +30,7 @@
 #include "api/live.h"
 #include "api/metric/metrics.h"
 #include "api/token/token_set.h"
-#include "base/exec.h"
+#include "base/parallel.h"
 #include "system/thread_pool.h"
 
 #include <stdbool.h>
@@ -127,9 +127,9 @@ typedef struct api_options {
     void *backup_context;
     api_job_table *jobs; /* NULL: nothing becomes a job, and the routes of jobs do not exist */
     bool plain_answers;  /* never compress answers */
-    const he_exec *exec; /* threads for parallel parts of large work; NULL: none */
-    st_pool *pool;       /* runs backfills from the history; NULL: listeners fetch the mesh again */
-    st_pool *makers;     /* threads that compute pieces of answers, named in metrics; NULL: none */
+    const he_parallel *parallel; /* threads for parallel parts of large work; NULL: none */
+    st_pool *pool;   /* runs backfills from the history; NULL: listeners fetch the mesh again */
+    st_pool *makers; /* threads that compute pieces of answers, named in metrics; NULL: none */
     /* Returns how many lines of the log were dropped; NULL: not reported. */
     uint64_t (*log_dropped)(const void *log);
     const void *log;
@@ -162,15 +162,16 @@ api_step api_work(api_exchange *exchange);
 /* Turns the exchange into a job. Returns a new exchange to answer the client with, 202 or 503, and
  * takes `exchange`. Returns NULL, and takes nothing, when memory is out. */
 api_exchange *api_detach(api_exchange *exchange);
-/* Sets a callback for progress, before api_work; the working thread calls `tell` as watch.h
+/* Sets a callback for progress, before api_work; the working thread calls `tell` as progress.h
  * says. */
-void api_watch(api_exchange *exchange, bool (*tell)(void *context, const char *phase, double done),
-               void *context);
-/* Sets a callback for progress, before api_end: `tell` is called as watch.h says while api_end
+void api_set_progress(api_exchange *exchange,
+                      bool (*tell)(void *context, const char *phase, double done), void *context);
+/* Sets a callback for progress, before api_end: `tell` is called as progress.h says while api_end
  * works on a read. If `tell` stops a read, the read is started again from its beginning: api_end
  * returns API_WORK. */
-void api_watch_worker(api_exchange *exchange,
-                      bool (*tell)(void *context, const char *phase, double done), void *context);
+void api_set_worker_progress(api_exchange *exchange,
+                             bool (*tell)(void *context, const char *phase, double done),
+                             void *context);
 /* Sets the problem that the client gets instead of HE_CANCELLED. The callback `tell` calls it
  * before it returns false. */
 void api_give_up(api_exchange *exchange, int code, const char *text);

@@ -24,12 +24,12 @@
 #define HE_API_REQUEST_EXCHANGE_H
 
 #include "api/event/event_backfill.h"
+#include "api/header/compressor.h"
 #include "api/header/cursor.h"
+#include "api/header/decompressor.h"
 #include "api/header/etag.h"
 #include "api/header/media.h"
-#include "api/header/pack.h"
 #include "api/header/prefer.h"
-#include "api/header/unpack.h"
 #include "api/json/json_in.h"
 #include "api/json/json_out.h"
 #include "api/limits.h"
@@ -51,7 +51,7 @@ struct api_service {
     api_rates *token_rates, *address_rates; /* buckets; NULL: no client has a limit */
     api_limited limited;
     api_metrics *metrics;
-    api_unpack_room unpacking; /* memory of the decoders of request bodies */
+    api_decompressor_room decompressing; /* memory of the decoders of request bodies */
 };
 
 /* How far an exchange is. It only moves forward: on a worker, on a thread that may block, in a job,
@@ -99,9 +99,9 @@ struct api_exchange {
 
     /* --- the request's body --- */
     api_text body;
-    uint64_t arrived;   /* bytes received, compressed */
-    uint64_t received;  /* bytes after decompression */
-    api_unpack *unpack; /* decoder; NULL: the body is uncompressed, or has ended */
+    uint64_t arrived;               /* bytes received, compressed */
+    uint64_t received;              /* bytes after decompression */
+    api_decompressor *decompressor; /* decoder; NULL: the body is uncompressed, or has ended */
     api_document document;
     bool has_root;
     api_in root;   /* root of a control document */
@@ -127,8 +127,8 @@ struct api_exchange {
     void (*deferred)(api_exchange *x);
     bool is_job;          /* `deferred` shall run as a job */
     double seconds;       /* estimated duration; 0: not estimated */
-    he_watch watch;       /* threads and callback for the work */
-    api_problem given_up; /* why the watch stopped the work; code HE_OK: no reason given */
+    he_progress progress; /* threads and callback for the work */
+    api_problem given_up; /* why the work was stopped; code HE_OK: no reason given */
 
     /* --- the answer --- */
     int published; /* see api_publish; 0: nothing was published */
@@ -143,10 +143,10 @@ struct api_exchange {
     void *stream;
     void (*free_stream)(void *stream);
     api_source live;
-    api_pack *pack; /* compresses the answer, or owns all of it; NULL: neither */
-    char *coded;    /* the whole compressed answer */
-    api_kept *kept; /* the answer's body, if it never changes; NULL: it is another */
-    api_blob blob;  /* the answer; freed with the exchange unless it is borrowed */
+    api_compressor *compressor; /* compresses the answer, or owns all of it; NULL: neither */
+    char *coded;                /* the whole compressed answer */
+    api_kept *kept;             /* the answer's body, if it never changes; NULL: it is another */
+    api_blob blob;              /* the answer; freed with the exchange unless it is borrowed */
     uint64_t blob_at;
 };
 

@@ -1,6 +1,6 @@
 #include "api/request/gather.h"
 
-/* The number of bytes that are read between two polls of the watch; an answer of known length is
+/* The number of bytes that are read between two reports of progress; an answer of known length is
  * read at once. */
 enum { PIECE = 256 * 1024 };
 
@@ -30,8 +30,8 @@ void api_gather(api_exchange *x)
     bool ended = false;
     uint64_t expected = a->length < 0 ? 0 : (uint64_t)a->length;
     api_text_empty(&x->text);
-    he_watch_span(&x->watch, 1);
-    if (he_watch_phase(&x->watch, "writing", 1, &err) != HE_OK) {
+    he_progress_span(&x->progress, 1);
+    if (he_progress_phase(&x->progress, "writing", 1, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
     }
@@ -41,7 +41,7 @@ void api_gather(api_exchange *x)
         return;
     }
     while (!ended && read_piece(x, &ended)) {
-        if (he_watch_step(&x->watch, x->text.length, expected, &err) != HE_OK) {
+        if (he_progress_step(&x->progress, x->text.length, expected, &err) != HE_OK) {
             api_fail_core(x, &err);
             return;
         }

@@ -88,8 +88,8 @@ void api_edits_post(api_exchange *x);
 void api_edits_list(api_exchange *x);
 bool api_undo_decode(api_exchange *x);
 bool api_redo_decode(api_exchange *x);
-bool api_steps_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
-void api_steps_post(api_exchange *x);
+bool api_undo_cost(api_exchange *x, const he_mesh *mesh, api_cost *out);
+void api_undo_post(api_exchange *x);
 void api_events_get(api_exchange *x);
 
 #endif

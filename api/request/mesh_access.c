@@ -190,7 +190,7 @@ void api_begin_elsewhere(api_exchange *x)
 {
     api_text_empty(&x->text);
     api_out_init(&x->out, &x->text);
-    x->out.watch = &x->watch;
+    x->out.progress = &x->progress;
     x->deferred = api_read;
 }
 

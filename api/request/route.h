@@ -79,10 +79,10 @@ enum {
     API_MAY_CREATE = 4, /* the mesh need not exist */
     API_OWN_ACCEPT = 8, /* the handler evaluates Accept (?format= comes first) */
     API_FIXED = 16,     /* not under /v1: independent of the API version */
-    API_KEYED = 32,     /* reads Idempotency-Key; the answer is kept with the mesh: keyed.h */
+    API_IDEMPOTENCY_KEY = 32, /* reads Idempotency-Key; kept with the mesh: idempotency.h */
     /* The handler reads Idempotency-Key for making a mesh; the answer is kept with the store, not
      * with a mesh. */
-    API_KEYED_NEW = 64,
+    API_IDEMPOTENCY_KEY_NEW = 64,
     API_LONG = 128,       /* may become a job: reads Prefer, may answer 202 */
     API_INTERRUPTS = 256, /* allowed during a long edit of the mesh */
     API_REHEARSED = 512,  /* takes `dry_run`: an answer may describe a state that does not exist */

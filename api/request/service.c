@@ -2,10 +2,10 @@
 
 #include "api/job/job_out.h"
 #include "api/request/admit.h"
-#include "api/request/coded.h"
+#include "api/request/content_encoding.h"
 #include "api/request/gate.h"
 #include "api/request/gather.h"
-#include "api/request/keyed.h"
+#include "api/request/idempotency.h"
 #include "api/request/mesh_access.h"
 #include "api/request/rating.h"
 
@@ -125,10 +125,10 @@ static void end_claim(api_exchange *x)
  * interruption. */
 static void end_given_up(api_exchange *x)
 {
-    if (x->watch.cancelled && x->problem.code != HE_OK) {
+    if (x->progress.cancelled && x->problem.code != HE_OK) {
         x->problem = x->given_up;
         if (x->problem.code == HE_OK) {
-            api_fail(x, HE_CANCELLED, "cancelled while %s", x->watch.phase);
+            api_fail(x, HE_CANCELLED, "cancelled while %s", x->progress.phase);
         }
     }
 }
@@ -208,16 +208,16 @@ static api_step finish(api_exchange *x)
         put_header(x, "RateLimit-Policy", x->rate_fields.policy);
         put_header(x, "RateLimit", x->rate_fields.left);
     }
-    if (api_coded_varies(x)) {
+    if (api_content_encoding_varies(x)) {
         put_header(x, "Vary", varies(x) ? "Accept, Accept-Encoding" : "Accept-Encoding");
     } else if (varies(x)) {
         put_header(x, "Vary", "Accept");
     }
-    api_keyed_settle(x); /* may add to what the answer waits for */
+    api_idempotency_settle(x); /* may add to what the answer waits for */
     x->answer.shown = shown(x);
     x->answer.changed = x->published != 0;
     if (x->phase != API_PHASE_JOB) {
-        api_coded_answer(x); /* kept answers (keys, jobs) are uncompressed */
+        api_content_encoding_answer(x); /* kept answers (keys, jobs) are uncompressed */
     }
     let_go(x);
     x->phase = API_PHASE_DONE;
@@ -270,19 +270,20 @@ static bool copy_headers(api_exchange *x)
     return true;
 }
 
-void api_watch(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
-               void *context)
-{
-    he_watch_init(&x->watch, tell, context);
-    x->watch.exec = x->service->options.exec;
-    x->out.watch = &x->watch;
-}
-
-void api_watch_worker(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
+void api_set_progress(api_exchange *x, bool (*tell)(void *context, const char *phase, double done),
                       void *context)
 {
+    he_progress_init(&x->progress, tell, context);
+    x->progress.parallel = x->service->options.parallel;
+    x->out.progress = &x->progress;
+}
+
+void api_set_worker_progress(api_exchange *x,
+                             bool (*tell)(void *context, const char *phase, double done),
+                             void *context)
+{
     if (x->route != NULL && !(x->route->flags & API_WRITES)) {
-        api_watch(x, tell, context);
+        api_set_progress(x, tell, context);
     }
 }
 
@@ -320,7 +321,7 @@ static api_exchange *exchange_new(api_service *service, const api_request *reque
     x->coding_in = API_IDENTITY;
     x->codings = (api_codings){.allowed = {[API_IDENTITY] = true}, .best = API_IDENTITY};
     api_out_init(&x->out, &x->text);
-    api_watch(x, NULL, NULL);
+    api_set_progress(x, NULL, NULL);
     if (!copy_request(x, request)) {
         api_arena_clear(&x->arena);
         he_mem_free(x);
@@ -363,7 +364,7 @@ static void run_job(void *self, const char *id, api_job_progress *progress, void
 {
     api_exchange *x = self;
     x->own_job = id;
-    api_watch(x, progress, context);
+    api_set_progress(x, progress, context);
     api_work(x);
     const api_answer *answer = api_answer_of(x);
     const char *location = header_of_answer(answer, "Location");
@@ -443,7 +444,7 @@ static bool take_body(void *context, const char *bytes, size_t length)
 {
     api_exchange *x = context;
     x->received += length;
-    api_keyed_body(x, bytes, length);
+    api_idempotency_body(x, bytes, length);
     if (x->received > api_body_cap(x)) {
         api_refuse_size(x);
     } else if (x->route->body_kind == API_BODY_UPLOAD) {
@@ -459,15 +460,16 @@ static bool take_body(void *context, const char *bytes, size_t length)
 
 static bool begin(api_exchange *x)
 {
-    if (!api_admit(x) || !api_keyed_begin(x)) {
+    if (!api_admit(x) || !api_idempotency_begin(x)) {
         return false;
     }
     x->reading = (api_reading){x->route->reads, x->route->cost, x->route->tag, x->route->run};
     x->prefer = api_prefer_read(x->request.headers[API_HEADER_PREFER]);
     x->body.maximum = (size_t)api_body_cap(x);
     if (x->coding_in != API_IDENTITY) {
-        x->unpack = api_unpack_new(x->coding_in, &x->service->unpacking, take_body, x, &x->problem);
-        if (x->unpack == NULL) {
+        x->decompressor = api_decompressor_new(x->coding_in, &x->service->decompressing, take_body,
+                                               x, &x->problem);
+        if (x->decompressor == NULL) {
             return false;
         }
     }
@@ -504,8 +506,8 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
     st_store_serve(x->store);
     if (x->arrived + length > api_body_cap(x)) {
         good = api_refuse_size(x);
-    } else if (x->unpack != NULL) {
-        good = api_unpack_feed(x->unpack, bytes, length, used, &x->problem);
+    } else if (x->decompressor != NULL) {
+        good = api_decompressor_feed(x->decompressor, bytes, length, used, &x->problem);
     } else {
         good = take_body(x, bytes, length);
     }
@@ -519,9 +521,9 @@ api_step api_body(api_exchange *x, const char *bytes, size_t length, size_t *use
 /* Ends the decompression of the body and frees the decoder, which may hold megabytes. */
 static bool end_coding(api_exchange *x)
 {
-    bool good = x->unpack == NULL || api_unpack_end(x->unpack, &x->problem);
-    api_unpack_free(x->unpack);
-    x->unpack = NULL;
+    bool good = x->decompressor == NULL || api_decompressor_end(x->decompressor, &x->problem);
+    api_decompressor_free(x->decompressor);
+    x->decompressor = NULL;
     return good;
 }
 
@@ -554,13 +556,13 @@ static void begin_anew(api_exchange *x)
     x->problem = (api_problem){0};
     api_text_empty(&x->text);
     api_out_init(&x->out, &x->text);
-    api_watch(x, NULL, NULL);
+    api_set_progress(x, NULL, NULL);
     x->deferred = api_read;
 }
 
 static api_step finish_or_go_on(api_exchange *x)
 {
-    if (x->phase == API_PHASE_BODY && x->watch.cancelled && x->problem.code != HE_OK) {
+    if (x->phase == API_PHASE_BODY && x->progress.cancelled && x->problem.code != HE_OK) {
         begin_anew(x);
     }
     if (x->deferred == NULL || x->answered || x->problem.code != HE_OK) {
@@ -597,7 +599,7 @@ static void parse_and_run(api_exchange *x)
  * handler with its mesh, if it has one. */
 static void go_on(api_exchange *x)
 {
-    if (!api_keyed_find(x)) {
+    if (!api_idempotency_find(x)) {
         return;
     }
     if (x->body.length > API_COSTLY_UPLOAD) {
@@ -643,7 +645,7 @@ static api_step work(api_exchange *x)
     he_error err = {0};
     x->deferred = NULL;
     /* Loading may have taken long, and the client may have disconnected. */
-    if (he_watch_step(&x->watch, 0, 1, &err) != HE_OK) {
+    if (he_progress_step(&x->progress, 0, 1, &err) != HE_OK) {
         api_fail_core(x, &err);
     } else {
         handler(x);
@@ -692,8 +694,8 @@ void api_free(api_exchange *x)
         x->free_stream(x->stream);
     }
     free_blob(x);
-    api_unpack_free(x->unpack);
-    api_pack_free(x->pack);
+    api_decompressor_free(x->decompressor);
+    api_compressor_free(x->compressor);
     he_mem_free(x->coded);
     api_text_clear(&x->text);
     end_claim(x);

@@ -5,7 +5,7 @@
 #include "api/request/gate.h"
 
 #include "api/document/attribute_path.h"
-#include "api/event/changes.h"
+#include "api/event/change_json.h"
 #include "api/json/attribute_value.h"
 #include "api/write/element_set.h"
 #include "edit/whole/attribute.h"
@@ -367,11 +367,11 @@ static void put_claimed(api_exchange *x)
     if (!api_write_claim(x, expected_of(x->state))) {
         return;
     }
-    if (st_write_copy(&x->write, &x->watch, &err) != HE_OK) {
+    if (st_write_copy(&x->write, &x->progress, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
     }
-    he_mesh_watch(x->write.content, NULL);
+    he_mesh_set_progress(x->write.content, NULL);
     put(x, x->state);
 }
 

@@ -72,13 +72,13 @@ static bool build(api_exchange *x, made *out)
     if (!api_upload_build(x, &out->mesh)) {
         return false;
     }
-    he_mesh_watch(out->mesh, &x->watch);
-    he_watch_span(&x->watch, 1);
+    he_mesh_set_progress(out->mesh, &x->progress);
+    he_progress_span(&x->progress, 1);
     if (!api_summary_find(x, out->mesh, &out->summary)) {
         he_mesh_free(out->mesh);
         return false;
     }
-    he_mesh_watch(out->mesh, NULL);
+    he_mesh_set_progress(out->mesh, NULL);
     return true;
 }
 

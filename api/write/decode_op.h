@@ -9,9 +9,9 @@
  * Instead of an id there may be a reference "$name.result" or "$name.result.N": the result, or the
  * N-th item of a list result, of an earlier operation that has "as":"name". In a list of ids, a
  * list result is inserted whole. Instead of a list of elements there may be a set,
- * {"selected":true}: see element_set.h. names.h resolves references. Decoding is cheap and done
- * twice: for all operations before the first one runs, when references are only checked, and again
- * for each operation just before it runs. */
+ * {"selected":true}: see element_set.h. result_names.h resolves references. Decoding is cheap and
+ * done twice: for all operations before the first one runs, when references are only checked, and
+ * again for each operation just before it runs. */
 #ifndef HE_API_WRITE_DECODE_OP_H
 #define HE_API_WRITE_DECODE_OP_H
 

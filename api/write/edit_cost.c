@@ -50,7 +50,7 @@ static uint64_t steps(const he_mesh *mesh, he_halfedge first, bool turn, uint64_
     he_halfedge h = first;
     uint64_t count = 0;
     do {
-        h = turn ? he_turn_ccw(mesh, h) : he_next(mesh, h);
+        h = turn ? he_swing_ccw(mesh, h) : he_next(mesh, h);
         count++;
     } while (h.i != first.i && count < most);
     return count;
@@ -102,7 +102,7 @@ static uint64_t about_faces_of(const he_mesh *mesh, he_vertex v, uint64_t most)
     }
     do {
         count += he_is_boundary_halfedge(mesh, h) ? 1 : steps(mesh, h, false, most);
-        h = he_turn_ccw(mesh, h);
+        h = he_swing_ccw(mesh, h);
     } while (h.i != first.i && count < most);
     return count;
 }
@@ -236,7 +236,7 @@ static uint64_t walk_about_faces(const he_mesh *mesh, he_vertex v, uint64_t most
     do {
         count += FACE_STEPS;
         count += he_is_boundary_halfedge(mesh, h) ? 0 : walk_about_corners(mesh, h, most, hubs);
-        h = he_turn_ccw(mesh, h);
+        h = he_swing_ccw(mesh, h);
     } while (h.i != first.i && count < most);
     return count;
 }

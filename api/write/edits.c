@@ -5,11 +5,11 @@
 #include "api/request/gate.h"
 #include "api/request/mesh_access.h"
 
-#include "api/event/changes.h"
+#include "api/event/change_json.h"
 #include "api/write/decode_op.h"
 #include "api/write/edit_cost.h"
-#include "api/write/names.h"
-#include "api/write/others.h"
+#include "api/write/named_meshes.h"
+#include "api/write/result_names.h"
 
 #include <string.h>
 
@@ -36,13 +36,13 @@ typedef struct edits {
     bool exceeded;      /* `most_work` would be exceeded */
     size_t most_rows;   /* rows of the delta; a list with more needs a claim */
     bool crowded;       /* `most_rows` was exceeded */
-    uint64_t paid;      /* polls of the watch that the current operation has paid for */
+    uint64_t paid;      /* reports of progress that the current operation has paid for */
     uint64_t look;      /* work charged for each further poll */
     bool unlimited;     /* this thread may do any amount of work */
-    he_watch told;      /* the original x->watch, to which the replacement forwards */
+    he_progress told;   /* the original x->progress, to which the replacement forwards */
     api_hubs hubs;
-    api_names names;
-    api_others others;
+    api_result_names names;
+    api_named_meshes named;
     api_arena scratch; /* arguments of the current operation */
     api_text results;  /* objects of `results`, comma-separated */
     api_out out;       /* writes `results` */
@@ -63,8 +63,8 @@ static const char *const beside_op[] = {"expected_revision", "dry_run", NULL};
 static void free_edits(void *state)
 {
     edits *e = state;
-    api_names_clear(&e->names);
-    api_others_clear(&e->others);
+    api_result_names_clear(&e->names);
+    api_named_meshes_clear(&e->named);
     api_edit_cost_clear(&e->cost);
     api_arena_clear(&e->scratch);
     api_item_clear(&e->op);
@@ -96,7 +96,7 @@ static bool decode(edits *e, const api_in *in, const he_mesh *mesh, api_call *ca
         .also = e->is_list ? NULL : beside_op,
         .references = e->is_list ? &e->names.references : NULL,
         .mesh = mesh,
-        .meshes = &e->others.meshes,
+        .meshes = &e->named.meshes,
     };
     api_arena_empty(&e->scratch);
     return api_decode_op(in, &scope, &e->scratch, call);
@@ -129,7 +129,7 @@ static bool check_ops(const api_exchange *x, edits *e)
     const api_in *op = &e->op.in;
     for (size_t i = 0; i < e->count; i++) {
         if (!api_item_read(&x->ops, i, &e->list, &e->op) || !decode(e, op, NULL, &call) ||
-            !api_names_add(&e->names, op, &call) || !note(e, op, &call)) {
+            !api_result_names_add(&e->names, op, &call) || !note(e, op, &call)) {
             return false;
         }
     }
@@ -201,7 +201,7 @@ static bool within_limits(const edits *e, const he_delta *delta, const api_in *i
     return true;
 }
 
-/* The number of times that even the smallest operation polls the watch. */
+/* The number of times that even the smallest operation reports progress. */
 enum { PHASES = 24 };
 
 /* Charges the cost of one operation. Returns false if the list must continue on another thread. */
@@ -221,8 +221,8 @@ static bool charge(edits *e, const he_mesh *mesh, const he_delta *delta, const a
     uint64_t work = (whole ? grown * he_op_pace(call->op) : elements) +
                     listed * (whole ? 1 : he_op_pace(call->op)) + steps / API_STEPS_OF_WORK;
     e->work += work;
-    e->paid = PHASES + 2 * (grown + listed) / HE_WATCH_STRIDE;
-    e->look = (uint64_t)HE_WATCH_STRIDE * he_op_pace(call->op);
+    e->paid = PHASES + 2 * (grown + listed) / HE_PROGRESS_STRIDE;
+    e->look = (uint64_t)HE_PROGRESS_STRIDE * he_op_pace(call->op);
     e->exceeded = e->work + delta->count / API_ROWS_OF_WORK > e->most_work;
     e->crowded = delta->count > e->most_rows;
     return !e->exceeded && !e->crowded;
@@ -287,7 +287,7 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     bool good = within_attributes(before, mesh, in);
     if (good) {
         api_write_results(&e->out, call.op, &results);
-        api_names_bind(&e->names, &call, &results);
+        api_result_names_bind(&e->names, &call, &results);
     }
     he_results_clear(&results);
     if (good) {
@@ -297,26 +297,26 @@ static bool run_op(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *del
     return good;
 }
 
-/* The list polls the watch once for this many operations, or for a certain amount of work, because
- * a poll takes a system call. */
+/* The list reports progress once for this many operations, or for a certain amount of work, because
+ * a report takes a system call. */
 enum { OPS_PER_LOOK = 256 };
 
 static bool run_ops(api_exchange *x, edits *e, he_mesh *mesh, const he_delta *delta)
 {
     if (!e->is_list) {
-        he_watch_span(&x->watch, OPS_SHARE);
+        he_progress_span(&x->progress, OPS_SHARE);
         return run_op(x, e, mesh, delta, &x->root);
     }
     uint64_t next = 0;
     for (size_t i = 0; i < e->count; i++) {
         he_error err = {0};
-        he_watch_span(&x->watch,
-                      COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) / (double)e->count);
+        he_progress_span(&x->progress, COPY_SHARE + (OPS_SHARE - COPY_SHARE) * (double)(i + 1) /
+                                                        (double)e->count);
         uint64_t work = e->work + delta->count / API_ROWS_OF_WORK;
         if (i % OPS_PER_LOOK == 0 || work >= next) {
-            next = work + HE_WATCH_STRIDE;
+            next = work + HE_PROGRESS_STRIDE;
             e->paid = PHASES;
-            if (he_watch_phase(&x->watch, "editing", 0, &err) != HE_OK) {
+            if (he_progress_phase(&x->progress, "editing", 0, &err) != HE_OK) {
                 return api_fail_core(x, &err);
             }
         }
@@ -377,7 +377,7 @@ static bool edit(api_exchange *x, edits *e)
     }
     /* The rest of the work is limited by the rows of the delta, which were charged already. */
     e->paid = UINT64_MAX;
-    he_watch_span(&x->watch, CHANGES_SHARE);
+    he_progress_span(&x->progress, CHANGES_SHARE);
     if (st_write_changes(&x->write, &err) != HE_OK) {
         return api_fail_core(x, &err);
     }
@@ -388,8 +388,8 @@ static bool edit(api_exchange *x, edits *e)
 
 /* --- work that turns out to be long --- */
 
-/* The work of some operations is not known in advance: flips spread. An operation polls its watch
- * every HE_WATCH_STRIDE elements, and polls beyond those it has paid for are charged here. */
+/* The work of some operations is not known in advance: flips spread. An operation reports progress
+ * every HE_PROGRESS_STRIDE elements, and reports beyond those it has paid for are charged here. */
 static bool tell_and_charge(void *context, const char *phase, double done)
 {
     edits *e = context;
@@ -410,16 +410,16 @@ static void limit_work(api_exchange *x, edits *e)
                                                 : API_POOL_EDITS;
     e->most_rows = x->write.claimed ? SIZE_MAX : API_LOCKED_ROWS;
     e->paid = PHASES;
-    e->told = x->watch;
-    x->watch.tell = tell_and_charge;
-    x->watch.context = e;
+    e->told = x->progress;
+    x->progress.tell = tell_and_charge;
+    x->progress.context = e;
 }
 
 static void unlimit_work(api_exchange *x, const edits *e)
 {
-    x->watch.tell = e->told.tell;
-    x->watch.context = e->told.context;
-    x->watch.cancelled = x->watch.cancelled && !e->exceeded;
+    x->progress.tell = e->told.tell;
+    x->progress.context = e->told.context;
+    x->progress.cancelled = x->progress.cancelled && !e->exceeded;
 }
 
 /* Resets the state of a list that was rolled back, so that it can start again. */
@@ -430,7 +430,7 @@ static void start_over(edits *e)
     e->hubs = (api_hubs){.slots = {{0}}};
     memset(e->ran, 0, sizeof e->ran);
     e->at = API_OPERATIONS;
-    api_names_unbind(&e->names);
+    api_result_names_unbind(&e->names);
     api_text_empty(&e->results);
     api_out_init(&e->out, &e->results);
 }
@@ -501,7 +501,7 @@ static void end_edit(api_exchange *x, edits *e, bool good)
     } else {
         st_write_discard_copy(&x->write);
     }
-    api_others_release(&e->others);
+    api_named_meshes_release(&e->named);
     if ((e->exceeded || e->crowded) && !good) {
         go_on_elsewhere(x, e);
         return;
@@ -519,19 +519,19 @@ static void run_claimed(api_exchange *x)
     /* In a job, or if the client prefers to wait, there is no other thread to move the work to, so
      * it is not limited. */
     e->unlimited = e->unlimited || x->phase == API_PHASE_JOB || x->prefer.wait >= 0;
-    he_watch_span(&x->watch, COPY_SHARE);
-    if (!api_others_take(x, &e->others)) {
+    he_progress_span(&x->progress, COPY_SHARE);
+    if (!api_named_meshes_take(x, &e->named)) {
         return;
     }
-    if (st_write_copy(&x->write, &x->watch, &err) != HE_OK) {
+    if (st_write_copy(&x->write, &x->progress, &err) != HE_OK) {
         api_fail_core(x, &err);
         return;
     }
-    st_write_from(&x->write, e->others.shown, e->others.count);
+    st_write_from(&x->write, e->named.shown, e->named.count);
     limit_work(x, e);
     bool good = edit(x, e);
     unlimit_work(x, e);
-    he_mesh_watch(x->write.content, NULL);
+    he_mesh_set_progress(x->write.content, NULL);
     end_edit(x, e, good);
 }
 
@@ -558,15 +558,15 @@ static void go_on_elsewhere(api_exchange *x, edits *e)
 static void run(api_exchange *x)
 {
     edits *e = x->state;
-    if (!api_others_take(x, &e->others) ||
+    if (!api_named_meshes_take(x, &e->named) ||
         !api_write_begin(x, e->has_expected ? &e->expected : NULL)) {
         return;
     }
-    st_write_from(&x->write, e->others.shown, e->others.count);
+    st_write_from(&x->write, e->named.shown, e->named.count);
     limit_work(x, e);
-    he_mesh_watch(x->write.content, &x->watch);
+    he_mesh_set_progress(x->write.content, &x->progress);
     bool good = edit(x, e);
-    he_mesh_watch(x->write.content, NULL);
+    he_mesh_set_progress(x->write.content, NULL);
     unlimit_work(x, e);
     end_edit(x, e, good);
 }
@@ -603,8 +603,8 @@ void api_edits_post(api_exchange *x)
 static void load_others(api_exchange *x)
 {
     edits *e = x->state;
-    if (api_others_load(x, &e->others)) {
-        e->elements_beside = api_others_elements(&e->others);
+    if (api_named_meshes_load(x, &e->named)) {
+        e->elements_beside = api_named_meshes_elements(&e->named);
         api_read(x);
     }
 }
@@ -619,16 +619,16 @@ bool api_edits_decode(api_exchange *x)
     x->free_state = free_edits;
     e->growth = 1;
     e->at = API_OPERATIONS;
-    api_names_init(&e->names, st_secret(x->store));
-    api_others_init(&e->others, x);
+    api_result_names_init(&e->names, st_secret(x->store));
+    api_named_meshes_init(&e->named, x);
     api_out_init(&e->out, &e->results);
     if (!read_request(x, e)) {
         return false;
     }
-    if (e->others.cold > 0) {
+    if (e->named.cold > 0) {
         x->deferred = load_others;
         return false;
     }
-    e->elements_beside = api_others_elements(&e->others);
+    e->elements_beside = api_named_meshes_elements(&e->named);
     return true;
 }

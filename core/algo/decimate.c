@@ -130,7 +130,7 @@ static he_status weigh(he_decimation *d, he_error *err)
 {
     const he_mesh *m = d->mesh;
     he_marks marks;
-    he_status status = he_watch_phase(m->watch, "weighing faces", 0.15, err);
+    he_status status = he_progress_phase(m->progress, "weighing faces", 0.15, err);
     find_frame(d);
     if (he_marks_find(m, &marks)) {
         d->feature = marks.feature;
@@ -139,7 +139,7 @@ static he_status weigh(he_decimation *d, he_error *err)
     /* Vertices without an edge are skipped, because the first write to a fresh page of memory takes
      * long. */
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(m->watch, v, UINT64_MAX, err);
+        status = he_progress_at(m->progress, v, UINT64_MAX, err);
         if (m->c.vertex_halfedge[v] < 2 * m->c.edges.issued) {
             d->nodes[v] = (he_node){.place = he_decimation_inside(d, m->c.position[v])};
         }
@@ -151,7 +151,7 @@ static he_status weigh(he_decimation *d, he_error *err)
         }
     }
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(m->watch, f, m->c.faces.issued, err);
+        status = he_progress_at(m->progress, f, m->c.faces.issued, err);
         if (he_face_is_live(m, (he_face){f})) {
             weigh_face(d, (he_face){f});
         }
@@ -163,9 +163,9 @@ static he_status fill_queue(he_decimation *d, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t issued = m->c.edges.issued;
-    he_status status = he_watch_phase(m->watch, "costing edges", 0.3, err);
+    he_status status = he_progress_phase(m->progress, "costing edges", 0.3, err);
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
-        status = he_watch_at(m->watch, e, issued, err);
+        status = he_progress_at(m->progress, e, issued, err);
         if (he_edge_is_live(m, (he_edge){e})) {
             he_candidate what;
             he_edge_place place = he_decimation_judge(d, (he_edge){e}, &what);
@@ -240,13 +240,13 @@ static he_status collapse_some(he_decimation *d, const uint32_t *edges, uint32_t
 
 /* Progress is reported after TAKES_PER_LOOK chunks of edges have been taken from the queue, or
  * after WORK_PER_LOOK units of work. */
-enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_WATCH_STRIDE };
+enum { TAKES_PER_LOOK = 256, WORK_PER_LOOK = 2 * HE_PROGRESS_STRIDE };
 
 he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
 {
     const he_mesh *m = d->mesh;
     uint32_t before = he_mesh_faces(m);
-    he_status status = he_watch_phase(m->watch, "collapsing edges", 1, err);
+    he_status status = he_progress_phase(m->progress, "collapsing edges", 1, err);
     uint64_t next = WORK_PER_LOOK;
     for (uint64_t step = 0; status == HE_OK && he_mesh_faces(m) > faces; step++) {
         uint32_t edges[HE_QUEUE_CHUNK], bucket = 0;
@@ -256,7 +256,7 @@ he_status he_decimation_go(he_decimation *d, uint32_t faces, he_error *err)
         }
         if (step % TAKES_PER_LOOK == 0 || d->work >= next) {
             next = d->work + WORK_PER_LOOK;
-            status = he_watch_step(m->watch, before - he_mesh_faces(m), before - faces, err);
+            status = he_progress_step(m->progress, before - he_mesh_faces(m), before - faces, err);
         }
         if (status == HE_OK) {
             status = collapse_some(d, edges, count, bucket, faces, err);
@@ -362,7 +362,7 @@ he_status he_decimate(he_mesh *m, const he_decimate_options *options, he_decimat
         bool replace = faces - options->faces > HE_DECIMATE_RECORDED;
         status = he_mesh_copy(m, &copy, err);
         if (status == HE_OK) {
-            he_mesh_watch(copy, m->watch);
+            he_mesh_set_progress(copy, m->progress);
             status = run(copy, options, NULL, replace ? NULL : &merges, &done, err);
         }
         /* Each collapse deletes a vertex, so an equal number of vertices means that nothing has

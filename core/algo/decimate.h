@@ -88,7 +88,7 @@ typedef struct he_decimated {
  * Returns HE_NOT_TRIANGLE naming a face, if one is no triangle.
  * Returns HE_BAD_VALUE if an option is outside its range, which struct he_decimate_options states.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 enum { HE_DECIMATE_RECORDED = 20000 };
 HE_NODISCARD he_status he_decimate(he_mesh *m, const he_decimate_options *options,
                                    he_decimated *out, he_error *err);

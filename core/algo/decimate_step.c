@@ -38,7 +38,7 @@ static bool gather(const he_mesh *m, he_halfedge h, unsigned ends, he_spokes out
             __builtin_prefetch(&m->c.position[target]);
             s->out[s->count] = at[i].i;
             s->target[s->count++] = target;
-            at[i] = he_turn_ccw(m, at[i]);
+            at[i] = he_swing_ccw(m, at[i]);
             open[i] = at[i].i != first[i].i;
         }
     }
@@ -122,7 +122,7 @@ static void bring_back_now(he_decimation *d, uint32_t vertex, bool grown)
             d->work++;
             he_decimation_put(d, e, he_decimation_judge(d, e, &what), &what);
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
 }
 

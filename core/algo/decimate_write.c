@@ -43,7 +43,7 @@ static bool has_moved(const he_mesh *m, const he_mesh *made, uint32_t v)
     return differ(&m->c.position[v], &made->c.position[v], sizeof *m->c.position);
 }
 
-static void count_words(const he_mesh *m, const he_mesh *made, he_need *need)
+static void count_words(const he_mesh *m, const he_mesh *made, he_reservation *need)
 {
     need->deleted_vertices = m->c.vertices.live - made->c.vertices.live;
     need->deleted_edges = m->c.edges.live - made->c.edges.live;
@@ -160,7 +160,7 @@ static void note(he_mesh *m, he_kind kind, const he_ids *pairs)
 he_status he_decimation_write(he_mesh *m, const he_mesh *made, const he_merges *merges,
                               he_error *err)
 {
-    he_need need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
+    he_reservation need = {.lineage = (merges->vertices.count + merges->edges.count) / 2};
     count_words(m, made, &need);
     /* The words of attributes are counted as links, because need.attributes would reserve memory
      * for the rows of every column. */

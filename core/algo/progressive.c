@@ -13,22 +13,22 @@ void he_progressive_clear(he_progressive *progressive)
 /* The share of the whole progress that copying the mesh takes. */
 static const double COPIED = 0.05;
 
-he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options, he_watch *watch,
-                             he_progressive *out, he_error *err)
+he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
+                             he_progress *progress, he_progressive *out, he_error *err)
 {
     he_progressive made = {0};
     he_decimated done;
-    he_watch_span(watch, COPIED);
-    he_status status = he_mesh_copy_watched(m, watch, &made.base, err);
+    he_progress_span(progress, COPIED);
+    he_status status = he_mesh_copy_with_progress(m, progress, &made.base, err);
     if (status == HE_OK) {
-        he_watch_span(watch, 1);
+        he_progress_span(progress, 1);
         status = he_decimation_run(made.base, options, &made, &done, err);
     }
     if (status != HE_OK) {
         he_progressive_clear(&made);
         return status;
     }
-    he_mesh_watch(made.base, NULL);
+    he_mesh_set_progress(made.base, NULL);
     *out = made;
     return HE_OK;
 }

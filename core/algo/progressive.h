@@ -45,12 +45,13 @@ typedef struct he_progressive {
 } he_progressive;
 
 /* Decimates a copy of `m` and records the collapses; the coarsest level is what he_decimate makes
- * with these options. `watch`, which may be NULL, need not be the watch of the mesh: other threads
+ * with these options. `progress`, which may be NULL, need not be that of the mesh: other threads
  * may read the mesh meanwhile. Returns the errors of he_decimate, too.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_progressive_new(const he_mesh *m, const he_decimate_options *options,
-                                          he_watch *watch, he_progressive *out, he_error *err);
+                                          he_progress *progress, he_progressive *out,
+                                          he_error *err);
 void he_progressive_clear(he_progressive *progressive);
 
 #endif

@@ -532,10 +532,10 @@ he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS
     soup.vertex_capacity = size.vertices;
     soup.corner_capacity = size.corners;
     soup.face_capacity = size.faces;
-    status = he_watch_phase(limits->watch, "shaping", 1, err);
+    status = he_progress_phase(limits->progress, "shaping", 1, err);
     if (status == HE_OK) {
         shape->fill(args, &soup);
-        status = he_watch_step(limits->watch, 1, 1, err);
+        status = he_progress_step(limits->progress, 1, 1, err);
     }
     if (status != HE_OK) {
         he_soup_clear(&soup);

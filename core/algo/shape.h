@@ -39,8 +39,8 @@ typedef struct he_shape {
     /* Computes how many vertices, faces and corners the shape has. Only the functions declared
      * below call it, with each argument at the index of its parameter. */
     he_shape_size (*size)(const double *args);
-    /* Fills the soup with the shape. If the soup's watch cancels the work, it returns early with an
-     * incomplete soup. */
+    /* Fills the soup with the shape. If the soup's `progress` cancels the work, it returns early
+     * with an incomplete soup. */
     void (*fill)(const double *args, he_soup *soup);
 } he_shape;
 
@@ -62,7 +62,7 @@ HE_NODISCARD he_status he_shape_check(const he_shape *shape, const double args[H
  * Returns HE_LIMIT if the soup would have more vertices, faces, corners or bytes than `limits`
  * allow. If `limits` is NULL, only the limits of meshes apply.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_shape_make(const he_shape *shape, const double args[HE_SHAPE_PARAMS],
                                      const he_limits *limits, he_soup *out, he_error *err);
 

@@ -7,8 +7,8 @@
 
 bool he_solid_goes_on(const he_soup *soup)
 {
-    return he_watch_step(soup->limits.watch, soup->vertex_count + soup->corner_count,
-                         soup->vertex_capacity + soup->corner_capacity, NULL) == HE_OK;
+    return he_progress_step(soup->limits.progress, soup->vertex_count + soup->corner_count,
+                            soup->vertex_capacity + soup->corner_capacity, NULL) == HE_OK;
 }
 
 void he_solid_vertex(he_soup *soup, double x, double y, double z)

@@ -83,7 +83,7 @@ static he_status count_polygons(const he_mesh *m, he_sizes *sizes, he_error *err
     const he_content *c = &m->c;
     he_status status = HE_OK;
     for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(m->watch, f, c->faces.issued, err);
+        status = he_progress_at(m->progress, f, c->faces.issued, err);
         uint32_t h = c->face_halfedge[f];
         if (h == HE_DEAD || c->next[c->next[c->next[h]]] == h) {
             continue;
@@ -319,9 +319,9 @@ static he_status prepare(he_subdivide_step *s, he_error *err)
 /* Makes room for all rows of the finer mesh, without writing them. */
 static he_status make_room(he_mesh *fresh, const he_sizes *sizes, he_error *err)
 {
-    he_need need = {.vertices = (uint32_t)sizes->vertices,
-                    .edges = (uint32_t)sizes->edges,
-                    .faces = (uint32_t)sizes->faces};
+    he_reservation need = {.vertices = (uint32_t)sizes->vertices,
+                           .edges = (uint32_t)sizes->edges,
+                           .faces = (uint32_t)sizes->faces};
     he_status status = he_reserve(fresh, need, err);
     if (status != HE_OK) {
         return status;
@@ -350,7 +350,7 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
 {
     const double done = r->done, to = r->to;
     double share = s->from->column_count > 0 ? 0.3 : 0.6;
-    he_status status = he_watch_phase(s->watch, "refining", done + share * (to - done), err);
+    he_status status = he_progress_phase(s->progress, "refining", done + share * (to - done), err);
     if (status == HE_OK) {
         status = make_room(fresh, r->sizes, err);
     }
@@ -364,16 +364,16 @@ static he_status run_step(he_subdivide_step *s, he_mesh *fresh, const refinement
         status = s->scheme == HE_SQRT3 ? he_subdivide_sqrt3(s, err) : he_subdivide_split(s, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(s->watch, "placing vertices",
-                                s->from->column_count > 0 ? done + 0.5 * (to - done) : to, err);
+        status = he_progress_phase(s->progress, "placing vertices",
+                                   s->from->column_count > 0 ? done + 0.5 * (to - done) : to, err);
     }
     if (status == HE_OK) {
         status = he_subdivide_place(s, s->from->position, s->to->position, err);
     }
     if (status == HE_OK && s->from->column_count > 0) {
-        status = he_watch_phase(s->watch, "carrying attributes", to, err);
+        status = he_progress_phase(s->progress, "carrying attributes", to, err);
     }
-    return status == HE_OK ? he_subdivide_carry(s, err) : status;
+    return status == HE_OK ? he_subdivide_attributes(s, err) : status;
 }
 
 /* Makes the finer mesh of content `c`, and finds which of its edges are features. */
@@ -383,7 +383,7 @@ static he_status step(const he_mesh *m, const he_content *c, const refinement *r
     he_mesh *fresh = he_mesh_new();
     he_subdivide_step s = {.from = c,
                            .to = fresh == NULL ? NULL : &fresh->c,
-                           .watch = m->watch,
+                           .progress = m->progress,
                            .scheme = r->scheme,
                            .thirds = r->thirds,
                            .polygonal = at->sizes.polygons > 0,

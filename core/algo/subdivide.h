@@ -83,7 +83,7 @@ typedef struct he_subdivide_counts {
  * Returns HE_LOCKED_ELEMENT, naming an element, if an edge that sqrt3 would flip, or a face beside
  * one, is locked.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_subdivide(he_mesh *m, he_scheme scheme, unsigned steps,
                                     he_subdivide_counts *counts, he_error *err);
 

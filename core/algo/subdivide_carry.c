@@ -208,7 +208,7 @@ static he_status carry_corners(const he_subdivide_step *s, const he_column *from
     /* A corner that copies another corner has a higher id, because the first edge inside a face is
      * the lowest, so one pass in the order of ids suffices. */
     for (uint32_t h = 0; h < 2 * s->to->edges.issued && status == HE_OK; h++) {
-        status = he_watch_at(s->watch, h, 2 * (uint64_t)s->to->edges.issued, err);
+        status = he_progress_at(s->progress, h, 2 * (uint64_t)s->to->edges.issued, err);
         fill_corner(s, from, to, h);
     }
     return status;
@@ -284,7 +284,7 @@ static he_status carry_column(const he_subdivide_step *s, const he_column *from,
     return HE_OK;
 }
 
-he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err)
+he_status he_subdivide_attributes(const he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
     he_content *to = s->to;

@@ -6,7 +6,7 @@
  * needs: over its neighbours (for catmull_clark also over the means of its faces) or, on a curve,
  * over its two neighbours on the curve. Then the vertex is moved. */
 #include "algo/subdivide_step.h"
-#include "base/exec.h"
+#include "base/parallel.h"
 
 #include "geometry/scale.h"
 
@@ -243,7 +243,7 @@ static he_status place_some_centres(const placing *p, he_error *err)
     uint32_t at = c->vertices.issued + c->edges.live;
     he_status status = HE_OK;
     for (uint32_t f = 0; f < c->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(p->s->watch, f, c->faces.issued, err);
+        status = he_progress_at(p->s->progress, f, c->faces.issued, err);
         uint32_t h = c->face_halfedge[f];
         if (h != HE_DEAD && c->next[c->next[c->next[h]]] != h) {
             p->to[at++] = mean_of_face(c, h, p->from);
@@ -315,21 +315,21 @@ static he_status smooth(const he_subdivide_step *s, const he_vec3 *from, he_vec3
 {
     const he_content *c = s->from;
     placing p = {s, from, to};
-    he_status status = he_run_ranges(s->watch, c->vertices.issued, clear_sums, &p, err);
+    he_status status = he_run_ranges(s->progress, c->vertices.issued, clear_sums, &p, err);
     if (status == HE_OK && s->scheme == HE_LINEAR && s->polygonal) {
         status = place_some_centres(&p, err);
     } else if (status == HE_OK && (s->scheme == HE_CATMULL_CLARK || s->scheme == HE_SQRT3)) {
-        status = he_run_ranges(s->watch, c->faces.issued, place_centres, &p, err);
+        status = he_run_ranges(s->progress, c->faces.issued, place_centres, &p, err);
     }
     if (status == HE_OK && s->scheme != HE_SQRT3) {
-        status = he_run_ranges(s->watch, c->edges.issued, place_middles, &p, err);
+        status = he_run_ranges(s->progress, c->edges.issued, place_middles, &p, err);
     }
     if (status == HE_OK && s->scheme != HE_LINEAR) {
-        status = he_run_lanes(s->watch, 1, c->edges.issued, sum_ends, &p, err);
+        status = he_run_lanes(s->progress, 1, c->edges.issued, sum_ends, &p, err);
     }
     if (status == HE_OK && s->scheme != HE_LINEAR) {
         cut_in_thirds(s, from, to);
-        status = he_run_ranges(s->watch, c->vertices.issued, move_vertices, &p, err);
+        status = he_run_ranges(s->progress, c->vertices.issued, move_vertices, &p, err);
     }
     return status;
 }

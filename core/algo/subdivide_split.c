@@ -1,7 +1,7 @@
 /* subdivide_split.c - writes the links for the schemes that cut every edge in halves: loop,
  * catmull_clark and linear. */
 #include "algo/subdivide_step.h"
-#include "base/exec.h"
+#include "base/parallel.h"
 
 /* The names of the parts of a half-edge h that is cut in halves, for which functions follow:
  *
@@ -212,7 +212,7 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
     cutting c = {.s = s};
     he_status status = HE_OK;
     if (lanes > 1) {
-        status = he_run_lanes(s->watch, lanes, from->faces.issued, count_lane, &c, err);
+        status = he_run_lanes(s->progress, lanes, from->faces.issued, count_lane, &c, err);
     }
     for (uint32_t lane = 0; lane < lanes; lane++) {
         fresh made = c.at[lane];
@@ -222,7 +222,7 @@ static he_status cut_faces(const he_subdivide_step *s, uint32_t lanes, he_error 
         at.face += made.face;
     }
     if (status == HE_OK) {
-        status = he_run_lanes(s->watch, lanes, from->faces.issued, cut_lane, &c, err);
+        status = he_run_lanes(s->progress, lanes, from->faces.issued, cut_lane, &c, err);
     }
     /* With several lanes, a later lane may have found an error in a later face first. Running again
      * in one lane finds the first, so the error does not depend on the number of threads. */
@@ -299,14 +299,15 @@ static he_status keep_vertices(void *context, uint32_t part, size_t from, size_t
 he_status he_subdivide_split(he_subdivide_step *s, he_error *err)
 {
     const he_content *from = s->from;
-    he_status status = cut_faces(s, he_lanes(s->watch, from->faces.issued), err);
+    he_status status = cut_faces(s, he_lanes(s->progress, from->faces.issued), err);
     if (status == HE_OK) {
         /* Feature flags are bits: neighbouring edges share a word, which two threads must not
          * write, so this runs in one lane. */
         status = s->feature != NULL
-                     ? he_run_lanes(s->watch, 1, from->edges.issued, cut_edges, s, err)
-                     : he_run_ranges(s->watch, from->edges.issued, cut_edges, s, err);
+                     ? he_run_lanes(s->progress, 1, from->edges.issued, cut_edges, s, err)
+                     : he_run_ranges(s->progress, from->edges.issued, cut_edges, s, err);
     }
-    return status == HE_OK ? he_run_ranges(s->watch, from->vertices.issued, keep_vertices, s, err)
-                           : status;
+    return status == HE_OK
+               ? he_run_ranges(s->progress, from->vertices.issued, keep_vertices, s, err)
+               : status;
 }

@@ -290,13 +290,13 @@ he_status he_subdivide_sqrt3(he_subdivide_step *s, he_error *err)
     }
     he_status status = find_places(s, err);
     for (uint32_t f = 0; f < from->faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(s->watch, f, from->faces.issued, err);
+        status = he_progress_at(s->progress, f, from->faces.issued, err);
         if (status == HE_OK && he_subdivide_is_live(from->face_halfedge, f)) {
             put_face(s, f);
         }
     }
     for (uint32_t e = 0; e < from->edges.issued && status == HE_OK; e++) {
-        status = he_watch_at(s->watch, e, from->edges.issued, err);
+        status = he_progress_at(s->progress, e, from->edges.issued, err);
         if (from->next[2 * e] == HE_DEAD) {
             for (uint32_t h = 2 * e; h <= 2 * e + 1; h++) {
                 he_subdivide_set(s->to, h,

@@ -42,7 +42,7 @@ typedef struct he_corner_source {
 typedef struct he_subdivide_step {
     const he_content *from;
     he_content *to;
-    he_watch *watch;
+    he_progress *progress;
     he_scheme scheme;
     bool thirds;    /* sqrt3: sharp edges are cut in three */
     bool polygonal; /* there are faces that are no triangles */
@@ -120,6 +120,6 @@ HE_NODISCARD he_status he_subdivide_place(const he_subdivide_step *s, const he_v
 
 /* Makes the arrays of parents, if attribute columns need them. */
 HE_NODISCARD he_status he_subdivide_reserve_parents(he_subdivide_step *s, he_error *err);
-HE_NODISCARD he_status he_subdivide_carry(const he_subdivide_step *s, he_error *err);
+HE_NODISCARD he_status he_subdivide_attributes(const he_subdivide_step *s, he_error *err);
 
 #endif

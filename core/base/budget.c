@@ -10,5 +10,5 @@ he_status he_budget_exhausted(he_budget *budget, he_error *err)
 he_status he_budget_ask(he_budget *budget, he_error *err)
 {
     budget->unheard = 0;
-    return he_watch_step(budget->watch, 0, 1, err);
+    return he_progress_step(budget->progress, 0, 1, err);
 }

@@ -5,30 +5,30 @@
  * pair of triangles, is charged as many steps as it is worth. How many steps work takes depends on
  * its input alone, never on a clock or on the number of threads.
  *
- * A budget may carry a watch (progress and cancellation, watch.h), which is asked every
+ * A budget may carry a watch (progress and cancellation, progress.h), which is asked every
  * HE_BUDGET_STRIDE steps whether to go on, so that work that is charged while it is done can be
  * cancelled within a millisecond. */
 #ifndef HE_BASE_BUDGET_H
 #define HE_BASE_BUDGET_H
 
-#include "base/watch.h"
+#include "base/progress.h"
 
 typedef struct he_budget {
-    uint64_t left;    /* steps that may still be taken; UINT64_MAX means no limit */
-    he_watch *watch;  /* borrowed; NULL if the work cannot be cancelled */
-    uint32_t unheard; /* steps charged since the watch was last asked */
+    uint64_t left;         /* steps that may still be taken; UINT64_MAX means no limit */
+    he_progress *progress; /* borrowed; NULL if the work cannot be cancelled */
+    uint32_t unheard;      /* steps charged since the watch was last asked */
 } he_budget;
 
 enum { HE_BUDGET_STRIDE = 1 << 15 };
 
 /* Only he_budget_take calls these two functions: he_budget_exhausted refuses work for which too few
- * steps are left, he_budget_ask asks the watch whether to go on. */
+ * steps are left, he_budget_ask asks whether to go on. */
 HE_NODISCARD he_status he_budget_exhausted(he_budget *budget, he_error *err);
 HE_NODISCARD he_status he_budget_ask(he_budget *budget, he_error *err);
 
 /* Charges `steps` of work that the caller is about to do.
  * Returns HE_LIMIT if fewer steps are left; the budget is then empty.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD static inline he_status he_budget_take(he_budget *budget, uint64_t steps,
                                                     he_error *err)
 {

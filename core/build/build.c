@@ -1,8 +1,8 @@
 #include "build/build.h"
 
-#include "build/link.h"
-#include "build/pair.h"
+#include "build/build_links.h"
 #include "build/rest.h"
+#include "build/soup_check.h"
 #include "mesh/content.h"
 
 #include <stdio.h>
@@ -137,14 +137,14 @@ static void return_positions(he_soup *soup, he_content *k)
     }
 }
 
-static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_turns *turns,
+static he_status build_links(he_soup *soup, bool take, const he_corners *corners, he_swings *swings,
                              he_content *k, he_error *err)
 {
     /* The spare array becomes `next`, because its memory has been written to before: the system
      * clears each fresh page on first use. */
-    k->next = turns->spare;
-    turns->spare = NULL;
-    he_status status = he_content_reserve_edges(k, turns->edges, err);
+    k->next = swings->spare;
+    swings->spare = NULL;
+    he_status status = he_content_reserve_edges(k, swings->edges, err);
     if (status == HE_OK) {
         status = he_content_reserve_faces(k, soup->face_count, err);
     }
@@ -152,19 +152,19 @@ static he_status build_links(he_soup *soup, bool take, const he_corners *corners
         status = build_vertices(soup, take, k, err);
     }
     if (status == HE_OK) {
-        status = he_build_links(corners, turns, k, err);
+        status = he_build_links(corners, swings, k, err);
     }
-    return status == HE_OK ? build_columns(soup, take, turns->turn, k, err) : status;
+    return status == HE_OK ? build_columns(soup, take, swings->swing, k, err) : status;
 }
 
-/* Finds the turn of each corner (turn.h). If the soup has defects, finds all of them instead:
+/* Finds the swing of each corner (swing.h). If the soup has defects, finds all of them instead:
  * invalid faces first, then edges and fans. */
-static he_status find_turns(const he_soup *soup, he_corners *corners, he_turns *turns,
-                            he_report *report, uint64_t *total, he_error *err)
+static he_status find_swings(const he_soup *soup, he_corners *corners, he_swings *swings,
+                             he_report *report, uint64_t *total, he_error *err)
 {
     he_status status = he_corners_init(soup, corners, err);
     if (status == HE_OK) {
-        status = he_soup_turn(corners, turns, report, total, err);
+        status = he_soup_swing(corners, swings, report, total, err);
     }
     return status == HE_OK && *total > 0 ? he_soup_check_rest(soup, report, total, err) : status;
 }
@@ -173,10 +173,10 @@ he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err)
 {
     uint64_t total = 0;
     he_corners corners = {0};
-    he_turns turns = {0};
-    he_status status = find_turns(soup, &corners, &turns, NULL, &total, err);
+    he_swings swings = {0};
+    he_status status = find_swings(soup, &corners, &swings, NULL, &total, err);
     he_corners_clear(&corners);
-    he_turns_clear(&turns);
+    he_swings_clear(&swings);
     if (status == HE_OK) {
         *defects = total;
     }
@@ -187,7 +187,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
 {
     uint64_t total = 0;
     he_corners corners = {0};
-    he_turns turns = {0};
+    he_swings swings = {0};
     he_report *own = NULL;
     he_mesh *mesh = he_mesh_new();
     he_status status = HE_OK;
@@ -200,19 +200,19 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
         goto out;
     }
     report->total = 0;
-    status = find_turns(soup, &corners, &turns, report, &total, err);
+    status = find_swings(soup, &corners, &swings, report, &total, err);
     if (status == HE_OK && total > 0) {
         status = he_report_fail(report, err);
     }
-    if (status == HE_OK && turns.edges > HE_MAX_ROWS) {
-        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "%zu edges are more than %u", turns.edges,
+    if (status == HE_OK && swings.edges > HE_MAX_ROWS) {
+        status = he_fail_plain(err, HE_IDS_EXHAUSTED, "%zu edges are more than %u", swings.edges,
                                HE_MAX_ROWS);
     }
     if (status == HE_OK) {
         status = he_materials_copy(&soup->materials, &mesh->c.materials, err);
     }
     if (status == HE_OK) {
-        status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &corners, &turns, &mesh->c, err);
+        status = build_links(soup, (flags & HE_BUILD_TAKE) != 0, &corners, &swings, &mesh->c, err);
     }
     if (status == HE_OK) {
         if ((flags & HE_BUILD_TAKE) != 0) {
@@ -226,7 +226,7 @@ he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *repo
 out:
     he_mem_free(own);
     he_corners_clear(&corners);
-    he_turns_clear(&turns);
+    he_swings_clear(&swings);
     he_mesh_free(mesh);
     return status;
 }

@@ -15,8 +15,8 @@
 /* Limits on a soup; 0 means that only the limits of every mesh apply. */
 typedef struct he_limits {
     uint64_t vertices, faces, corners;
-    uint64_t bytes;  /* memory of the soup */
-    he_watch *watch; /* progress of filling and building; NULL for none */
+    uint64_t bytes;        /* memory of the soup */
+    he_progress *progress; /* progress of filling and building; NULL for none */
 } he_limits;
 
 typedef struct he_soup {
@@ -85,7 +85,7 @@ he_status he_report_fail(const he_report *report, he_error *err);
 
 /* Counts the defects that he_build would find in a soup; 0 means that it would make a mesh.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_error *err);
 
 /* Makes a mesh, which the caller owns. If the soup has defects, the call fails with the reason and
@@ -94,7 +94,7 @@ HE_NODISCARD he_status he_build_try(const he_soup *soup, uint64_t *defects, he_e
  * of copied, and the soup is cleared on success.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the soup has more elements than there are ids.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 enum { HE_BUILD_TAKE = 1 };
 HE_NODISCARD he_status he_build(he_soup *soup, unsigned flags, he_mesh **out, he_report *report,
                                 he_error *err);

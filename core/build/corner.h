@@ -4,7 +4,7 @@
 #define HE_BUILD_CORNER_H
 
 #include "build/build.h"
-#include "build/pair.h"
+#include "build/soup_check.h"
 
 typedef struct he_corners {
     const he_soup *soup;

@@ -94,7 +94,7 @@ static he_status add_corners(he_soup *soup, he_column *column, const char *name,
     for (size_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
         memcpy(he_column_row(made, c), he_column_value(column, soup->corners[c]),
                column->row_bytes);
-        status = he_watch_at(soup->limits.watch, c, soup->corner_count, err);
+        status = he_progress_at(soup->limits.progress, c, soup->corner_count, err);
     }
     if (status == HE_OK) {
         status = put_column(soup, column, made, stays, err);

@@ -14,7 +14,7 @@
  * corners. *moved is set to the number of values that differ from those of the vertex joined to.
  * Returns HE_LIMIT if a limit of the soup would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_soup_keep_values(he_soup *soup, const uint32_t *into,
                                            const uint32_t *from, uint64_t *moved, he_error *err);
 /* Turns the vertex attribute of this name, if there is one, into an attribute of corners: each

@@ -1,7 +1,7 @@
 #include "build/rest.h"
 
-#include "build/pair.h"
-#include "build/turn.h"
+#include "build/soup_check.h"
+#include "build/swing.h"
 
 static he_status no_memory(const he_soup *soup, he_error *err)
 {
@@ -24,7 +24,7 @@ static he_status copy_proper(const he_soup *soup, he_soup *out, he_ids *from, he
     uint32_t *stamp = he_mem_zero(soup->vertex_count + 1, sizeof *stamp);
     he_status status = stamp == NULL ? no_memory(soup, err) : HE_OK;
     for (uint32_t f = 0; f < soup->face_count && status == HE_OK; f++) {
-        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
+        status = he_progress_at(soup->limits.progress, f, soup->face_count, err);
         if (status != HE_OK || !is_proper(soup, f, stamp)) {
             continue;
         }
@@ -41,13 +41,13 @@ static he_status copy_proper(const he_soup *soup, he_soup *out, he_ids *from, he
 static he_status check(const he_soup *proper, he_report *report, uint64_t *total, he_error *err)
 {
     he_corners corners = {0};
-    he_turns turns = {0};
+    he_swings swings = {0};
     he_status status = he_corners_init(proper, &corners, err);
     if (status == HE_OK) {
-        status = he_soup_turn(&corners, &turns, report, total, err);
+        status = he_soup_swing(&corners, &swings, report, total, err);
     }
     he_corners_clear(&corners);
-    he_turns_clear(&turns);
+    he_swings_clear(&swings);
     return status;
 }
 
@@ -72,7 +72,7 @@ static void append(const he_report *rest, const he_ids *from, he_report *report,
 he_status he_soup_check_rest(const he_soup *soup, he_report *report, uint64_t *total, he_error *err)
 {
     he_ids from = {0};
-    he_soup proper = {.limits = {.watch = soup->limits.watch},
+    he_soup proper = {.limits = {.progress = soup->limits.progress},
                       .positions = soup->positions,
                       .vertex_count = soup->vertex_count};
     uint64_t more = 0;

@@ -184,25 +184,25 @@ int he_format_encoding(const he_format *format, const char *encoding)
 void he_import_clear(he_import *import)
 {
     he_soup_clear(&import->soup);
-    he_places_clear(&import->vertices);
-    he_places_clear(&import->faces);
-    import->notes = (he_notes){0};
+    he_source_map_clear(&import->vertices);
+    he_source_map_clear(&import->faces);
+    import->warnings = (he_warnings){0};
 }
 
 void he_import_locate(const he_import *import, he_error *err)
 {
-    const he_places *places = NULL;
+    const he_source_map *map = NULL;
     if (err->place != HE_PLACE_NONE) {
         return;
     }
     if (err->kind == HE_VERTEX) {
-        places = &import->vertices;
+        map = &import->vertices;
     } else if (err->kind == HE_FACE) {
-        places = &import->faces;
+        map = &import->faces;
     }
-    if (places != NULL && places->count > 0) {
-        err->place = places->unit;
-        err->at = he_places_find(places, err->id);
+    if (map != NULL && map->count > 0) {
+        err->place = map->unit;
+        err->at = he_source_map_find(map, err->id);
     }
 }
 
@@ -278,8 +278,8 @@ static void note_unused(he_import *import)
     for (size_t i = 0; beside != NULL && i < beside->count; i++) {
         const he_beside_file *file = &beside->files[i];
         if (!file->used) {
-            he_notes_add(
-                &import->notes,
+            he_warnings_add(
+                &import->warnings,
                 &(he_occurrence){.code = "ignored_file",
                                  .text = "ignored, because no other file refers to it: file",
                                  .subject = file->name,
@@ -293,9 +293,9 @@ bool he_reader_reads_at_end(const he_reader *reader)
     return reader->reading->at_end;
 }
 
-void he_reader_watch(he_reader *reader, he_watch *watch)
+void he_reader_set_progress(he_reader *reader, he_progress *progress)
 {
-    reader->import.soup.limits.watch = watch;
+    reader->import.soup.limits.progress = progress;
 }
 
 he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err)
@@ -321,7 +321,7 @@ struct he_writer {
     const he_writing *writing;
     void *state;
     bool ended;
-    he_notes notes;
+    he_warnings warnings;
     /* Bytes of the document that did not fit into the caller's last buffer; the next call returns
      * them first. */
     size_t spare_from, spare_to;
@@ -329,7 +329,7 @@ struct he_writer {
 };
 
 he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
-                        he_watch *watch, he_writer **out, he_error *err)
+                        he_progress *progress, he_writer **out, he_error *err)
 {
     if (format->writing == NULL) {
         return he_fail_plain(err, HE_UNSUPPORTED, "%s files cannot be written", format->name);
@@ -340,7 +340,7 @@ he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t enc
     }
     writer->writing = format->writing;
     he_status status =
-        writer->writing->open(mesh, encoding, watch, &writer->notes, &writer->state, err);
+        writer->writing->open(mesh, encoding, progress, &writer->warnings, &writer->state, err);
     if (status != HE_OK) {
         he_mem_free(writer);
         return status;
@@ -396,7 +396,7 @@ size_t he_writer_read(he_writer *writer, void *buffer, size_t size)
     return done;
 }
 
-const he_notes *he_writer_notes(const he_writer *writer)
+const he_warnings *he_writer_warnings(const he_writer *writer)
 {
-    return &writer->notes;
+    return &writer->warnings;
 }

@@ -1,4 +1,4 @@
-#include "base/exec.h"
+#include "base/parallel.h"
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/walk.h"
@@ -199,7 +199,7 @@ static he_status vertex_range(void *context, uint32_t part, size_t from, size_t 
     return status;
 }
 
-he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch, he_vec3 *out,
+he_status he_corner_normals(const he_mesh *m, double crease, he_progress *progress, he_vec3 *out,
                             he_error *err)
 {
     he_vec3 *normals = he_mem_array(NULL, m->c.faces.issued, sizeof *normals);
@@ -208,12 +208,12 @@ he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch, he
     if (normals == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of faces");
     }
-    status = he_face_normals(m, watch, normals, err);
+    status = he_face_normals(m, progress, normals, err);
     if (status == HE_OK) {
-        status = he_run_ranges(watch, 2 * (size_t)m->c.edges.issued, clear_range, &all, err);
+        status = he_run_ranges(progress, 2 * (size_t)m->c.edges.issued, clear_range, &all, err);
     }
     if (status == HE_OK) {
-        status = he_run_ranges(watch, m->c.vertices.issued, vertex_range, &all, err);
+        status = he_run_ranges(progress, m->c.vertices.issued, vertex_range, &all, err);
     }
     he_mem_free(normals);
     return status;

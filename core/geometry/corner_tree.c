@@ -23,8 +23,8 @@ static uint64_t spread(uint64_t x)
     return (x | x << 1) & 0x5555555555555555u;
 }
 
-/* Converts a coordinate to its bits on the Z curve. Coordinates are within [-2, 2], see flat.h;
- * slightly larger ones do no harm. */
+/* Converts a coordinate to its bits on the Z curve. Coordinates are within [-2, 2], see
+ * planar_loop.h; slightly larger ones do no harm. */
 static uint64_t on_curve(double x)
 {
     double scaled = (x + 2) * ((uint64_t)1 << 30);
@@ -57,7 +57,7 @@ static keyed *sort(keyed *from, keyed *to, uint32_t count)
     return from;
 }
 
-static uint64_t key_of(const he_flat *f, uint32_t corner)
+static uint64_t key_of(const he_planar_loop *f, uint32_t corner)
 {
     return spread(on_curve(f->x[corner])) | spread(on_curve(f->y[corner])) << 1;
 }
@@ -157,8 +157,8 @@ void he_corner_tree_clear(he_corner_tree *tree)
     *tree = (he_corner_tree){.memory = NULL};
 }
 
-he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat, const uint32_t *corners,
-                              uint32_t count, he_error *err)
+he_status he_corner_tree_make(he_corner_tree *out, const he_planar_loop *flat,
+                              const uint32_t *corners, uint32_t count, he_error *err)
 {
     he_corner_tree t = {.flat = flat, .count = count, .made = count};
     if (count == 0) {
@@ -230,9 +230,9 @@ void he_corner_tree_remove(he_corner_tree *t, uint32_t corner)
 
 /* --- searching --- */
 
-/* The area up to which he_flat_turns_left regards a triangle as flat, relative to the squared size
- * of the triangle. It has a margin for points beside the triangle and for the rounding of a
- * determinant. */
+/* The area up to which he_planar_loop_turns_left regards a triangle as flat, relative to the
+ * squared size of the triangle. It has a margin for points beside the triangle and for the rounding
+ * of a determinant. */
 static const double ABOUT = 4e-12;
 
 /* A side of the triangle, from `at` to `at` + `along`, and the corner of a box that lies furthest
@@ -260,7 +260,7 @@ static double most(double a, double b)
 }
 
 /* Returns the box around a triangle, with a margin for rounding. */
-static inline he_corner_box box_around(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+static inline he_corner_box box_around(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c)
 {
     double left = least(least(f->x[a], f->x[b]), f->x[c]);
     double right = most(most(f->x[a], f->x[b]), f->x[c]);
@@ -270,7 +270,7 @@ static inline he_corner_box box_around(const he_flat *f, uint32_t a, uint32_t b,
     return (he_corner_box){{left - about, low - about}, {right + about, high + about}};
 }
 
-static inline triangle triangle_of(const he_flat *f, uint32_t a, uint32_t b, uint32_t c,
+static inline triangle triangle_of(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c,
                                    const he_corner_box *box)
 {
     triangle t = {.corner = {a, b, c}, .box = *box};
@@ -340,7 +340,7 @@ static inline bool is_any_in_box(const he_corner_box *box, const double *x, cons
 }
 
 /* Returns true if corner p of the tree is in the triangle. */
-static inline bool holds(const triangle *t, const he_flat *f, uint32_t p)
+static inline bool holds(const triangle *t, const he_planar_loop *f, uint32_t p)
 {
     double x = f->x[p], y = f->y[p];
     if (x < t->box.min[0] || x > t->box.max[0] || y < t->box.min[1] || y > t->box.max[1]) {
@@ -356,7 +356,7 @@ static inline bool holds(const triangle *t, const he_flat *f, uint32_t p)
     for (int i = 0; i < 3; i++) {
         if (p == t->corner[i] || (x == t->sides[i].at[0] && y == t->sides[i].at[1]) ||
             (left[i] < t->slack &&
-             he_flat_turns_left(f, t->corner[(i + 1) % 3], t->corner[i], p))) {
+             he_planar_loop_turns_left(f, t->corner[(i + 1) % 3], t->corner[i], p))) {
             return false;
         }
     }
@@ -377,7 +377,7 @@ static inline uint32_t find_in_leaf(const he_corner_tree *tree, uint32_t leaf, c
 }
 
 /* Returns true if corner a is before corner b along the Z curve. */
-static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
+static bool is_before(const he_planar_loop *f, uint32_t a, uint32_t b)
 {
     uint64_t of_a = key_of(f, a), of_b = key_of(f, b);
     return of_a != of_b ? of_a < of_b : a < b;
@@ -388,7 +388,7 @@ static bool is_before(const he_flat *f, uint32_t a, uint32_t b)
 static inline uint32_t better(const he_corner_tree *tree, const triangle *t, uint32_t p,
                               uint32_t found)
 {
-    const he_flat *f = tree->flat;
+    const he_planar_loop *f = tree->flat;
     if (p == t->corner[0] || p == t->corner[2] || !holds(t, f, p)) {
         return found;
     }

@@ -20,7 +20,7 @@
 #ifndef HE_GEOMETRY_CORNER_TREE_H
 #define HE_GEOMETRY_CORNER_TREE_H
 
-#include "geometry/flat.h"
+#include "geometry/planar_loop.h"
 
 enum {
     HE_CORNER_LEAF = 6,
@@ -36,7 +36,7 @@ typedef struct he_corner_box {
 
 /* A tree, or a list, of corners of a loop. {0} holds no corners. */
 typedef struct he_corner_tree {
-    const he_flat *flat;
+    const he_planar_loop *flat;
     void *memory;         /* one block that contains the arrays below */
     he_corner_box *boxes; /* one box for each node; only in a tree */
     /* Coordinates of the corners in a list, in its order, filled up with infinity to whole
@@ -54,7 +54,7 @@ typedef struct he_corner_tree {
 /* Makes a tree of some corners of a loop. Borrows `flat`, copies `corners`. he_corner_tree_clear
  * frees the tree.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_corner_tree_make(he_corner_tree *out, const he_flat *flat,
+HE_NODISCARD he_status he_corner_tree_make(he_corner_tree *out, const he_planar_loop *flat,
                                            const uint32_t *corners, uint32_t count, he_error *err);
 void he_corner_tree_clear(he_corner_tree *tree);
 
@@ -68,9 +68,9 @@ void he_corner_tree_remove(he_corner_tree *tree, uint32_t corner);
 
 /* Returns a corner of the tree inside the closed triangle a, b, c, which must turn left; HE_NONE if
  * there is none. A corner counts as inside unless it is to the right of a side by more than
- * rounding (flat.h), so corners on a straight side are inside, too. Corners at the position of a, b
- * or c do not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners of a
- * list, which cost about as much as a box, count as one. */
+ * rounding (planar_loop.h), so corners on a straight side are inside, too. Corners at the position
+ * of a, b or c do not count. Adds the boxes and corners visited to `steps`; HE_CORNER_LEAF corners
+ * of a list, which cost about as much as a box, count as one. */
 uint32_t he_corner_tree_find(const he_corner_tree *tree, uint32_t a, uint32_t b, uint32_t c,
                              uint64_t *steps);
 

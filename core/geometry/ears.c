@@ -40,7 +40,7 @@ typedef enum state {
 
 typedef struct ears {
     const he_mesh *m;
-    const he_flat *f;
+    const he_planar_loop *f;
     bool avoid; /* avoid diagonals that exist as edges */
     ring loop;  /* the loop that is left, without a node of its own */
     ring kinds; /* lists of CANDIDATE, PIERCED and FLAT corners; each begins at node n + state */
@@ -85,7 +85,7 @@ static void look_at(ears *e, uint32_t i, uint32_t before)
     take_out(e->kinds, i);
     take_out(e->watch, i);
     e->taken -= e->state[i] == TAKEN;
-    bool convex = he_flat_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
+    bool convex = he_planar_loop_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
     if (convex && he_corner_tree_has(&e->tree, i)) {
         leave_tree(e, i);
     }
@@ -222,7 +222,7 @@ static he_status cut_all(ears *e, bool any_corner, he_triangulation *plan, bool 
         cut_off(e, i, plan->corners);
     }
     plan->degenerate |=
-        !he_flat_turns_left(e->f, e->loop.prev[e->last], e->last, e->loop.next[e->last]);
+        !he_planar_loop_turns_left(e->f, e->loop.prev[e->last], e->last, e->loop.next[e->last]);
     write_triangle(e, e->last, plan->corners);
     return HE_OK;
 }
@@ -252,7 +252,7 @@ static he_status sort_corners(ears *e, uint32_t *room, he_error *err)
 {
     uint32_t n = e->f->n, flat = 0;
     for (uint32_t i = 0; i < n; i++) {
-        bool convex = he_flat_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
+        bool convex = he_planar_loop_turns_left(e->f, e->loop.prev[i], i, e->loop.next[i]);
         e->state[i] = convex ? CANDIDATE : FLAT;
         insert_after(e->kinds, e->kinds.prev[list_of(e, e->state[i])], i);
         if (!convex) {

@@ -33,7 +33,7 @@ enum {
  * Returns HE_DOUBLED_EDGE with HE_AVOID_EDGES in `flags` if every ear that is left, or every
  * corner, has a diagonal that is an edge.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch of `work` cancelled it. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_ears_cut(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                                    he_triangulation *triangulation, bool *stuck, he_error *err);
 

@@ -125,7 +125,7 @@ static double dihedral_or_nan(const he_mesh *m, he_edge e, const he_vec3 *normal
     return is_zero(left) || is_zero(right) ? NAN : dihedral_between(m, e, left, right);
 }
 
-he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out, he_error *err)
+he_status he_edge_dihedrals(const he_mesh *m, he_progress *progress, double *out, he_error *err)
 {
     uint32_t faces = m->c.faces.issued, edges = m->c.edges.issued;
     he_vec3 *normals = he_mem_array(NULL, (size_t)faces + 1, sizeof *normals);
@@ -134,13 +134,13 @@ he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out, he_e
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for the normals of %u faces", faces);
     }
     for (uint32_t f = 0; f < faces && status == HE_OK; f++) {
-        status = he_watch_at(watch, f, (uint64_t)faces + edges, err);
+        status = he_progress_at(progress, f, (uint64_t)faces + edges, err);
         if (he_face_is_live(m, (he_face){f})) {
             (void)he_face_normal(m, (he_face){f}, &normals[f]);
         }
     }
     for (uint32_t e = 0; e < edges && status == HE_OK; e++) {
-        status = he_watch_at(watch, (uint64_t)faces + e, (uint64_t)faces + edges, err);
+        status = he_progress_at(progress, (uint64_t)faces + e, (uint64_t)faces + edges, err);
         out[e] = dihedral_or_nan(m, (he_edge){e}, normals);
     }
     he_mem_free(normals);

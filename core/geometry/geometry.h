@@ -38,8 +38,8 @@ bool he_edge_dihedral(const he_mesh *m, he_edge e, double *out);
  * NaN for edges where he_edge_dihedral returns false, and for deleted edges. Each face is measured
  * once, so the time is linear in the half-edges however many corners a face has.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work; the array is then half written. */
-HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_watch *watch, double *out,
+ * Returns HE_CANCELLED if the work was cancelled; the array is then half written. */
+HE_NODISCARD he_status he_edge_dihedrals(const he_mesh *m, he_progress *progress, double *out,
                                          he_error *err);
 
 /* Returns the angle between a half-edge and the one before it, in [0, pi]; so a reflex corner gives
@@ -75,14 +75,14 @@ typedef enum he_weight {
 bool he_vertex_normal(const he_mesh *m, he_vertex v, he_weight weight, he_vec3 *out);
 
 /* Find the normals of the whole mesh, into an array of one entry for each issued row, in linear
- * time. The rows of deleted elements, and of elements without a normal, are zero. `watch`, which
+ * time. The rows of deleted elements, and of elements without a normal, are zero. `progress`, which
  * may be NULL, can cancel the work and lends threads to he_face_normals. On failure the array is
  * half written.
- * Returns HE_CANCELLED if the watch cancelled the work.
+ * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_CORRUPT if links do not close. */
-HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out,
+HE_NODISCARD he_status he_face_normals(const he_mesh *m, he_progress *progress, he_vec3 *out,
                                        he_error *err);
-HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_watch *watch,
+HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_progress *progress,
                                          he_vec3 *out, he_error *err);
 
 /* Finds normals of corners, smooth except at creases: the mean, weighted by the corners' angles, of
@@ -92,14 +92,14 @@ HE_NODISCARD he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_
  * boundary half-edges, and if the mean has no direction.
  *
  * he_corner_normal takes time linear in the faces around the origin; he_corner_normals fills an
- * array of one entry for each issued half-edge in linear time, with the threads of `watch`. On
+ * array of one entry for each issued half-edge in linear time, with the threads of `progress`. On
  * failure the array is half written.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work.
+ * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_CORRUPT if links do not close. */
 HE_NODISCARD he_status he_corner_normal(const he_mesh *m, he_halfedge h, double crease,
                                         he_vec3 *out, he_error *err);
-HE_NODISCARD he_status he_corner_normals(const he_mesh *m, double crease, he_watch *watch,
+HE_NODISCARD he_status he_corner_normals(const he_mesh *m, double crease, he_progress *progress,
                                          he_vec3 *out, he_error *err);
 
 /* An axis-aligned box. */

@@ -17,7 +17,7 @@ static bool is_long(const he_mesh *m, uint32_t f)
     return n > HE_EXACT_CORNERS;
 }
 
-static he_status count_long(const he_mesh *m, size_t *out, uint64_t *corners, he_watch *watch,
+static he_status count_long(const he_mesh *m, size_t *out, uint64_t *corners, he_progress *progress,
                             he_error *err)
 {
     he_status status = HE_OK;
@@ -26,15 +26,15 @@ static he_status count_long(const he_mesh *m, size_t *out, uint64_t *corners, he
             ++*out;
             *corners += he_face_degree(m, (he_face){f});
         }
-        status = he_watch_at(watch, f, m->c.faces.issued, err);
+        status = he_progress_at(progress, f, m->c.faces.issued, err);
     }
     return status;
 }
 
-static he_status cut_long(const he_mesh *m, he_long_faces *all, uint64_t corners, he_watch *watch,
-                          he_error *err)
+static he_status cut_long(const he_mesh *m, he_long_faces *all, uint64_t corners,
+                          he_progress *progress, he_error *err)
 {
-    he_triangulation_work work = {.watch = watch, .of = corners};
+    he_triangulation_work work = {.progress = progress, .of = corners};
     he_status status = HE_OK;
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
         if (!is_long(m, f)) {
@@ -54,16 +54,16 @@ static he_status cut_long(const he_mesh *m, he_long_faces *all, uint64_t corners
     return status;
 }
 
-he_status he_long_faces_keep(const he_mesh *m, he_watch *watch, he_error *err)
+he_status he_long_faces_keep(const he_mesh *m, he_progress *progress, he_error *err)
 {
     if (!he_long_faces_are_wanted(m)) {
         return HE_OK;
     }
     size_t count = 0;
     uint64_t corners = 0;
-    he_status status = he_watch_phase(watch, "triangulating", 0.5, err);
+    he_status status = he_progress_phase(progress, "triangulating", 0.5, err);
     if (status == HE_OK) {
-        status = count_long(m, &count, &corners, watch, err);
+        status = count_long(m, &count, &corners, progress, err);
     }
     if (status != HE_OK) {
         return status;
@@ -72,7 +72,7 @@ he_status he_long_faces_keep(const he_mesh *m, he_watch *watch, he_error *err)
     if (all == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu long faces", count);
     }
-    status = cut_long(m, all, corners, watch, err);
+    status = cut_long(m, all, corners, progress, err);
     if (status == HE_OK) {
         he_long_faces_put(m, all);
     } else {

@@ -5,10 +5,11 @@
 #include "mesh/mesh.h"
 
 /* Triangulates the long faces, if the cache is allowed and empty. Any number of threads may call
- * this at the same time: the first result stays. `watch`, which may be NULL, need not be the watch
- * of the mesh. On failure the cache stays empty.
+ * this at the same time: the first result stays. `progress`, which may be NULL, need not be that of
+ * the mesh. On failure the cache stays empty.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_long_faces_keep(const he_mesh *mesh, he_watch *watch, he_error *err);
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_long_faces_keep(const he_mesh *mesh, he_progress *progress,
+                                          he_error *err);
 
 #endif

@@ -135,10 +135,10 @@ he_status he_mesh_measure(const he_mesh *m, he_measures *out, he_error *err)
     uint32_t budget = he_ring_budget(m);
     bool closed = m->c.boundary_halfedges == 0 && m->c.faces.live > 0;
     he_vec3 base = closed ? find_base(m) : (he_vec3){0, 0, 0};
-    he_status status = he_watch_phase(m->watch, "measuring", 1, err);
+    he_status status = he_progress_phase(m->progress, "measuring", 1, err);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
         if (status == HE_OK) {
-            status = he_watch_at(m->watch, f, m->c.faces.issued, err);
+            status = he_progress_at(m->progress, f, m->c.faces.issued, err);
         }
         if (status != HE_OK) {
             return status;

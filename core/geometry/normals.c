@@ -1,4 +1,4 @@
-#include "base/exec.h"
+#include "base/parallel.h"
 #include "geometry/geometry.h"
 #include "geometry/ring.h"
 #include "mesh/walk.h"
@@ -263,10 +263,10 @@ static he_status face_range(void *context, uint32_t part, size_t from, size_t to
     return status;
 }
 
-he_status he_face_normals(const he_mesh *m, he_watch *watch, he_vec3 *out, he_error *err)
+he_status he_face_normals(const he_mesh *m, he_progress *progress, he_vec3 *out, he_error *err)
 {
     faces all = {m, are_triangles(&m->c), out};
-    return he_run_ranges(watch, m->c.faces.issued, face_range, &all, err);
+    return he_run_ranges(progress, m->c.faces.issued, face_range, &all, err);
 }
 
 /* --- vertices --------------------------------------------------------------------------------- */
@@ -314,7 +314,7 @@ static int area_unit_of_all(const he_mesh *m)
     return 2 * he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
 }
 
-he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_watch *watch, he_vec3 *out,
+he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_progress *progress, he_vec3 *out,
                             he_error *err)
 {
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -324,7 +324,7 @@ he_status he_vertex_normals(const he_mesh *m, he_weight weight, he_watch *watch,
     double half = abs(unit) < 1000 ? ldexp(0.5, -unit) : 0;
     uint32_t budget = he_ring_budget(m);
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
-        if (he_watch_at(watch, f, m->c.faces.issued, err) != HE_OK) {
+        if (he_progress_at(progress, f, m->c.faces.issued, err) != HE_OK) {
             return HE_CANCELLED;
         }
         uint32_t first = m->c.face_halfedge[f], h = first;

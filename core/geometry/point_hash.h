@@ -1,4 +1,5 @@
-/* point_hash.h - the hash of a point, for the tables of points (geometry/near.h, format/io/weld.h).
+/* point_hash.h - the hash of a point, for the tables of points (geometry/point_grid.h,
+ * format/io/weld.h).
  */
 #ifndef HE_GEOMETRY_POINT_HASH_H
 #define HE_GEOMETRY_POINT_HASH_H

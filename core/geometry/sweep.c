@@ -17,7 +17,7 @@ typedef struct interval {
 } interval;
 
 typedef struct sweep {
-    const he_flat *f;
+    const he_planar_loop *f;
     uint32_t *rank; /* for each corner, its place in the order of visits */
     /* The interval that each side of the loop bounds; HE_NONE while the sweep line does not cross
      * the side. */
@@ -47,14 +47,14 @@ static int orientation(const sweep *s, uint32_t a, uint32_t b, uint32_t c)
 
 /* --- the order in which corners are visited --- */
 
-static bool is_earlier(const he_flat *f, uint32_t a, uint32_t b)
+static bool is_earlier(const he_planar_loop *f, uint32_t a, uint32_t b)
 {
     return f->x[a] != f->x[b] ? f->x[a] < f->x[b] : f->y[a] != f->y[b] ? f->y[a] < f->y[b] : a < b;
 }
 
 /* Sorts the corners by merge sort, in runs of 1, 2, 4 and so on corners. Returns the one of the two
  * arrays that holds the result. */
-static uint32_t *sort(const he_flat *f, uint32_t *from, uint32_t *to)
+static uint32_t *sort(const he_planar_loop *f, uint32_t *from, uint32_t *to)
 {
     for (size_t run = 1; run < f->n; run *= 2) {
         for (size_t at = 0; at < f->n; at += 2 * run) {
@@ -348,7 +348,8 @@ static uint32_t span_of(const uint32_t t[3])
 /* Sorts the triangles so that each cuts a corner off. A triangle spans a range of corners, in which
  * lie the triangles that cut off what is between them; so triangles of small spans come first.
  * Returns false if they are no triangulation. `room` has n + 2 words. */
-static bool put_in_order(const he_flat *f, const uint32_t *from, uint32_t *to, uint32_t *room)
+static bool put_in_order(const he_planar_loop *f, const uint32_t *from, uint32_t *to,
+                         uint32_t *room)
 {
     uint32_t n = f->n, *next = room;
     memset(room, 0, ((size_t)n + 2) * sizeof *room);
@@ -395,7 +396,7 @@ static bool sweep_over(sweep *s, const uint32_t *order)
     return s->made == s->f->n - 2;
 }
 
-he_status he_sweep_cut(const he_flat *f, uint32_t *corners, bool *done, uint64_t *steps,
+he_status he_sweep_cut(const he_planar_loop *f, uint32_t *corners, bool *done, uint64_t *steps,
                        he_error *err)
 {
     size_t n = f->n;

@@ -16,13 +16,13 @@ enum { STEPS_UNTOLD = 1 << 15 };
  * edges takes, have been spent; then the index is made. */
 enum { SEARCHED_AT_LEAST = 4096 };
 
-bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
+bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work)
 {
     he_vertex a = he_origin(m, (he_halfedge){flat->halfedge[i]});
     he_vertex b = he_origin(m, (he_halfedge){flat->halfedge[k]});
     uint64_t steps = 0;
-    bool exists = he_joined(m, work->joins, a, b, &steps);
+    bool exists = he_edge_lookup_has(m, work->lookup, a, b, &steps);
     work->steps += steps;
     work->searched += steps;
     return exists;
@@ -30,31 +30,31 @@ bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint3
 
 he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work, he_error *err)
 {
-    if ((work->joins == NULL || work->joins == &work->own) &&
+    if ((work->lookup == NULL || work->lookup == &work->own) &&
         work->searched - work->sorted > SEARCHED_AT_LEAST + 2 * (uint64_t)m->c.edges.issued) {
-        he_joins_clear(&work->own);
-        work->joins = NULL;
-        he_status status = he_joins_make(m, &work->own, err);
+        he_edge_lookup_clear(&work->own);
+        work->lookup = NULL;
+        he_status status = he_edge_lookup_make(m, &work->own, err);
         if (status != HE_OK) {
             return status;
         }
-        work->joins = &work->own;
+        work->lookup = &work->own;
         work->sorted = work->searched;
     }
-    if (work->watch != NULL && work->steps - work->told > STEPS_UNTOLD) {
+    if (work->progress != NULL && work->steps - work->told > STEPS_UNTOLD) {
         work->told = work->steps;
-        return he_watch_step(work->watch, work->done, work->of, err);
+        return he_progress_step(work->progress, work->done, work->of, err);
     }
     return HE_OK;
 }
 
 void he_triangulation_work_clear(he_triangulation_work *work)
 {
-    he_joins_clear(&work->own);
+    he_edge_lookup_clear(&work->own);
     *work = (he_triangulation_work){0};
 }
 
-he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *err)
+he_status he_diagonals_refuse(const he_mesh *m, const he_planar_loop *flat, he_error *err)
 {
     uint32_t v = m->c.origin[flat->halfedge[0]];
     return he_fail(err, HE_DOUBLED_EDGE, HE_VERTEX, v,
@@ -65,7 +65,7 @@ he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *e
 
 /* The cost of a triangle that does not turn left. It exceeds the cost of all diagonals of a loop,
  * each of which costs at most one: its squared length divided by the largest that is possible in
- * the coordinates of flat.h. */
+ * the coordinates of planar_loop.h. */
 static const double BAD = 4096;
 
 typedef struct table {
@@ -76,14 +76,14 @@ typedef struct table {
     he_triangulation_work *work;
 } table;
 
-static double diagonal_cost(const he_flat *f, uint32_t i, uint32_t k)
+static double diagonal_cost(const he_planar_loop *f, uint32_t i, uint32_t k)
 {
     double x = f->x[i] - f->x[k], y = f->y[i] - f->y[k];
     return (x * x + y * y) / 12;
 }
 
 /* Computes the cost of the sub-loop i..k, including `side`, the cost of its diagonal. */
-static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, table *t)
+static double fill_cell(const he_planar_loop *f, uint32_t i, uint32_t k, double side, table *t)
 {
     uint32_t n = f->n;
     const double *from_i = t->cost + (size_t)i * n, *to_k = t->cost + (size_t)k * n;
@@ -93,7 +93,7 @@ static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, t
         /* Most triangles cost more than the best one even if they turn left, so for them it is not
          * tested whether they do. */
         if (cost < best) {
-            cost += he_flat_turns_left(f, i, j, k) ? 0 : BAD;
+            cost += he_planar_loop_turns_left(f, i, j, k) ? 0 : BAD;
             if (cost < best) {
                 best = cost;
                 t->middle[(size_t)i * n + k] = (uint8_t)j;
@@ -103,7 +103,8 @@ static double fill_cell(const he_flat *f, uint32_t i, uint32_t k, double side, t
     return best;
 }
 
-static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, table *t, he_error *err)
+static he_status fill_table(const he_mesh *m, const he_planar_loop *f, bool avoid, table *t,
+                            he_error *err)
 {
     uint32_t n = f->n;
     for (uint32_t i = 0; i + 1 < n; i++) {
@@ -129,7 +130,7 @@ static he_status fill_table(const he_mesh *m, const he_flat *f, bool avoid, tabl
 /* Lists the triangles innermost first, so that each cuts off its middle corner when its turn comes.
  * The stack holds sub-loops. They are visited in preorder and written backwards, which puts
  * children before parents. */
-static void read_table(const he_flat *f, const table *t, uint32_t *corners)
+static void read_table(const he_planar_loop *f, const table *t, uint32_t *corners)
 {
     uint32_t stack[2 * HE_EXACT_CORNERS], depth = 0, n = f->n, left = n - 2;
     stack[depth++] = 0 * n + (n - 1);
@@ -151,7 +152,7 @@ static void read_table(const he_flat *f, const table *t, uint32_t *corners)
 static he_status plan_exact(const he_mesh *m, bool avoid, he_triangulation_work *work,
                             he_triangulation *plan, he_error *err)
 {
-    const he_flat *f = &plan->flat;
+    const he_planar_loop *f = &plan->flat;
     size_t cells = (size_t)f->n * f->n, whole = f->n - 1;
     he_status status = HE_OK;
     table t = {he_mem_array(NULL, cells, sizeof *t.cost), he_mem_zero(cells, sizeof *t.middle),
@@ -188,7 +189,7 @@ out:
 
 void he_triangulation_clear(he_triangulation *triangulation)
 {
-    he_flat_clear(&triangulation->flat);
+    he_planar_loop_clear(&triangulation->flat);
     he_mem_free(triangulation->corners);
     *triangulation = (he_triangulation){.corners = NULL};
 }
@@ -212,7 +213,7 @@ static bool doubles_edge(const he_mesh *m, const he_triangulation *plan,
 static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_work *work,
                             he_triangulation *plan, bool *done, he_error *err)
 {
-    const he_flat *f = &plan->flat;
+    const he_planar_loop *f = &plan->flat;
     he_status status = he_sweep_cut(f, plan->corners, done, &work->steps, err);
     if (status != HE_OK || !*done) {
         return status;
@@ -223,7 +224,7 @@ static he_status plan_sweep(const he_mesh *m, unsigned flags, he_triangulation_w
     plan->degenerate = false;
     for (uint32_t k = 0; k + 2 < f->n && !plan->degenerate; k++) {
         const uint32_t *corners = plan->corners + 3 * (size_t)k;
-        plan->degenerate = !he_flat_turns_left(f, corners[0], corners[1], corners[2]);
+        plan->degenerate = !he_planar_loop_turns_left(f, corners[0], corners[1], corners[2]);
     }
     return HE_OK;
 }
@@ -302,7 +303,7 @@ static he_status make(const he_mesh *m, he_halfedge first, unsigned flags,
     bool found = false;
     he_status status = take_kept(m, first, flags, work, plan, &found, err);
     if (status == HE_OK && !found) {
-        status = he_flat_init(&plan->flat, m, first, err);
+        status = he_planar_loop_init(&plan->flat, m, first, err);
     }
     if (status != HE_OK || found) {
         return status;

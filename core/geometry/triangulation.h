@@ -19,8 +19,8 @@
  *
  * WORK. A short loop takes at most three tables of HE_EXACT_CORNERS^3 / 6 steps each, a long one of
  * n corners about n log n steps. Searching for edges costs a few steps for each diagonal; if it
- * costs more, an index of the edges at vertices of large degree is made (joins.h). So the work for
- * the loops of a mesh is bounded by its corners and needs no limit.
+ * costs more, an index of the edges at vertices of large degree is made (edge_lookup.h). So the
+ * work for the loops of a mesh is bounded by its corners and needs no limit.
  *
  * If the mesh has a cache of long faces (long_faces.h), their triangulations are taken from it.
  *
@@ -28,15 +28,15 @@
 #ifndef HE_GEOMETRY_TRIANGULATION_H
 #define HE_GEOMETRY_TRIANGULATION_H
 
-#include "base/watch.h"
-#include "geometry/flat.h"
-#include "geometry/joins.h"
+#include "base/progress.h"
+#include "geometry/edge_lookup.h"
+#include "geometry/planar_loop.h"
 
 enum { HE_EXACT_CORNERS = 64 };
 
 typedef struct he_triangulation {
     /* The loop in its plane; without x and y if the triangulation is from the cache. */
-    he_flat flat;
+    he_planar_loop flat;
     uint32_t *corners; /* three a triangle, counter-clockwise, for flat.n - 2 triangles */
     bool degenerate;   /* some triangle has no area in the plane, or is flipped */
     uint64_t steps;    /* number of steps that this triangulation took */
@@ -44,16 +44,16 @@ typedef struct he_triangulation {
 
 /* State shared by many triangulations of a mesh; {0} begins it. The mesh must not change meanwhile,
  * except that the caller may make edges of diagonals, if it reports them to `own`
- * (he_joins_reserve, he_joins_note). */
+ * (he_edge_lookup_reserve, he_edge_lookup_add). */
 typedef struct he_triangulation_work {
-    uint64_t steps;        /* steps taken, also for loops that were refused */
-    uint64_t searched;     /* how many of `steps` were spent searching for edges */
-    const he_joins *joins; /* index of edges; NULL: edges are searched around their ends */
-    he_joins own;          /* the index, once it is worth making, with the caller's diagonals */
-    uint64_t sorted;       /* value of `searched` when the index was made */
+    uint64_t steps;               /* steps taken, also for loops that were refused */
+    uint64_t searched;            /* how many of `steps` were spent searching for edges */
+    const he_edge_lookup *lookup; /* index of edges; NULL: edges are searched around their ends */
+    he_edge_lookup own; /* the index, once it is worth making, with the caller's diagonals */
+    uint64_t sorted;    /* value of `searched` when the index was made */
     /* The watch that progress is reported to, as `done` of `of`; the caller counts both. `told` is
      * the value of `steps` at the last report. */
-    he_watch *watch;
+    he_progress *progress;
     uint64_t done, of, told;
 } he_triangulation_work;
 
@@ -63,7 +63,7 @@ enum { HE_AVOID_EDGES = 1, HE_ANY_DIAGONALS = 2 };
  * he_triangulation_clear frees the result.
  * Returns HE_DOUBLED_EDGE if no triangulation was found that avoids the existing edges.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_triangulation_make(const he_mesh *m, he_halfedge first, unsigned flags,
                                              he_triangulation_work *work, he_triangulation *out,
                                              he_error *err);
@@ -73,14 +73,15 @@ void he_triangulation_work_clear(he_triangulation_work *work);
 /* --- functions for ears.c --- */
 
 /* Returns true if an edge of the mesh joins corners i and k. Counts the steps of the search. */
-bool he_diagonal_exists(const he_mesh *m, const he_flat *flat, uint32_t i, uint32_t k,
+bool he_diagonal_exists(const he_mesh *m, const he_planar_loop *flat, uint32_t i, uint32_t k,
                         he_triangulation_work *work);
 /* Reports progress; must be called between two cuts.
- * Returns HE_CANCELLED if the watch cancelled the work.
+ * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_NO_MEMORY if memory for the index of edges is out. */
 HE_NODISCARD he_status he_triangulation_step(const he_mesh *m, he_triangulation_work *work,
                                              he_error *err);
 /* Returns HE_DOUBLED_EDGE with a message about the loop. */
-HE_NODISCARD he_status he_diagonals_refuse(const he_mesh *m, const he_flat *flat, he_error *err);
+HE_NODISCARD he_status he_diagonals_refuse(const he_mesh *m, const he_planar_loop *flat,
+                                           he_error *err);
 
 #endif

@@ -34,7 +34,8 @@ static void sort_few(word_record *records, size_t count)
 
 enum { FEW = 96 };
 
-static he_status sort_records(word_record **records, size_t count, he_watch *watch, he_error *err)
+static he_status sort_records(word_record **records, size_t count, he_progress *progress,
+                              he_error *err)
 {
     if (count <= FEW) {
         sort_few(*records, count);
@@ -53,7 +54,7 @@ static he_status sort_records(word_record **records, size_t count, he_watch *wat
         if ((differs >> shift & 255) == 0) {
             continue;
         }
-        status = he_watch_step(watch, shift, 128, err);
+        status = he_progress_step(progress, shift, 128, err);
         size_t starts[257] = {0};
         for (size_t i = 0; i < count; i++) {
             starts[(from[i].key >> shift & 255) + 1]++;
@@ -62,7 +63,7 @@ static he_status sort_records(word_record **records, size_t count, he_watch *wat
             starts[b] += starts[b - 1];
         }
         for (size_t i = 0; i < count && status == HE_OK; i++) {
-            status = he_watch_at(watch, i, 128 * (uint64_t)count, err);
+            status = he_progress_at(progress, i, 128 * (uint64_t)count, err);
             to[starts[from[i].key >> shift & 255]++] = from[i];
         }
         word_record *swap = from;
@@ -244,12 +245,12 @@ static void words_clear(words *w)
 }
 
 static he_status gather_part(const he_change_part *part, words *w, he_changes *found,
-                             he_watch *watch, he_error *err)
+                             he_progress *progress, he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
-        if (i % HE_WATCH_STRIDE == 0) {
-            status = he_watch_step(watch, 0, 1, err);
+        if (i % HE_PROGRESS_STRIDE == 0) {
+            status = he_progress_step(progress, 0, 1, err);
             if (status != HE_OK) {
                 break;
             }
@@ -290,9 +291,9 @@ static he_status gather(const he_mesh *mesh, const he_change_part *parts, size_t
     }
     he_status status = HE_OK;
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
-        status = gather_part(&parts[i], w, found, mesh->watch, err);
+        status = gather_part(&parts[i], w, found, mesh->progress, err);
     }
-    return status == HE_OK ? sort_records(&w->records, w->count, mesh->watch, err) : status;
+    return status == HE_OK ? sort_records(&w->records, w->count, mesh->progress, err) : status;
 }
 
 /* Returns the attribute that the words of this column belong to; NULL for words of the structure,
@@ -319,8 +320,8 @@ static he_status note_labels(const he_mesh *mesh, he_changes *out, const he_colu
     rows = after != NULL && after->rows > rows ? after->rows : rows;
     he_status status = HE_OK;
     for (size_t row = 0; row < rows && status == HE_OK; row++) {
-        if (row % HE_WATCH_STRIDE == 0) {
-            status = he_watch_step(mesh->watch, 1, 2, err);
+        if (row % HE_PROGRESS_STRIDE == 0) {
+            status = he_progress_step(mesh->progress, 1, 2, err);
         }
         if (status == HE_OK && !same_labels(before, after, row)) {
             status = note_attribute(mesh, out, any, (uint32_t)row, err);
@@ -377,8 +378,8 @@ static he_status note_all(const he_mesh *mesh, const words *w, he_changes *out, 
             const word_change change = {column, row, records[i].before, records[last].after};
             status = note_word(mesh, out, attribute, &change, err);
         }
-        if (status == HE_OK && noted % HE_WATCH_STRIDE == 0) {
-            status = he_watch_step(mesh->watch, count + i, 2 * (uint64_t)count, err);
+        if (status == HE_OK && noted % HE_PROGRESS_STRIDE == 0) {
+            status = he_progress_step(mesh->progress, count + i, 2 * (uint64_t)count, err);
         }
         i = last + 1;
     }
@@ -399,13 +400,13 @@ static void keep_modified(const he_mesh *mesh, he_changes *out, he_kind kind)
     list->count = kept;
 }
 
-static he_status note_lineage(const he_change_part *part, he_changes *out, he_watch *watch,
+static he_status note_lineage(const he_change_part *part, he_changes *out, he_progress *progress,
                               he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = part->from; i < part->to && status == HE_OK; i++) {
-        if (i % HE_WATCH_STRIDE == 0) {
-            status = he_watch_step(watch, 1, 1, err);
+        if (i % HE_PROGRESS_STRIDE == 0) {
+            status = he_progress_step(progress, 1, 1, err);
             if (status != HE_OK) {
                 break;
             }
@@ -442,7 +443,7 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
 {
     he_changes found = {0};
     words w = {.records = NULL};
-    he_status status = he_watch_phase(mesh->watch, "listing changes", 1, err);
+    he_status status = he_progress_phase(mesh->progress, "listing changes", 1, err);
     if (status == HE_OK) {
         status = gather(mesh, parts, part_count, &w, &found, err);
     }
@@ -455,7 +456,7 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     }
     for (size_t i = 0; i < sizeof published / sizeof *published && status == HE_OK; i++) {
         he_kind kind = published[i];
-        status = he_watch_step(mesh->watch, 1, 1, err);
+        status = he_progress_step(mesh->progress, 1, 1, err);
         if (status == HE_OK) {
             status = he_ids_sort(&found.created[kind], err);
         }
@@ -471,7 +472,7 @@ he_status he_changes_sum(const he_mesh *mesh, const he_change_part *parts, size_
     }
     for (size_t i = 0; i < part_count && status == HE_OK; i++) {
         if (!parts[i].undone) {
-            status = note_lineage(&parts[i], &found, mesh->watch, err);
+            status = note_lineage(&parts[i], &found, mesh->progress, err);
         }
     }
 out:

@@ -307,11 +307,11 @@ static void check_materials(checker *c)
 he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity, size_t *total,
                    he_error *err)
 {
-    return he_check_watched(mesh, NULL, problems, capacity, total, err);
+    return he_check_with_progress(mesh, NULL, problems, capacity, total, err);
 }
 
-he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
-                           size_t capacity, size_t *total, he_error *err)
+he_status he_check_with_progress(const he_mesh *mesh, he_progress *progress, he_problem *problems,
+                                 size_t capacity, size_t *total, he_error *err)
 {
     /* The passes run in this order. The later passes follow links, so they run only if the first
      * finds all links valid. */
@@ -329,7 +329,7 @@ he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *pro
         goto out;
     }
     for (size_t i = 0; i < PASSES && status == HE_OK && (i != 1 || c.total == 0); i++) {
-        status = he_watch_step(watch, i, PASSES, err);
+        status = he_progress_step(progress, i, PASSES, err);
         if (status == HE_OK) {
             passes[i](&c);
         }

@@ -22,9 +22,10 @@ typedef struct he_problem {
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_check(const he_mesh *mesh, he_problem *problems, size_t capacity,
                                 size_t *total, he_error *err);
-/* Checks like he_check, with a watch that is stepped between the passes.
- * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_check_watched(const he_mesh *mesh, he_watch *watch, he_problem *problems,
-                                        size_t capacity, size_t *total, he_error *err);
+/* Checks like he_check, with a report of progress between the passes.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_check_with_progress(const he_mesh *mesh, he_progress *progress,
+                                              he_problem *problems, size_t capacity, size_t *total,
+                                              he_error *err);
 
 #endif

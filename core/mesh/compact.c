@@ -141,30 +141,30 @@ static void move_faces(const moving *m, size_t at)
 
 /* Moves a table of `issued` rows, block by block. */
 static he_status move_table(const moving *m, uint32_t issued,
-                            void (*move)(const moving *m, size_t at), he_watch *watch,
+                            void (*move)(const moving *m, size_t at), he_progress *progress,
                             he_error *err)
 {
     he_status status = HE_OK;
     for (size_t at = 0; at < block_count(issued) && status == HE_OK; at++) {
-        status = he_watch_at(watch, at * BLOCK_ROWS, issued, err);
+        status = he_progress_at(progress, at * BLOCK_ROWS, issued, err);
         move(m, at);
     }
     return status;
 }
 
-static he_status move_links(const he_content *from, const ranks *r, he_content *to, he_watch *watch,
-                            he_error *err)
+static he_status move_links(const he_content *from, const ranks *r, he_content *to,
+                            he_progress *progress, he_error *err)
 {
     const moving m = {from, to, r};
-    he_status status = he_watch_phase(watch, "moving vertices", 0.2, err);
+    he_status status = he_progress_phase(progress, "moving vertices", 0.2, err);
     if (status == HE_OK) {
-        status = move_table(&m, from->vertices.issued, move_vertices, watch, err);
+        status = move_table(&m, from->vertices.issued, move_vertices, progress, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(watch, "moving edges", 0.8, err);
+        status = he_progress_phase(progress, "moving edges", 0.8, err);
     }
     if (status == HE_OK) {
-        status = move_table(&m, from->edges.issued, move_edges, watch, err);
+        status = move_table(&m, from->edges.issued, move_edges, progress, err);
     }
     return status != HE_OK ? status : move_table(&m, from->faces.issued, move_faces, NULL, err);
 }
@@ -309,10 +309,10 @@ he_status he_compact(he_mesh *mesh, he_maps *out, he_error *err)
     }
     status = make_room(from, &fresh->c, err);
     if (status == HE_OK) {
-        status = move_links(from, &r, &fresh->c, mesh->watch, err);
+        status = move_links(from, &r, &fresh->c, mesh->progress, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(mesh->watch, "moving attributes", 1, err);
+        status = he_progress_phase(mesh->progress, "moving attributes", 1, err);
     }
     if (status == HE_OK) {
         status = move_columns(from, &r, &fresh->c, err);

@@ -17,7 +17,7 @@ void he_maps_clear(he_maps *maps);
  * attributes are otherwise unchanged; memory shrinks to fit. The delta records one replacement.
  * `maps` may be NULL; otherwise the caller clears it.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_compact(he_mesh *mesh, he_maps *maps, he_error *err);
 
 #endif

@@ -89,13 +89,13 @@ void he_content_clear(he_content *c)
     *c = (he_content){0};
 }
 
-/* The number of bytes that are copied between two steps of the watch. It is small, so that a copy
+/* The number of bytes that are copied between two reports of progress. It is small, so that a copy
  * can be cancelled quickly. */
 enum { COPY_BLOCK = 1 << 20 };
 
 /* The progress of copying columns one after another. */
 typedef struct copying {
-    he_watch *watch;
+    he_progress *progress;
     size_t done, bytes; /* bytes of all columns together */
 } copying;
 
@@ -110,16 +110,17 @@ static he_status copy_rows(copying *c, void *to, const void *from, size_t rows, 
         at += part;
         left -= part;
         c->done += part;
-        status = he_watch_step(c->watch, c->done, c->bytes, err);
+        status = he_progress_step(c->progress, c->done, c->bytes, err);
     }
     return status;
 }
 
-static he_status copy_links(const he_content *from, he_watch *watch, he_content *to, he_error *err)
+static he_status copy_links(const he_content *from, he_progress *progress, he_content *to,
+                            he_error *err)
 {
     size_t v = from->vertices.issued, h = 2 * (size_t)from->edges.issued, f = from->faces.issued;
     size_t word = sizeof(uint32_t);
-    copying c = {watch, 0, v * (sizeof *to->position + word) + 4 * h * word + f * word};
+    copying c = {progress, 0, v * (sizeof *to->position + word) + 4 * h * word + f * word};
     const struct {
         void *to;
         const void *from;
@@ -133,7 +134,7 @@ static he_status copy_links(const he_content *from, he_watch *watch, he_content 
         {to->face, from->face, h, word},
         {to->face_halfedge, from->face_halfedge, f, word},
     };
-    he_status status = he_watch_phase(watch, "copying", 1, err);
+    he_status status = he_progress_phase(progress, "copying", 1, err);
     for (size_t i = 0; i < sizeof parts / sizeof *parts && status == HE_OK; i++) {
         status = copy_rows(&c, parts[i].to, parts[i].from, parts[i].rows, parts[i].size, err);
     }
@@ -161,7 +162,8 @@ static he_status copy_columns(const he_content *from, he_content *to, he_error *
     return HE_OK;
 }
 
-he_status he_content_copy(const he_content *from, he_watch *watch, he_content *out, he_error *err)
+he_status he_content_copy(const he_content *from, he_progress *progress, he_content *out,
+                          he_error *err)
 {
     he_content to = {0};
     size_t v = from->vertices.issued, h = 2 * (size_t)from->edges.issued, f = from->faces.issued;
@@ -179,7 +181,7 @@ he_status he_content_copy(const he_content *from, he_watch *watch, he_content *o
         status = he_materials_copy(&from->materials, &to.materials, err);
     }
     if (status == HE_OK) {
-        status = copy_links(from, watch, &to, err);
+        status = copy_links(from, progress, &to, err);
     }
     if (status != HE_OK) {
         he_content_clear(&to);

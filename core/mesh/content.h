@@ -5,9 +5,9 @@
 #include "mesh/layout.h"
 
 void he_content_clear(he_content *content); /* frees everything in it */
-/* Makes a copy of a content. Fills *out on success only. `watch` may be NULL. */
-HE_NODISCARD he_status he_content_copy(const he_content *content, he_watch *watch, he_content *out,
-                                       he_error *err);
+/* Makes a copy of a content. Fills *out on success only. `progress` may be NULL. */
+HE_NODISCARD he_status he_content_copy(const he_content *content, he_progress *progress,
+                                       he_content *out, he_error *err);
 size_t he_content_bytes(const he_content *content);
 /* Returns the bytes of the issued rows of a content alone, without spare capacity. */
 size_t he_content_rows_bytes(const he_content *content);

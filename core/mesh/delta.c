@@ -104,13 +104,13 @@ static uint64_t key_of(const he_record *r)
     return (uint64_t)r->row << 32 | (uint64_t)r->column << 8 | r->word;
 }
 
-/* The number of records that are folded between two steps of the watch; each takes a few cache
+/* The number of records that are folded between two reports of progress; each takes a few cache
  * misses. */
-enum { FOLD_STRIDE = 16 * HE_WATCH_STRIDE };
+enum { FOLD_STRIDE = 16 * HE_PROGRESS_STRIDE };
 
 /* Folds records by a hash table with open addressing. A slot holds one more than the index of a
  * record; it is 0 if it is free. */
-he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err)
+he_status he_delta_fold(he_delta *d, size_t from, he_progress *progress, he_error *err)
 {
     uint32_t bits = 4;
     while ((size_t)1 << bits < 2 * (d->count - from)) {
@@ -125,7 +125,7 @@ he_status he_delta_fold(he_delta *d, size_t from, he_watch *watch, he_error *err
     size_t i = from;
     for (; i < d->count; i++) {
         if ((i - from) % FOLD_STRIDE == 0) {
-            status = he_watch_step(watch, 0, 1, err);
+            status = he_progress_step(progress, 0, 1, err);
             if (status != HE_OK) {
                 break;
             }

@@ -86,9 +86,10 @@ void he_delta_trim(he_delta *delta);
  * their delta is no longer than what they touched. Requires that no savepoint after `from` is
  * rolled back to, and that no column or content was replaced since.
  * Returns HE_NO_MEMORY if memory is out; the records are as they were.
- * Returns HE_CANCELLED if the watch cancelled the work; some records are folded, and undo and redo
+ * Returns HE_CANCELLED if the work was cancelled; some records are folded, and undo and redo
  * still lead to equal states. */
-HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_watch *watch, he_error *err);
+HE_NODISCARD he_status he_delta_fold(he_delta *delta, size_t from, he_progress *progress,
+                                     he_error *err);
 
 /* Records all writes to `mesh` in `delta` from here on; NULL ends the recording. Returns the delta
  * that recorded before, or NULL. */

@@ -33,10 +33,10 @@ size_t he_content_issued(const he_content *content, he_kind domain);
 
 struct he_mesh {
     he_content c;
-    he_delta *delta;      /* where writes are recorded, or NULL */
-    he_watch *watch;      /* reports progress of long work and may cancel it; or NULL */
-    bool expendable;      /* see he_mesh_expend */
-    struct he_kept *kept; /* the caches of a mesh that is never edited (long_faces.h); else NULL */
+    he_delta *delta;       /* where writes are recorded, or NULL */
+    he_progress *progress; /* reports progress of long work and may cancel it; or NULL */
+    bool expendable;       /* see he_mesh_expend */
+    struct he_kept *kept;  /* the caches of a mesh that is never edited (long_faces.h); else NULL */
 };
 
 #endif

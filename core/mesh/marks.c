@@ -61,7 +61,7 @@ he_status he_require_unlocked_about(const he_mesh *m, const he_marks *marks, he_
         if (status == HE_OK) {
             status = he_require_unlocked(marks, HE_FACE, he_face_of(m, h).i, err);
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (status == HE_OK && h.i != first.i);
     return status;
 }

@@ -21,9 +21,9 @@ void he_mesh_free(he_mesh *mesh)
     }
 }
 
-void he_mesh_watch(he_mesh *mesh, he_watch *watch)
+void he_mesh_set_progress(he_mesh *mesh, he_progress *progress)
 {
-    mesh->watch = watch;
+    mesh->progress = progress;
 }
 
 void he_mesh_expend(he_mesh *mesh)
@@ -33,21 +33,22 @@ void he_mesh_expend(he_mesh *mesh)
 
 he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err)
 {
-    return he_mesh_copy_watched(mesh, NULL, out, err);
+    return he_mesh_copy_with_progress(mesh, NULL, out, err);
 }
 
-he_status he_mesh_copy_watched(const he_mesh *mesh, he_watch *watch, he_mesh **out, he_error *err)
+he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progress *progress, he_mesh **out,
+                                     he_error *err)
 {
     he_mesh *copy = he_mesh_new();
     if (copy == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to copy the mesh");
     }
-    he_status status = he_content_copy(&mesh->c, watch, &copy->c, err);
+    he_status status = he_content_copy(&mesh->c, progress, &copy->c, err);
     if (status != HE_OK) {
         he_mesh_free(copy);
         return status;
     }
-    copy->watch = watch;
+    copy->progress = progress;
     *out = copy;
     return HE_OK;
 }

@@ -54,8 +54,8 @@
 #define HE_MESH_MESH_H
 
 #include "base/mem.h"
+#include "base/progress.h"
 #include "base/status.h"
-#include "base/watch.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -94,10 +94,10 @@ he_mesh *he_mesh_new(void);
 void he_mesh_free(he_mesh *mesh);
 /* Makes an independent copy with equal ids, dead rows and attributes; it records nothing. */
 HE_NODISCARD he_status he_mesh_copy(const he_mesh *mesh, he_mesh **out, he_error *err);
-/* Copies a mesh like he_mesh_copy, with a watch (which may be NULL) that afterwards belongs to the
- * copy. */
-HE_NODISCARD he_status he_mesh_copy_watched(const he_mesh *mesh, he_watch *watch, he_mesh **out,
-                                            he_error *err);
+/* Copies a mesh like he_mesh_copy, with `progress` (which may be NULL), which afterwards belongs to
+ * the copy. */
+HE_NODISCARD he_status he_mesh_copy_with_progress(const he_mesh *mesh, he_progress *progress,
+                                                  he_mesh **out, he_error *err);
 /* Returns true if two meshes are equal in every issued row of every column and in their high-water
  * marks. */
 bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
@@ -105,9 +105,9 @@ bool he_mesh_equal(const he_mesh *a, const he_mesh *b);
  * dead. */
 bool he_mesh_equal_live(const he_mesh *a, const he_mesh *b);
 
-/* Steps `watch` during all long work with this mesh, which may then fail with HE_CANCELLED; NULL
- * removes the watch. No other thread may use the mesh, and the watch must outlive its use. */
-void he_mesh_watch(he_mesh *mesh, he_watch *watch);
+/* Reports to `progress` during all long work with this mesh, which may then fail with HE_CANCELLED;
+ * NULL removes it. No other thread may use the mesh, and `progress` must outlive its use. */
+void he_mesh_set_progress(he_mesh *mesh, he_progress *progress);
 /* Says that the mesh is a private copy which its owner frees as soon as an edit is cancelled. A
  * cancelled edit then leaves it half edited, because a rollback takes about as long as the edit
  * did. Any other failure leaves it as it was. */

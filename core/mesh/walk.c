@@ -9,7 +9,7 @@ uint32_t he_vertex_degree(const he_mesh *m, he_vertex v)
     he_halfedge first = he_vertex_halfedge(m, v), h = first;
     do {
         degree++;
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     return degree;
 }
@@ -39,7 +39,7 @@ uint32_t he_vertex_fans(const he_mesh *m, he_vertex v)
     he_halfedge first = he_vertex_halfedge(m, v), h = first;
     do {
         fans += he_is_boundary_halfedge(m, h);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     return fans == 0 ? 1 : fans;
 }
@@ -52,11 +52,11 @@ static inline bool meet(const he_mesh *m, he_halfedge *up, he_halfedge *down)
     if (up->i == down->i) {
         return true;
     }
-    *up = he_turn_ccw(m, *up);
+    *up = he_swing_ccw(m, *up);
     if (up->i == down->i) {
         return true;
     }
-    *down = he_turn_cw(m, *down);
+    *down = he_swing_cw(m, *down);
     return false;
 }
 
@@ -69,7 +69,7 @@ static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b,
 {
     const he_halfedge none = {HE_NONE};
     he_vertex a = he_origin(m, leaving);
-    he_halfedge up = leaving, down = he_turn_cw(m, up), up_b = none, down_b = none;
+    he_halfedge up = leaving, down = he_swing_cw(m, up), up_b = none, down_b = none;
     for (uint32_t round = 0;; round++) {
         *steps += 2;
         if (he_target(m, up).i == b.i) {
@@ -89,7 +89,7 @@ static he_halfedge find_from(const he_mesh *m, he_halfedge leaving, he_vertex b,
             if (up_b.i == HE_NONE) {
                 return none;
             }
-            down_b = he_turn_cw(m, up_b);
+            down_b = he_swing_cw(m, up_b);
         }
         *steps += 2;
         if (he_target(m, up_b).i == a.i) {

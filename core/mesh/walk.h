@@ -54,13 +54,13 @@ static inline he_vec3 he_position(const he_mesh *m, he_vertex v)
 }
 
 /* Returns the next half-edge counter-clockwise that leaves the same origin. */
-static inline he_halfedge he_turn_ccw(const he_mesh *m, he_halfedge h)
+static inline he_halfedge he_swing_ccw(const he_mesh *m, he_halfedge h)
 {
     return he_twin(he_prev(m, h));
 }
 
 /* Returns the half-edge that precedes h in counter-clockwise order around their origin. */
-static inline he_halfedge he_turn_cw(const he_mesh *m, he_halfedge h)
+static inline he_halfedge he_swing_cw(const he_mesh *m, he_halfedge h)
 {
     return (he_halfedge){m->c.next[h.i ^ 1u]};
 }

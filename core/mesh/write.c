@@ -27,7 +27,7 @@ static size_t column_words(const he_mesh *m, he_kind domain)
     return words;
 }
 
-static size_t records_needed(const he_mesh *m, const he_need *need)
+static size_t records_needed(const he_mesh *m, const he_reservation *need)
 {
     size_t vertex = column_words(m, HE_VERTEX), face = column_words(m, HE_FACE);
     size_t edge = column_words(m, HE_EDGE) + 2 * column_words(m, HE_HALFEDGE);
@@ -48,7 +48,7 @@ static he_status reserve_column(he_column *column, size_t issued, size_t extra, 
                : he_column_extend(column, issued - column->rows, err);
 }
 
-static he_status reserve_columns(he_mesh *m, const he_need *need, he_error *err)
+static he_status reserve_columns(he_mesh *m, const he_reservation *need, he_error *err)
 {
     const size_t extra[HE_KIND_COUNT] = {
         [HE_VERTEX] = need->vertices,
@@ -80,7 +80,7 @@ static he_status check_ids(he_kind kind, uint32_t issued, uint32_t extra, he_err
         he_kind_plural(kind), issued, HE_MAX_ROWS);
 }
 
-he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err)
+he_status he_reserve_more(he_mesh *m, const he_reservation *need, he_error *err)
 {
     he_content *c = &m->c;
     he_status status = check_ids(HE_VERTEX, c->vertices.issued, need->vertices, err);

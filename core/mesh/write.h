@@ -19,14 +19,14 @@
 
 /* The most memory that the COMMIT part of an edit will use. he_reserve adds the records of new rows
  * itself: the links, position and attributes of each. */
-typedef struct he_need {
+typedef struct he_reservation {
     uint32_t vertices, edges, faces;
     size_t deleted_vertices, deleted_edges, deleted_faces; /* rows that will die */
     size_t links;      /* link words written on rows that stay */
     size_t positions;  /* positions written on rows that stay */
     size_t attributes; /* attribute rows written on rows that stay (of every column) */
     size_t lineage;    /* records of parents and merges */
-} he_need;
+} he_reservation;
 
 /* The most records that COMMIT makes of a new or dying row, without its attributes: one more for
  * each link than it has links, since an edit may write a link twice. */
@@ -41,9 +41,9 @@ enum {
  * as it was.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left. */
-HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_need *need, he_error *err);
+HE_NODISCARD he_status he_reserve_more(he_mesh *m, const he_reservation *need, he_error *err);
 /* Returns true if the mesh has no attributes and has enough room already. */
-static inline bool he_has_room(const he_mesh *m, const he_need *need)
+static inline bool he_has_room(const he_mesh *m, const he_reservation *need)
 {
     const he_content *c = &m->c;
     const he_delta *d = m->delta;
@@ -57,7 +57,7 @@ static inline bool he_has_room(const he_mesh *m, const he_need *need)
                                  HE_POSITION_RECORDS * need->positions + need->lineage <=
                              d->capacity - d->count);
 }
-static inline he_status he_reserve(he_mesh *m, he_need need, he_error *err)
+static inline he_status he_reserve(he_mesh *m, he_reservation need, he_error *err)
 {
     return he_has_room(m, &need) ? HE_OK : he_reserve_more(m, &need, err);
 }
@@ -236,15 +236,15 @@ static inline void he_note_merged(he_mesh *m, he_kind kind, uint32_t gone, uint3
  * leaves the default; `copy` copies unless the rule is default. Without such columns these do
  * nothing, and in a mesh without attributes they cost one test. */
 void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t);
-static inline void he_carry_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b,
-                                    double t)
+static inline void he_attributes_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a,
+                                         uint32_t b, double t)
 {
     if (m->c.column_count > 0) {
         he_values_between(m, kind, to, a, b, t);
     }
 }
 void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
-static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+static inline void he_attributes_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
     if (m->c.column_count > 0) {
         he_values_copy(m, kind, to, from);
@@ -252,11 +252,12 @@ static inline void he_carry_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t
 }
 /* Sets the attributes of row `to` to the mean of n rows; copies the first row if the rule is
  * copy. */
-void he_carry_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
+void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n);
 /* Mixes attributes of two rows: interpolated columns become linear from `other` (t = 0) to the
  * value of `row` (t = 1); all other columns keep the value of `row`. */
 void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t);
-static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
+static inline void he_attributes_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other,
+                                     double t)
 {
     if (m->c.column_count > 0) {
         he_values_mix(m, kind, row, other, t);
@@ -264,7 +265,8 @@ static inline void he_carry_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t
 }
 /* Merges the values of row `gone` into row `into` by he_values_mix, unless `into` is locked. */
 void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t);
-static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+static inline void he_attributes_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone,
+                                       double t)
 {
     if (m->c.column_count > 0) {
         he_values_merge(m, kind, into, gone, t);
@@ -272,7 +274,7 @@ static inline void he_carry_merge(he_mesh *m, he_kind kind, uint32_t into, uint3
 }
 /* Copies the values whatever the rule, for a corner that changes its half-edge. */
 void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from);
-static inline void he_carry_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+static inline void he_attributes_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
 {
     if (m->c.column_count > 0) {
         he_values_move(m, kind, to, from);

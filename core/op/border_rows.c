@@ -23,8 +23,8 @@ static he_status run_edge_cut(he_mesh *m, const he_arg *args, he_results *out, h
     he_status status =
         he_edge_cut(m, args[EDGE_CUT_EDGES].ids, args[EDGE_CUT_EDGES].count, &seam, err);
     if (status == HE_OK) {
-        he_give_list(out, EDGE_CUT_OUT_VERTICES, &seam.vertices);
-        he_give_list(out, EDGE_CUT_OUT_EDGES, &seam.edges);
+        he_results_set_list(out, EDGE_CUT_OUT_VERTICES, &seam.vertices);
+        he_results_set_list(out, EDGE_CUT_OUT_EDGES, &seam.edges);
         he_seam_clear(&seam);
     }
     return status;
@@ -40,8 +40,8 @@ static he_status run_edge_weld(he_mesh *m, const he_arg *args, he_results *out, 
         he_edge_weld(m, (he_edge){args[EDGE_WELD_A].id}, (he_edge){args[EDGE_WELD_B].id},
                      (he_keep)args[EDGE_WELD_KEEP].choice, &moved, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_WELD_OUT_EDGE, args[EDGE_WELD_A].id);
-        he_give_number(out, EDGE_WELD_OUT_MOVED, (double)moved);
+        he_results_set(out, EDGE_WELD_OUT_EDGE, args[EDGE_WELD_A].id);
+        he_results_set_number(out, EDGE_WELD_OUT_MOVED, (double)moved);
     }
     return status;
 }
@@ -56,9 +56,9 @@ static he_status run_edge_extrude(he_mesh *m, const he_arg *args, he_results *ou
         he_edge_extrude(m, args[EDGE_EXTRUDE_EDGES].ids, args[EDGE_EXTRUDE_EDGES].count,
                         args[EDGE_EXTRUDE_BY].points[0], &walls, err);
     if (status == HE_OK) {
-        he_give_list(out, EDGE_EXTRUDE_OUT_VERTICES, &walls.vertices);
-        he_give_list(out, EDGE_EXTRUDE_OUT_EDGES, &walls.edges);
-        he_give_list(out, EDGE_EXTRUDE_OUT_FACES, &walls.faces);
+        he_results_set_list(out, EDGE_EXTRUDE_OUT_VERTICES, &walls.vertices);
+        he_results_set_list(out, EDGE_EXTRUDE_OUT_EDGES, &walls.edges);
+        he_results_set_list(out, EDGE_EXTRUDE_OUT_FACES, &walls.faces);
         he_walls_clear(&walls);
     }
     return status;

@@ -21,8 +21,8 @@ static he_status run_decimate(he_mesh *m, const he_arg *args, he_results *out, h
     he_decimated done;
     he_status status = he_decimate(m, &options, &done, err);
     if (status == HE_OK) {
-        he_give(out, DECIMATE_OUT_STOP, (uint32_t)done.stop);
-        he_give_number(out, DECIMATE_OUT_ERROR, done.error);
+        he_results_set(out, DECIMATE_OUT_STOP, (uint32_t)done.stop);
+        he_results_set_number(out, DECIMATE_OUT_ERROR, done.error);
     }
     return status;
 }

@@ -16,8 +16,8 @@ static he_status run_edge_bisect(he_mesh *m, const he_arg *args, he_results *out
     he_status status = he_edge_bisect(m, (he_edge){args[EDGE_BISECT_EDGE].id},
                                       args[EDGE_BISECT_T].number, &v, &e, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_BISECT_OUT_VERTEX, v.i);
-        he_give(out, EDGE_BISECT_OUT_EDGE, e.i);
+        he_results_set(out, EDGE_BISECT_OUT_VERTEX, v.i);
+        he_results_set(out, EDGE_BISECT_OUT_EDGE, e.i);
     }
     return status;
 }
@@ -30,7 +30,7 @@ static he_status run_edge_join(he_mesh *m, const he_arg *args, he_results *out, 
     he_edge e;
     he_status status = he_edge_join(m, (he_vertex){args[EDGE_JOIN_VERTEX].id}, &e, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_JOIN_OUT_EDGE, e.i);
+        he_results_set(out, EDGE_JOIN_OUT_EDGE, e.i);
     }
     return status;
 }
@@ -41,21 +41,21 @@ enum { EDGE_SPLIT_OUT_VERTEX, EDGE_SPLIT_OUT_EDGES, EDGE_SPLIT_OUT_FACES };
 static he_status run_edge_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_split split;
-    he_status status = he_give_room(out, EDGE_SPLIT_OUT_EDGES, 3, err);
+    he_status status = he_results_reserve(out, EDGE_SPLIT_OUT_EDGES, 3, err);
     if (status == HE_OK) {
-        status = he_give_room(out, EDGE_SPLIT_OUT_FACES, 2, err);
+        status = he_results_reserve(out, EDGE_SPLIT_OUT_FACES, 2, err);
     }
     if (status == HE_OK) {
         status = he_edge_split(m, (he_edge){args[EDGE_SPLIT_EDGE].id}, args[EDGE_SPLIT_T].number,
                                &split, err);
     }
     if (status == HE_OK) {
-        he_give(out, EDGE_SPLIT_OUT_VERTEX, split.vertex.i);
+        he_results_set(out, EDGE_SPLIT_OUT_VERTEX, split.vertex.i);
         for (unsigned i = 0; i <= split.sides; i++) {
-            he_give_add(out, EDGE_SPLIT_OUT_EDGES, split.edges[i].i);
+            he_results_add(out, EDGE_SPLIT_OUT_EDGES, split.edges[i].i);
         }
         for (unsigned i = 0; i < split.sides; i++) {
-            he_give_add(out, EDGE_SPLIT_OUT_FACES, split.faces[i].i);
+            he_results_add(out, EDGE_SPLIT_OUT_FACES, split.faces[i].i);
         }
     }
     return status;
@@ -68,7 +68,7 @@ static he_status run_edge_flip(he_mesh *m, const he_arg *args, he_results *out, 
 {
     he_status status = he_edge_flip(m, (he_edge){args[EDGE_FLIP_EDGE].id}, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_FLIP_OUT_EDGE, args[EDGE_FLIP_EDGE].id);
+        he_results_set(out, EDGE_FLIP_OUT_EDGE, args[EDGE_FLIP_EDGE].id);
     }
     return status;
 }
@@ -91,7 +91,7 @@ static he_status run_edge_collapse(he_mesh *m, const he_arg *args, he_results *o
         m, h, args[EDGE_COLLAPSE_T].number,
         args[EDGE_COLLAPSE_TO].given ? args[EDGE_COLLAPSE_TO].points : NULL, &v, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_COLLAPSE_OUT_VERTEX, v.i);
+        he_results_set(out, EDGE_COLLAPSE_OUT_VERTEX, v.i);
     }
     return status;
 }
@@ -105,9 +105,9 @@ static he_status run_edge_bevel(he_mesh *m, const he_arg *args, he_results *out,
     he_status status = he_edge_bevel(m, (he_edge){args[EDGE_BEVEL_EDGE].id},
                                      args[EDGE_BEVEL_WIDTH].number, &bevel, err);
     if (status == HE_OK) {
-        he_give(out, EDGE_BEVEL_OUT_FACE, bevel.face.i);
-        he_give_list(out, EDGE_BEVEL_OUT_VERTICES, &bevel.vertices);
-        he_give_list(out, EDGE_BEVEL_OUT_EDGES, &bevel.edges);
+        he_results_set(out, EDGE_BEVEL_OUT_FACE, bevel.face.i);
+        he_results_set_list(out, EDGE_BEVEL_OUT_VERTICES, &bevel.vertices);
+        he_results_set_list(out, EDGE_BEVEL_OUT_EDGES, &bevel.edges);
         he_bevel_clear(&bevel);
     }
     return status;

@@ -16,7 +16,7 @@ static he_status run_face_add(he_mesh *m, const he_arg *args, he_results *out, h
     he_status status = he_face_add(m, args[FACE_ADD_VERTICES].ids, args[FACE_ADD_VERTICES].count,
                                    &f, &out->list[FACE_ADD_OUT_EDGES], err);
     if (status == HE_OK) {
-        he_give(out, FACE_ADD_OUT_FACE, f.i);
+        he_results_set(out, FACE_ADD_OUT_FACE, f.i);
     }
     return status;
 }
@@ -79,8 +79,8 @@ static he_status run_face_split(he_mesh *m, const he_arg *args, he_results *out,
         status = he_face_split(m, f, from, to, &e, &made, err);
     }
     if (status == HE_OK) {
-        he_give(out, FACE_SPLIT_OUT_EDGE, e.i);
-        he_give(out, FACE_SPLIT_OUT_FACE, made.i);
+        he_results_set(out, FACE_SPLIT_OUT_EDGE, e.i);
+        he_results_set(out, FACE_SPLIT_OUT_FACE, made.i);
     }
     return status;
 }
@@ -93,7 +93,7 @@ static he_status run_face_join(he_mesh *m, const he_arg *args, he_results *out, 
     he_face f;
     he_status status = he_face_join(m, (he_edge){args[FACE_JOIN_EDGE].id}, &f, err);
     if (status == HE_OK) {
-        he_give(out, FACE_JOIN_OUT_FACE, f.i);
+        he_results_set(out, FACE_JOIN_OUT_FACE, f.i);
     }
     return status;
 }
@@ -109,7 +109,7 @@ static he_status run_face_poke(he_mesh *m, const he_arg *args, he_results *out, 
                      args[FACE_POKE_POSITION].given ? args[FACE_POKE_POSITION].points : NULL, &v,
                      &out->list[FACE_POKE_OUT_EDGES], &out->list[FACE_POKE_OUT_FACES], err);
     if (status == HE_OK) {
-        he_give(out, FACE_POKE_OUT_VERTEX, v.i);
+        he_results_set(out, FACE_POKE_OUT_VERTEX, v.i);
     }
     return status;
 }
@@ -135,9 +135,9 @@ static he_status run_hole_fill(he_mesh *m, const he_arg *args, he_results *out, 
     he_status status = he_hole_fill(m, (he_halfedge){args[HOLE_FILL_HALFEDGE].id},
                                     (he_fill)args[HOLE_FILL_METHOD].choice, &filled, err);
     if (status == HE_OK) {
-        he_give(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
-        he_give_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
-        he_give_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
+        he_results_set(out, HOLE_FILL_OUT_VERTEX, filled.vertex.i);
+        he_results_set_list(out, HOLE_FILL_OUT_EDGES, &filled.edges);
+        he_results_set_list(out, HOLE_FILL_OUT_FACES, &filled.faces);
         he_filled_clear(&filled);
     }
     return status;

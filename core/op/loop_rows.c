@@ -13,8 +13,8 @@ static he_status run_loop_bridge(he_mesh *m, const he_arg *args, he_results *out
     he_status status = he_loop_bridge(m, (he_halfedge){args[LOOP_BRIDGE_A].id},
                                       (he_halfedge){args[LOOP_BRIDGE_B].id}, &bridge, err);
     if (status == HE_OK) {
-        he_give_list(out, LOOP_BRIDGE_OUT_EDGES, &bridge.edges);
-        he_give_list(out, LOOP_BRIDGE_OUT_FACES, &bridge.faces);
+        he_results_set_list(out, LOOP_BRIDGE_OUT_EDGES, &bridge.edges);
+        he_results_set_list(out, LOOP_BRIDGE_OUT_FACES, &bridge.faces);
         he_bridge_clear(&bridge);
     }
     return status;
@@ -29,7 +29,7 @@ static he_status run_loop_join(he_mesh *m, const he_arg *args, he_results *out, 
     he_status status = he_loop_join(m, (he_halfedge){args[LOOP_JOIN_A].id},
                                     (he_halfedge){args[LOOP_JOIN_B].id}, &moved, err);
     if (status == HE_OK) {
-        he_give_number(out, LOOP_JOIN_OUT_MOVED, (double)moved);
+        he_results_set_number(out, LOOP_JOIN_OUT_MOVED, (double)moved);
     }
     return status;
 }
@@ -42,7 +42,7 @@ static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out,
     he_loop_parts parts;
     he_status status = HE_OK;
     for (size_t i = LOOP_SPLIT_OUT_VERTICES; status == HE_OK && i <= LOOP_SPLIT_OUT_FACES; i++) {
-        status = he_give_room(out, i, 3, err);
+        status = he_results_reserve(out, i, 3, err);
     }
     if (status == HE_OK) {
         status =
@@ -51,11 +51,11 @@ static he_status run_loop_split(he_mesh *m, const he_arg *args, he_results *out,
     }
     if (status == HE_OK) {
         for (size_t i = 0; i < 3; i++) {
-            he_give_add(out, LOOP_SPLIT_OUT_VERTICES, parts.vertices[i].i);
-            he_give_add(out, LOOP_SPLIT_OUT_EDGES, parts.edges[i].i);
+            he_results_add(out, LOOP_SPLIT_OUT_VERTICES, parts.vertices[i].i);
+            he_results_add(out, LOOP_SPLIT_OUT_EDGES, parts.edges[i].i);
         }
-        he_give_add(out, LOOP_SPLIT_OUT_FACES, parts.faces[0].i);
-        he_give_add(out, LOOP_SPLIT_OUT_FACES, parts.faces[1].i);
+        he_results_add(out, LOOP_SPLIT_OUT_FACES, parts.faces[0].i);
+        he_results_add(out, LOOP_SPLIT_OUT_FACES, parts.faces[1].i);
     }
     return status;
 }

@@ -34,11 +34,11 @@ static he_status run_plane_split(he_mesh *m, const he_arg *args, he_results *out
     const uint32_t *faces = args[PLANE_SPLIT_FACES].given ? args[PLANE_SPLIT_FACES].ids : NULL;
     he_status status = he_plane_split(m, &plane, faces, args[PLANE_SPLIT_FACES].count, &parts, err);
     if (status == HE_OK) {
-        he_give_number(out, PLANE_SPLIT_OUT_EDGES_SPLIT, (double)parts.vertices.count);
-        he_give_number(out, PLANE_SPLIT_OUT_FACES_SPLIT, parts.faces_split);
-        he_give_list(out, PLANE_SPLIT_OUT_VERTICES, &parts.vertices);
-        he_give_list(out, PLANE_SPLIT_OUT_EDGES, &parts.edges);
-        he_give_list(out, PLANE_SPLIT_OUT_FACES, &parts.faces);
+        he_results_set_number(out, PLANE_SPLIT_OUT_EDGES_SPLIT, (double)parts.vertices.count);
+        he_results_set_number(out, PLANE_SPLIT_OUT_FACES_SPLIT, parts.faces_split);
+        he_results_set_list(out, PLANE_SPLIT_OUT_VERTICES, &parts.vertices);
+        he_results_set_list(out, PLANE_SPLIT_OUT_EDGES, &parts.edges);
+        he_results_set_list(out, PLANE_SPLIT_OUT_FACES, &parts.faces);
         he_plane_parts_clear(&parts);
     }
     return status;
@@ -61,10 +61,10 @@ static he_status run_plane_cut(he_mesh *m, const he_arg *args, he_results *out, 
     he_status status = he_plane_cut(m, &plane, (he_cut_side)args[PLANE_CUT_KEEP].choice,
                                     args[PLANE_CUT_CAP].flag, &parts, err);
     if (status == HE_OK) {
-        he_give_number(out, PLANE_CUT_OUT_EDGES_SPLIT, parts.edges_split);
-        he_give_number(out, PLANE_CUT_OUT_FACES_SPLIT, parts.faces_split);
-        he_give_number(out, PLANE_CUT_OUT_FACES_DELETED, parts.faces_deleted);
-        he_give_list(out, PLANE_CUT_OUT_CAPS, &parts.caps);
+        he_results_set_number(out, PLANE_CUT_OUT_EDGES_SPLIT, parts.edges_split);
+        he_results_set_number(out, PLANE_CUT_OUT_FACES_SPLIT, parts.faces_split);
+        he_results_set_number(out, PLANE_CUT_OUT_FACES_DELETED, parts.faces_deleted);
+        he_results_set_list(out, PLANE_CUT_OUT_CAPS, &parts.caps);
         he_cut_parts_clear(&parts);
     }
     return status;
@@ -79,7 +79,7 @@ static he_status run_delaunay(he_mesh *m, const he_arg *args, he_results *out, h
     he_status status =
         he_delaunay(m, edges, args[DELAUNAY_EDGES].count, &out->list[DELAUNAY_OUT_EDGES], err);
     if (status == HE_OK) {
-        he_give_number(out, DELAUNAY_OUT_FLIPS, (double)out->list[DELAUNAY_OUT_EDGES].count);
+        he_results_set_number(out, DELAUNAY_OUT_FLIPS, (double)out->list[DELAUNAY_OUT_EDGES].count);
     }
     return status;
 }
@@ -87,7 +87,7 @@ static he_status run_delaunay(he_mesh *m, const he_arg *args, he_results *out, h
 static void give_map(he_results *out, size_t slot, uint32_t **takes, uint32_t count)
 {
     he_ids list = {*takes, count, count};
-    he_give_list(out, slot, &list);
+    he_results_set_list(out, slot, &list);
     *takes = NULL;
 }
 

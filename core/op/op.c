@@ -233,29 +233,29 @@ he_status he_op_run(const he_op *op, he_mesh *mesh, const he_arg args[HE_OP_PARA
     return status;
 }
 
-void he_give(he_results *out, size_t slot, uint32_t id)
+void he_results_set(he_results *out, size_t slot, uint32_t id)
 {
     out->id[slot] = id;
 }
 
-void he_give_number(he_results *out, size_t slot, double number)
+void he_results_set_number(he_results *out, size_t slot, double number)
 {
     out->number[slot] = number;
 }
 
-he_status he_give_room(he_results *out, size_t slot, size_t count, he_error *err)
+he_status he_results_reserve(he_results *out, size_t slot, size_t count, he_error *err)
 {
     return he_ids_reserve(&out->list[slot], count, err);
 }
 
-void he_give_add(he_results *out, size_t slot, uint32_t id)
+void he_results_add(he_results *out, size_t slot, uint32_t id)
 {
     he_ids *list = &out->list[slot];
     assert(list->count < list->capacity);
     list->ids[list->count++] = id;
 }
 
-void he_give_list(he_results *out, size_t slot, he_ids *takes)
+void he_results_set_list(he_results *out, size_t slot, he_ids *takes)
 {
     he_ids_clear(&out->list[slot]);
     out->list[slot] = *takes;

@@ -126,7 +126,7 @@ typedef struct he_op {
     he_param params[HE_OP_PARAMS]; /* ends at the first one without a name */
     he_result_row results[HE_OP_RESULTS];
     /* Every refusal that the operation can give, in addition to HE_NO_MEMORY, HE_IDS_EXHAUSTED and,
-     * under a watch, HE_CANCELLED; ends in HE_OK. */
+     * if the work can be cancelled, HE_CANCELLED; ends in HE_OK. */
     he_status refusals[HE_OP_REFUSALS];
     int change[3]; /* change of the numbers of vertices, edges and faces */
     /* The time of the operation relative to `transform`: for each element of the mesh if it takes

@@ -12,7 +12,7 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     he_subdivide_counts counts[HE_SUBDIVIDE_STEPS];
     unsigned steps = (unsigned)args[SUBDIVIDE_STEPS].number;
     for (size_t i = SUBDIVIDE_OUT_VERTICES; i <= SUBDIVIDE_OUT_FACES; i++) {
-        he_status status = he_give_room(out, i, steps, err);
+        he_status status = he_results_reserve(out, i, steps, err);
         if (status != HE_OK) {
             return status;
         }
@@ -20,9 +20,9 @@ static he_status run_subdivide(he_mesh *m, const he_arg *args, he_results *out, 
     he_status status =
         he_subdivide(m, (he_scheme)args[SUBDIVIDE_SCHEME].choice, steps, counts, err);
     for (unsigned i = 0; i < steps && status == HE_OK; i++) {
-        he_give_add(out, SUBDIVIDE_OUT_VERTICES, counts[i].vertices);
-        he_give_add(out, SUBDIVIDE_OUT_EDGES, counts[i].edges);
-        he_give_add(out, SUBDIVIDE_OUT_FACES, counts[i].faces);
+        he_results_add(out, SUBDIVIDE_OUT_VERTICES, counts[i].vertices);
+        he_results_add(out, SUBDIVIDE_OUT_EDGES, counts[i].edges);
+        he_results_add(out, SUBDIVIDE_OUT_FACES, counts[i].faces);
     }
     return status;
 }

@@ -16,9 +16,9 @@ static he_status run_face_extrude(he_mesh *m, const he_arg *args, he_results *ou
                         args[FACE_EXTRUDE_REGION].flag,
                         (he_extrude_motion){by, args[FACE_EXTRUDE_DISTANCE].number}, &parts, err);
     if (status == HE_OK) {
-        he_give_list(out, FACE_EXTRUDE_OUT_VERTICES, &parts.vertices);
-        he_give_list(out, FACE_EXTRUDE_OUT_EDGES, &parts.edges);
-        he_give_list(out, FACE_EXTRUDE_OUT_FACES, &parts.faces);
+        he_results_set_list(out, FACE_EXTRUDE_OUT_VERTICES, &parts.vertices);
+        he_results_set_list(out, FACE_EXTRUDE_OUT_EDGES, &parts.edges);
+        he_results_set_list(out, FACE_EXTRUDE_OUT_FACES, &parts.faces);
         he_region_parts_clear(&parts);
     }
     return status;
@@ -35,9 +35,9 @@ static he_status run_face_inset(he_mesh *m, const he_arg *args, he_results *out,
         m, args[FACE_INSET_FACES].ids, args[FACE_INSET_FACES].count, args[FACE_INSET_REGION].flag,
         (he_inset_width){factor, args[FACE_INSET_DISTANCE].number}, &parts, err);
     if (status == HE_OK) {
-        he_give_list(out, FACE_INSET_OUT_VERTICES, &parts.vertices);
-        he_give_list(out, FACE_INSET_OUT_EDGES, &parts.edges);
-        he_give_list(out, FACE_INSET_OUT_FACES, &parts.faces);
+        he_results_set_list(out, FACE_INSET_OUT_VERTICES, &parts.vertices);
+        he_results_set_list(out, FACE_INSET_OUT_EDGES, &parts.edges);
+        he_results_set_list(out, FACE_INSET_OUT_FACES, &parts.faces);
         he_region_parts_clear(&parts);
     }
     return status;
@@ -51,7 +51,7 @@ static he_status run_face_collapse(he_mesh *m, const he_arg *args, he_results *o
     he_vertex v;
     he_status status = he_face_collapse(m, (he_face){args[FACE_COLLAPSE_FACE].id}, &v, err);
     if (status == HE_OK) {
-        he_give(out, FACE_COLLAPSE_OUT_VERTEX, v.i);
+        he_results_set(out, FACE_COLLAPSE_OUT_VERTEX, v.i);
     }
     return status;
 }

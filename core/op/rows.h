@@ -35,15 +35,16 @@ size_t he_table_number(const he_op *op);
  * compares the names. */
 
 /* Sets the result in a slot to one element, which may be HE_NONE, or to one choice. */
-void he_give(he_results *out, size_t slot, uint32_t id);
-void he_give_number(he_results *out, size_t slot, double number);
+void he_results_set(he_results *out, size_t slot, uint32_t id);
+void he_results_set_number(he_results *out, size_t slot, double number);
 /* Makes room for the result in a slot, a list of at most `count` ids. It must be called before the
  * edit, because nothing may fail after it.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_give_room(he_results *out, size_t slot, size_t count, he_error *err);
+HE_NODISCARD he_status he_results_reserve(he_results *out, size_t slot, size_t count,
+                                          he_error *err);
 /* Appends to the list in a slot. */
-void he_give_add(he_results *out, size_t slot, uint32_t id);
+void he_results_add(he_results *out, size_t slot, uint32_t id);
 /* Makes `takes` the whole list in a slot; `takes` is empty afterwards. */
-void he_give_list(he_results *out, size_t slot, he_ids *takes);
+void he_results_set_list(he_results *out, size_t slot, he_ids *takes);
 
 #endif

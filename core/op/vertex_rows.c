@@ -15,7 +15,7 @@ static he_status run_vertex_add(he_mesh *m, const he_arg *args, he_results *out,
     he_vertex v;
     he_status status = he_vertex_add(m, args[VERTEX_ADD_POSITION].points[0], &v, err);
     if (status == HE_OK) {
-        he_give(out, VERTEX_ADD_OUT_VERTEX, v.i);
+        he_results_set(out, VERTEX_ADD_OUT_VERTEX, v.i);
     }
     return status;
 }
@@ -52,9 +52,9 @@ enum { VERTEX_SPLIT_OUT_VERTEX, VERTEX_SPLIT_OUT_EDGES, VERTEX_SPLIT_OUT_FACES }
 static he_status run_vertex_split(he_mesh *m, const he_arg *args, he_results *out, he_error *err)
 {
     he_vertex_parts parts;
-    he_status status = he_give_room(out, VERTEX_SPLIT_OUT_EDGES, 3, err);
+    he_status status = he_results_reserve(out, VERTEX_SPLIT_OUT_EDGES, 3, err);
     if (status == HE_OK) {
-        status = he_give_room(out, VERTEX_SPLIT_OUT_FACES, 2, err);
+        status = he_results_reserve(out, VERTEX_SPLIT_OUT_FACES, 2, err);
     }
     if (status == HE_OK) {
         status = he_vertex_split(
@@ -62,12 +62,12 @@ static he_status run_vertex_split(he_mesh *m, const he_arg *args, he_results *ou
             (he_vertex){args[VERTEX_SPLIT_RIGHT].id}, args[VERTEX_SPLIT_TO].points[0], &parts, err);
     }
     if (status == HE_OK) {
-        he_give(out, VERTEX_SPLIT_OUT_VERTEX, parts.vertex.i);
+        he_results_set(out, VERTEX_SPLIT_OUT_VERTEX, parts.vertex.i);
         for (unsigned i = 0; i <= parts.sides; i++) {
-            he_give_add(out, VERTEX_SPLIT_OUT_EDGES, parts.edges[i].i);
+            he_results_add(out, VERTEX_SPLIT_OUT_EDGES, parts.edges[i].i);
         }
         for (unsigned i = 0; i < parts.sides; i++) {
-            he_give_add(out, VERTEX_SPLIT_OUT_FACES, parts.faces[i].i);
+            he_results_add(out, VERTEX_SPLIT_OUT_FACES, parts.faces[i].i);
         }
     }
     return status;
@@ -81,7 +81,7 @@ static he_status run_vertex_dissolve(he_mesh *m, const he_arg *args, he_results 
     he_face f;
     he_status status = he_vertex_dissolve(m, (he_vertex){args[VERTEX_DISSOLVE_VERTEX].id}, &f, err);
     if (status == HE_OK) {
-        he_give(out, VERTEX_DISSOLVE_OUT_FACE, f.i);
+        he_results_set(out, VERTEX_DISSOLVE_OUT_FACE, f.i);
     }
     return status;
 }
@@ -98,8 +98,8 @@ static he_status run_vertex_split_corners(he_mesh *m, const he_arg *args, he_res
         he_vertex_split_corners(m, (he_halfedge){args[VERTEX_SPLIT_CORNERS_A].id},
                                 (he_halfedge){args[VERTEX_SPLIT_CORNERS_B].id}, &v, &e, err);
     if (status == HE_OK) {
-        he_give(out, VERTEX_SPLIT_CORNERS_OUT_VERTEX, v.i);
-        he_give(out, VERTEX_SPLIT_CORNERS_OUT_EDGE, e.i);
+        he_results_set(out, VERTEX_SPLIT_CORNERS_OUT_VERTEX, v.i);
+        he_results_set(out, VERTEX_SPLIT_CORNERS_OUT_EDGE, e.i);
     }
     return status;
 }
@@ -114,7 +114,7 @@ static he_status run_vertex_bevel(he_mesh *m, const he_arg *args, he_results *ou
         m, (he_vertex){args[VERTEX_BEVEL_VERTEX].id}, args[VERTEX_BEVEL_WIDTH].number,
         &out->list[VERTEX_BEVEL_OUT_VERTICES], &out->list[VERTEX_BEVEL_OUT_EDGES], &f, err);
     if (status == HE_OK) {
-        he_give(out, VERTEX_BEVEL_OUT_FACE, f.i);
+        he_results_set(out, VERTEX_BEVEL_OUT_FACE, f.i);
     }
     return status;
 }

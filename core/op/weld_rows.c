@@ -35,7 +35,7 @@ static he_status run_vertex_weld(he_mesh *m, const he_arg *args, he_results *out
             ? weld_named(m, &args[VERTEX_WELD_VERTICES], place, kept, &moved, err)
             : he_weld_near(m, args[VERTEX_WELD_TOLERANCE].number, place, kept, &moved, err);
     if (status == HE_OK) {
-        he_give_number(out, VERTEX_WELD_OUT_MOVED, (double)moved);
+        he_results_set_number(out, VERTEX_WELD_OUT_MOVED, (double)moved);
     }
     return status;
 }
@@ -49,7 +49,7 @@ static he_status run_weld(he_mesh *m, const he_arg *args, he_results *out, he_er
     he_status status = he_weld_near(m, args[WELD_TOLERANCE].number, HE_MERGE_MEAN,
                                     &out->list[WELD_OUT_VERTICES], &moved, err);
     if (status == HE_OK) {
-        he_give_number(out, WELD_OUT_MOVED, (double)moved);
+        he_results_set_number(out, WELD_OUT_MOVED, (double)moved);
     }
     return status;
 }

@@ -38,9 +38,9 @@ static he_status run_append(he_mesh *m, const he_arg *args, he_results *out, he_
     he_appended appended;
     he_status status = he_append(m, args[APPEND_MESH].mesh, &appended, err);
     if (status == HE_OK) {
-        he_give_list(out, APPEND_OUT_VERTICES, &appended.vertices);
-        he_give_list(out, APPEND_OUT_EDGES, &appended.edges);
-        he_give_list(out, APPEND_OUT_FACES, &appended.faces);
+        he_results_set_list(out, APPEND_OUT_VERTICES, &appended.vertices);
+        he_results_set_list(out, APPEND_OUT_EDGES, &appended.edges);
+        he_results_set_list(out, APPEND_OUT_FACES, &appended.faces);
         he_appended_clear(&appended);
     }
     return status;

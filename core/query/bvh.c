@@ -1,6 +1,6 @@
 #include "query/bvh.h"
 
-#include "draw/drawing.h"
+#include "draw/draw_arrays.h"
 #include "geometry/geometry.h"
 #include "geometry/long_faces_keep.h"
 #include "geometry/scale.h"
@@ -27,8 +27,8 @@ static he_status count_triangles(const he_mesh *m, uint32_t *out, he_error *err)
 static he_status list_triangles(he_bvh *tree, const he_mesh *m, he_error *err)
 {
     he_frame frame = he_frame_of(m);
-    he_drawing d;
-    he_status status = he_drawing_init(&d, m, &frame, err);
+    he_draw_arrays d;
+    he_status status = he_draw_arrays_init(&d, m, &frame, err);
     if (status != HE_OK) {
         return status;
     }
@@ -37,15 +37,15 @@ static he_status list_triangles(he_bvh *tree, const he_mesh *m, he_error *err)
         if (m->c.face_halfedge[f] == HE_DEAD) {
             continue;
         }
-        he_drawing_walk walk;
+        he_draw_arrays_walk walk;
         uint32_t row[HE_DRAWN_ROW];
-        he_drawing_begin(&d, f, &walk);
-        while (he_drawing_next(&d, &walk, row)) {
+        he_draw_arrays_begin(&d, f, &walk);
+        while (he_draw_arrays_next(&d, &walk, row)) {
             tree->triangles[at++] = (he_bvh_triangle){{row[0], row[1], row[2]}, f};
         }
     }
     tree->count = at;
-    he_drawing_clear(&d);
+    he_draw_arrays_clear(&d);
     return HE_OK;
 }
 
@@ -227,14 +227,14 @@ out:
     return status;
 }
 
-he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err)
+he_status he_bvh_new(const he_mesh *m, he_progress *progress, he_bvh **out, he_error *err)
 {
     uint32_t count = 0;
     he_box bounds;
-    he_budget budget = {.left = UINT64_MAX, .watch = watch};
+    he_budget budget = {.left = UINT64_MAX, .progress = progress};
     he_status status = count_triangles(m, &count, err);
     if (status == HE_OK) {
-        status = he_long_faces_keep(m, watch, err);
+        status = he_long_faces_keep(m, progress, err);
     }
     if (status != HE_OK) {
         return status;
@@ -247,7 +247,7 @@ he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *
     tree->exponent = he_exponent_of(fmax(he_vec3_extent(bounds.min), he_vec3_extent(bounds.max)));
     tree->scale = ldexp(1, -tree->exponent);
     if (count > 0) {
-        status = he_watch_phase(watch, "sorting by place", 1, err);
+        status = he_progress_phase(progress, "sorting by place", 1, err);
         status = status == HE_OK ? build(tree, m, count, &budget, err) : status;
     }
     if (status != HE_OK) {

@@ -1,7 +1,8 @@
 /* bvh.h - a tree of boxes over the triangles of a mesh: rays, nearest points, self-intersections.
  *
- * The triangles are those of drawing.h, so a ray hits what is drawn. The tree is one of boxes.h;
- * the triangles of a hub (hubs.h), and those of a face that has many, have subtrees of their own.
+ * The triangles are those of draw_arrays.h, so a ray hits what is drawn. The tree is one of
+ * boxes.h; the triangles of a hub (hubs.h), and those of a face that has many, have subtrees of
+ * their own.
  *
  *     nodes      as in boxes.h, over `triangles`
  *     boxes      in coordinates times `scale`, a power of two that brings the faces near the unit
@@ -49,13 +50,14 @@ typedef struct he_bvh {
     he_hubs hubs;
 } he_bvh;
 
-/* Makes a tree, in O(n log n) time for n triangles. `watch`, which may be NULL, need not be the
- * watch of the mesh: other threads may read the mesh meanwhile.
+/* Makes a tree, in O(n log n) time for n triangles. `progress`, which may be NULL, need not be that
+ * of the mesh: other threads may read the mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
- * (drawing.h), or there are more than 2^31 triangles.
- * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_watch *watch, he_bvh **out, he_error *err);
+ * (draw_arrays.h), or there are more than 2^31 triangles.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_bvh_new(const he_mesh *m, he_progress *progress, he_bvh **out,
+                                  he_error *err);
 void he_bvh_free(he_bvh *tree);
 
 /* The point where a ray hits a face, or the nearest point on a face. */
@@ -100,10 +102,10 @@ HE_NODISCARD he_status he_bvh_closest(const he_bvh *tree, const he_mesh *m, he_v
  * are not tried against each other.
  *
  * `complete` is set to false, and there may be more pairs, if the budget ran out or if `most` pairs
- * were found, in which pairs of faces of many triangles may count several times. `watch` may be
+ * were found, in which pairs of faces of many triangles may count several times. `progress` may be
  * NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_bvh_intersections(const he_bvh *tree, const he_mesh *m, size_t most,
                                             he_budget *budget, he_ids *pairs, bool *complete,
                                             he_error *err);

@@ -1,6 +1,6 @@
 #include "query/bvh_pairs.h"
 
-#include "geometry/meet.h"
+#include "geometry/triangle_intersection.h"
 #include "query/bvh_walk.h"
 
 #include <stdlib.h>
@@ -26,7 +26,7 @@ typedef struct walk {
     uint32_t leaves; /* number of leaves that were tried with themselves */
 } walk;
 
-/* Progress is reported to the watch after each TOLD leaves. */
+/* Progress is reported after each TOLD leaves. */
 enum { TOLD = 1024 };
 
 /* --- triangles --- */
@@ -52,7 +52,7 @@ he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a
         return HE_OK;
     }
     he_status status = he_budget_take(s->budget, HE_BVH_PAIR, err);
-    if (status != HE_OK || !he_triangles_meet(a, b)) {
+    if (status != HE_OK || !he_triangles_intersect(a, b)) {
         return status;
     }
     status = he_ids_reserve(s->pairs, 2, err);
@@ -116,7 +116,7 @@ static he_status try_leaves(void *context, const he_box_node *a, const he_box_no
         w->done += a->count;
         if (status == HE_OK) {
             status = w->leaves++ % TOLD == 0
-                         ? he_watch_step(s->budget->watch, w->done, s->tree->count, err)
+                         ? he_progress_step(s->budget->progress, w->done, s->tree->count, err)
                          : HE_OK;
         }
     }
@@ -232,7 +232,7 @@ static he_status search(walk *w, he_error *err)
 {
     static const he_boxes_visit plain = {NULL, try_leaves}, grouped = {is_needless, try_leaves};
     he_pair_search *s = &w->search;
-    he_status status = he_watch_phase(s->budget->watch, "intersecting", 1, err);
+    he_status status = he_progress_phase(s->budget->progress, "intersecting", 1, err);
     if (status == HE_OK) {
         status = prepare(w, err);
     }

@@ -26,7 +26,7 @@ uint32_t he_pair_hub(const he_pair_search *s, uint32_t i, uint32_t k);
 /* Appends the faces of triangles i and k, whose corners are a and b, if the triangles intersect.
  * Returns HE_LIMIT if the list is full, or the budget ran out.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_pair_try(he_pair_search *s, uint32_t i, uint32_t k, const he_vec3 a[3],
                                    const he_vec3 b[3], he_error *err);
 

@@ -12,7 +12,7 @@
  *
  * The boxes are rounded outward; pairs that they do not separate are tried exactly, like all
  * others. */
-#include "geometry/meet.h"
+#include "geometry/triangle_intersection.h"
 #include "query/bvh_pairs.h"
 #include "query/bvh_walk.h"
 

@@ -1,6 +1,6 @@
 #include "query/curvature.h"
 
-#include "draw/drawing.h"
+#include "draw/draw_arrays.h"
 #include "geometry/geometry.h"
 #include "geometry/scale.h"
 #include "mesh/walk.h"
@@ -149,7 +149,7 @@ static he_status visit_face(const he_mesh *m, uint32_t face, uint64_t *most, vis
                             void *context, he_error *err)
 {
     uint32_t first = m->c.face_halfedge[face], row[HE_DRAWN_ROW];
-    he_drawing d = {.mesh = m, .frame = {{0, 0, 0}, 1}};
+    he_draw_arrays d = {.mesh = m, .frame = {{0, 0, 0}, 1}};
     triangle t;
     if (m->c.next[m->c.next[m->c.next[first]]] != first) {
         uint32_t degree = he_face_degree(m, (he_face){face});
@@ -161,29 +161,29 @@ static he_status visit_face(const he_mesh *m, uint32_t face, uint64_t *most, vis
         }
         *most -= cost;
         he_frame frame = frame_of(m, first);
-        he_status status = he_drawing_init_faces(&d, m, &frame, &face, 1, UINT64_MAX, err);
+        he_status status = he_draw_arrays_init_faces(&d, m, &frame, &face, 1, UINT64_MAX, err);
         if (status != HE_OK) {
             return status;
         }
     }
-    he_drawing_walk walk;
-    he_drawing_begin(&d, face, &walk);
-    while (he_drawing_next(&d, &walk, row)) {
+    he_draw_arrays_walk walk;
+    he_draw_arrays_begin(&d, face, &walk);
+    while (he_draw_arrays_next(&d, &walk, row)) {
         measure(&t, m, row);
         visit(&t, context);
     }
-    he_drawing_clear(&d);
+    he_draw_arrays_clear(&d);
     return HE_OK;
 }
 
-static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_watch *watch,
+static he_status for_each(const he_mesh *m, const chosen *c, uint64_t most, he_progress *progress,
                           visitor visit, void *context, he_error *err)
 {
     he_status status = HE_OK;
     size_t count = c->all ? m->c.faces.issued : c->faces.count;
     for (size_t i = 0; i < count && status == HE_OK; i++) {
         uint32_t face = c->all ? (uint32_t)i : c->faces.ids[i];
-        status = he_watch_at(watch, i, count, err);
+        status = he_progress_at(progress, i, count, err);
         if (status == HE_OK && he_face_is_live(m, (he_face){face})) {
             status = visit_face(m, face, &most, visit, context, err);
         }
@@ -292,7 +292,7 @@ static he_curvature conclude(const he_mesh *m, uint32_t v, const sums *s)
 }
 
 he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
-                        he_watch *watch, he_curvature *out, he_error *err)
+                        he_progress *progress, he_curvature *out, he_error *err)
 {
     chosen c;
     bending b = {&c, NULL};
@@ -305,7 +305,7 @@ he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count, uint
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to sum up curvature");
         goto done;
     }
-    status = for_each(m, &c, most, watch, add_bend, &b, err);
+    status = for_each(m, &c, most, progress, add_bend, &b, err);
     for (uint32_t v = 0; c.all && v < m->c.vertices.issued && status == HE_OK; v++) {
         if (he_vertex_is_live(m, (he_vertex){v})) {
             *out++ = conclude(m, v, &b.rows[v]);
@@ -346,7 +346,7 @@ static void add_cotangent(const triangle *t, void *context)
 }
 
 he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count, uint64_t most,
-                             he_watch *watch, double *out, he_error *err)
+                             he_progress *progress, double *out, he_error *err)
 {
     chosen c;
     weighing w = {m, &c, NULL};
@@ -359,7 +359,7 @@ he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to sum up cotangents");
         goto done;
     }
-    status = for_each(m, &c, most, watch, add_cotangent, &w, err);
+    status = for_each(m, &c, most, progress, add_cotangent, &w, err);
     for (uint32_t e = 0; c.all && e < m->c.edges.issued && status == HE_OK; e++) {
         if (he_edge_is_live(m, (he_edge){e})) {
             *out++ = w.rows[e];

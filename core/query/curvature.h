@@ -1,9 +1,9 @@
 /* curvature.h - discrete curvature at vertices, and cotangent weights of edges.
  *
- * All values are those of the surface of triangles with which drawing.h fills the faces: a polygon
- * of more than three corners counts by those of its triangles that touch the vertex or edge. The
- * triangles of a face need not turn in the plane of the face, so the angles at a corner add up to
- * what the surface has there, above pi if the corner is reflex.
+ * All values are those of the surface of triangles with which draw_arrays.h fills the faces: a
+ * polygon of more than three corners counts by those of its triangles that touch the vertex or
+ * edge. The triangles of a face need not turn in the plane of the face, so the angles at a corner
+ * add up to what the surface has there, above pi if the corner is reflex.
  *
  * DEGENERATE triangles, whose sides are parallel up to rounding, add their angles (a side of no
  * length is at right angles to the others) and nothing else.
@@ -34,22 +34,22 @@ typedef struct he_curvature {
 } he_curvature;
 
 /* Computes the curvature of each of `count` live vertices, or, if `of` is NULL, of all of them in
- * the order of ids. `watch` may be NULL. On failure `out` may be half written.
+ * the order of ids. `progress` may be NULL. On failure `out` may be half written.
  * Returns HE_LIMIT if the sum of the squared degrees of neighbouring faces of more than four
  * corners, which cutting those may cost, is above `most`.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if the id of a face is too large for the arrays of a drawing
- * (drawing.h).
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * (draw_arrays.h).
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_curvatures(const he_mesh *m, const uint32_t *of, size_t count,
-                                     uint64_t most, he_watch *watch, he_curvature *out,
+                                     uint64_t most, he_progress *progress, he_curvature *out,
                                      he_error *err);
 
 /* Computes half the sum of the cotangents of the angles opposite to each edge; on the boundary
  * there is only one such angle. NaN beside a degenerate triangle. Parameters and errors are those
  * of he_curvatures. */
 HE_NODISCARD he_status he_edge_cotangents(const he_mesh *m, const uint32_t *of, size_t count,
-                                          uint64_t most, he_watch *watch, double *out,
+                                          uint64_t most, he_progress *progress, double *out,
                                           he_error *err);
 
 #endif

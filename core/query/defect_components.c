@@ -77,8 +77,8 @@ static void judge(const survey *s, const shell *own, double small, he_defects *o
     }
 }
 
-he_status he_defects_of_components(const he_mesh *m, double small, he_watch *watch, he_defects *out,
-                                   he_error *err)
+he_status he_defects_of_components(const he_mesh *m, double small, he_progress *progress,
+                                   he_defects *out, he_error *err)
 {
     he_box box;
     uint32_t *component = NULL, count = 0;
@@ -86,7 +86,7 @@ he_status he_defects_of_components(const he_mesh *m, double small, he_watch *wat
     survey s = {.m = m};
     s.exponent = he_exponent_of(fmax(he_vec3_extent(box.min), he_vec3_extent(box.max)));
     s.scale = ldexp(1, -s.exponent);
-    he_status status = he_watch_phase(watch, "looking at components", 1, err);
+    he_status status = he_progress_phase(progress, "looking at components", 1, err);
     if (status == HE_OK) {
         status = he_components_label(m, &component, &count, err);
     }
@@ -104,7 +104,7 @@ he_status he_defects_of_components(const he_mesh *m, double small, he_watch *wat
                               .max = {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
     }
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(watch, f, m->c.faces.issued, err);
+        status = he_progress_at(progress, f, m->c.faces.issued, err);
         if (m->c.face_halfedge[f] != HE_DEAD) {
             add_face(&s, f);
         }

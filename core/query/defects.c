@@ -48,11 +48,12 @@ void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint3
     list->total++;
 }
 
-static he_status of_vertices(const he_mesh *m, he_watch *watch, he_defects *out, he_error *err)
+static he_status of_vertices(const he_mesh *m, he_progress *progress, he_defects *out,
+                             he_error *err)
 {
-    he_status status = he_watch_phase(watch, "looking at vertices", 0.15, err);
+    he_status status = he_progress_phase(progress, "looking at vertices", 0.15, err);
     for (uint32_t v = 0; v < m->c.vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(watch, v, m->c.vertices.issued, err);
+        status = he_progress_at(progress, v, m->c.vertices.issued, err);
         uint32_t h = m->c.vertex_halfedge[v];
         if (h == HE_NONE) {
             he_defects_add(out, HE_DEFECT_ISOLATED, v, HE_NONE, 0);
@@ -67,12 +68,12 @@ static he_status of_vertices(const he_mesh *m, he_watch *watch, he_defects *out,
     return status;
 }
 
-static he_status of_edges(const he_mesh *m, double merge, he_watch *watch, he_defects *out,
+static he_status of_edges(const he_mesh *m, double merge, he_progress *progress, he_defects *out,
                           he_error *err)
 {
-    he_status status = he_watch_phase(watch, "looking at edges", 0.6, err);
+    he_status status = he_progress_phase(progress, "looking at edges", 0.6, err);
     for (uint32_t e = 0; e < m->c.edges.issued && status == HE_OK; e++) {
-        status = he_watch_at(watch, e, m->c.edges.issued, err);
+        status = he_progress_at(progress, e, m->c.edges.issued, err);
         if (!he_edge_is_live(m, (he_edge){e})) {
             continue;
         }
@@ -159,7 +160,7 @@ static void of_face(const measure *s, uint32_t f, he_defects *out)
     }
 }
 
-static he_status of_faces(const he_mesh *m, const he_thresholds *t, he_watch *watch,
+static he_status of_faces(const he_mesh *m, const he_thresholds *t, he_progress *progress,
                           he_defects *out, he_error *err)
 {
     he_box box;
@@ -171,9 +172,9 @@ static he_status of_faces(const he_mesh *m, const he_thresholds *t, he_watch *wa
     s.flat = ldexp(t->flat, -s.exponent);
     s.diagonal = he_vec3_length(
         he_vec3_sub(he_vec3_scale(box.max, s.scale), he_vec3_scale(box.min, s.scale)));
-    he_status status = he_watch_phase(watch, "looking at faces", 0.8, err);
+    he_status status = he_progress_phase(progress, "looking at faces", 0.8, err);
     for (uint32_t f = 0; f < m->c.faces.issued && status == HE_OK; f++) {
-        status = he_watch_at(watch, f, m->c.faces.issued, err);
+        status = he_progress_at(progress, f, m->c.faces.issued, err);
         if (m->c.face_halfedge[f] != HE_DEAD) {
             of_face(&s, f, out);
         }
@@ -181,23 +182,23 @@ static he_status of_faces(const he_mesh *m, const he_thresholds *t, he_watch *wa
     return status;
 }
 
-he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds, he_watch *watch,
+he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds, he_progress *progress,
                           he_defects *out, he_error *err)
 {
     he_defects found = {0};
-    he_status status = of_vertices(m, watch, &found, err);
+    he_status status = of_vertices(m, progress, &found, err);
     if (status == HE_OK) {
         status =
-            he_defects_of_positions(m, thresholds->merge, thresholds->seed, watch, &found, err);
+            he_defects_of_positions(m, thresholds->merge, thresholds->seed, progress, &found, err);
     }
     if (status == HE_OK) {
-        status = of_edges(m, thresholds->merge, watch, &found, err);
+        status = of_edges(m, thresholds->merge, progress, &found, err);
     }
     if (status == HE_OK) {
-        status = of_faces(m, thresholds, watch, &found, err);
+        status = of_faces(m, thresholds, progress, &found, err);
     }
     if (status == HE_OK) {
-        status = he_defects_of_components(m, thresholds->small, watch, &found, err);
+        status = he_defects_of_components(m, thresholds->small, progress, &found, err);
     }
     if (status == HE_OK) {
         *out = found;

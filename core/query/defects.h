@@ -77,17 +77,19 @@ typedef struct he_defects {
 void he_defects_add(he_defects *defects, he_defect_code code, uint32_t id, uint32_t other,
                     double value);
 
-/* Finds all defects except self-intersections in a mesh that passed he_check. `watch`, which may be
- * NULL, need not be the watch of the mesh: other threads may read the mesh meanwhile.
+/* Finds all defects except self-intersections in a mesh that passed he_check. `progress`, which may
+ * be NULL, need not be that of the mesh: other threads may read the mesh meanwhile.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_defects_find(const he_mesh *m, const he_thresholds *thresholds,
-                                       he_watch *watch, he_defects *out, he_error *err);
+                                       he_progress *progress, he_defects *out, he_error *err);
 
 /* --- the parts of he_defects_find, which add what they find to `out` --- */
 HE_NODISCARD he_status he_defects_of_positions(const he_mesh *m, double merge, uint64_t seed,
-                                               he_watch *watch, he_defects *out, he_error *err);
-HE_NODISCARD he_status he_defects_of_components(const he_mesh *m, double small, he_watch *watch,
-                                                he_defects *out, he_error *err);
+                                               he_progress *progress, he_defects *out,
+                                               he_error *err);
+HE_NODISCARD he_status he_defects_of_components(const he_mesh *m, double small,
+                                                he_progress *progress, he_defects *out,
+                                                he_error *err);
 
 #endif

@@ -62,7 +62,7 @@ static he_status join_all(const he_mesh *m, he_kind kind, uint32_t **out, uint32
     }
     uint32_t count = 0;
     for (uint32_t e = 0; e < m->c.edges.issued; e++) {
-        he_status status = he_watch_at(m->watch, e, m->c.edges.issued, err);
+        he_status status = he_progress_at(m->progress, e, m->c.edges.issued, err);
         if (status != HE_OK) {
             he_mem_free(parent);
             return status;
@@ -402,7 +402,7 @@ static he_status tally(const he_mesh *m, uint32_t **faces_of, size_t *size, he_e
     const uint32_t end = halfedge_end(m);
     uint32_t budget = end;
     for (uint32_t f = 0; f < m->c.faces.issued; f++) {
-        he_status status = he_watch_at(m->watch, f, m->c.faces.issued, err);
+        he_status status = he_progress_at(m->progress, f, m->c.faces.issued, err);
         if (status != HE_OK) {
             return status;
         }
@@ -473,7 +473,7 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
                      .boundary_halfedges = m->c.boundary_halfedges};
     he_boundaries loops = {0};
     uint32_t used = t.vertices - t.isolated_vertices;
-    he_status status = he_watch_phase(m->watch, "counting", 0.25, err);
+    he_status status = he_progress_phase(m->progress, "counting", 0.25, err);
     if (status == HE_OK) {
         status = find_degrees(m, &t, err);
     }
@@ -486,7 +486,7 @@ he_status he_topology_find(const he_mesh *m, he_topology *out, he_error *err)
         status = find_bowties(m, NULL, &t.bowties, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "connecting", 0.6, err);
+        status = he_progress_phase(m->progress, "connecting", 0.6, err);
     }
     if (status == HE_OK) {
         status = count_components(m, HE_FACE, t.faces, &t.components_by_edge, err);

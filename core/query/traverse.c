@@ -42,7 +42,7 @@ static uint32_t take(const he_mesh *m, uint32_t h, he_step step)
 }
 
 static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_steps *steps,
-                           he_watch *watch, he_ids *out, he_error *err)
+                           he_progress *progress, he_ids *out, he_error *err)
 {
     const uint32_t end = halfedge_end(m);
     uint32_t h = from.i;
@@ -53,9 +53,9 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_ste
             return corrupt(HE_HALFEDGE, from.i, err);
         }
         for (size_t i = 0; i < steps->count && status == HE_OK; i++) {
-            /* The length of the path is not known, so there is no progress to report; the watch is
-             * only asked whether to go on. */
-            status = he_watch_at(watch, taken, UINT64_MAX, err);
+            /* The length of the path is not known, so there is no progress to report; a report only
+             * asks whether to go on. */
+            status = he_progress_at(progress, taken, UINT64_MAX, err);
             if (status != HE_OK) {
                 return status;
             }
@@ -81,7 +81,7 @@ static he_status walk_path(const he_mesh *m, he_halfedge from, const he_path_ste
 }
 
 he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_path_steps *steps,
-                           he_watch *watch, he_ids *out, he_error *err)
+                           he_progress *progress, he_ids *out, he_error *err)
 {
     he_status status = he_mesh_require(m, HE_HALFEDGE, from.i, err);
     if (status != HE_OK) {
@@ -91,7 +91,7 @@ he_status he_traverse_path(const he_mesh *m, he_halfedge from, const he_path_ste
         return he_fail_plain(err, HE_BAD_VALUE, "a path needs at least one step");
     }
     size_t before = out->count;
-    status = walk_path(m, from, steps, watch, out, err);
+    status = walk_path(m, from, steps, progress, out, err);
     if (status != HE_OK) {
         out->count = before;
     }

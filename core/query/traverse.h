@@ -30,14 +30,14 @@ typedef struct he_path_steps {
 
 /* Appends the half-edges of the path, `from` first and the last one at the end: one more than the
  * steps taken. A path that ends by `until` always ends: a list of steps maps half-edges one to one,
- * so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT). `watch`
- * may be NULL.
+ * so after as many rounds as there are half-edges the path has come back (else HE_CORRUPT).
+ * `progress` may be NULL.
  * Returns HE_LIMIT if the path would take more steps than `limit`.
- * Returns HE_CANCELLED if the watch cancelled the work.
+ * Returns HE_CANCELLED if the work was cancelled.
  * Returns HE_BAD_VALUE if the list of steps is empty. */
 HE_NODISCARD he_status he_traverse_path(const he_mesh *m, he_halfedge from,
-                                        const he_path_steps *steps, he_watch *watch, he_ids *out,
-                                        he_error *err);
+                                        const he_path_steps *steps, he_progress *progress,
+                                        he_ids *out, he_error *err);
 
 /* LOOP. Appends the half-edges of the face or hole of `from`, in the order of next, beginning with
  * `from`. Their origins are the vertices of the loop. */

@@ -1,5 +1,5 @@
 /* advise.c - finds which repairs a refused soup needs, by trying each on a copy of its faces. */
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/mend.h"
 
 #include <string.h>

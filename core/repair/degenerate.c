@@ -16,7 +16,7 @@
  *
  * A loop that runs along an edge twice in one direction, such as one that goes round twice, bounds
  * nothing and is dropped; so is one that cannot be cut into triangles without such an edge. */
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "geometry/triangulation.h"
 #include "geometry/vec3.h"
 #include "repair/mend.h"
@@ -285,7 +285,7 @@ static he_status find(mending *g, he_error *err)
     he_status status = HE_OK;
     for (uint32_t f = 0; f < faces && status == HE_OK; f++) {
         uint32_t begin = soup->starts[f], count = he_soup_end(soup, f) - begin;
-        status = he_watch_at(soup->limits.watch, f, 2 * (size_t)faces, err);
+        status = he_progress_at(soup->limits.progress, f, 2 * (size_t)faces, err);
         if (status != HE_OK || (count >= 3 && he_soup_find_repeat(soup->corners + begin, count,
                                                                   g->stamp, f + 1) == count)) {
             continue;
@@ -389,7 +389,7 @@ static he_status add_all(mending *g, he_error *err)
     size_t faces = soup->face_count;
     for (uint32_t f = 0; f < faces && status == HE_OK; f++) {
         g->work.done = f;
-        status = he_watch_at(soup->limits.watch, f + faces, 2 * faces, err);
+        status = he_progress_at(soup->limits.progress, f + faces, 2 * faces, err);
         if (status == HE_OK && he_bits_get(g->bad, f)) {
             status = add_mended(g, f, k++, err);
             continue;
@@ -444,7 +444,7 @@ he_status he_mend_drop_degenerate(he_mend *m, he_error *err)
     he_soup_init(&g.made, &soup->limits);
     he_soup_init(&g.flat, NULL);
     g.flat.limits.bytes = soup->limits.bytes;
-    g.work.watch = soup->limits.watch;
+    g.work.progress = soup->limits.progress;
     g.work.of = soup->face_count;
     if (g.bad == NULL || g.stamp == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to look through %zu faces",

@@ -1,5 +1,5 @@
 /* drop.c - the repair drop_duplicates: drops all but the first of equal faces. */
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/mend.h"
 
 static he_status no_memory(const he_soup *soup, he_error *err)
@@ -134,7 +134,7 @@ he_status he_mend_drop_duplicates(he_mend *m, he_error *err)
         status = no_memory(soup, err);
     }
     for (uint32_t f = 0; f < soup->face_count && status == HE_OK; f++) {
-        status = he_watch_at(soup->limits.watch, f, soup->face_count, err);
+        status = he_progress_at(soup->limits.progress, f, soup->face_count, err);
         uint32_t earlier = find(soup, slots, count - 1, f);
         if (earlier == HE_NONE) {
             now[f] = kept++;

@@ -288,7 +288,7 @@ he_status he_splitting_exchange(he_splitting *s, bool *exchanged, he_error *err)
     exchanging x = {.s = s, .fans = (uint32_t)(s->soup->vertex_count + s->copies)};
     he_status status = list_corners(&x, err);
     for (uint32_t e = 0; e < x.edges && status == HE_OK; e++) {
-        status = he_watch_at(s->soup->limits.watch, e, x.edges, err);
+        status = he_progress_at(s->soup->limits.progress, e, x.edges, err);
         if (status == HE_OK && x.begin[e] < x.begin[e + 1]) {
             status = settle_edge(&x, e, err);
         }

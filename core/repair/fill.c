@@ -58,7 +58,7 @@ static he_status fill_all(he_mesh *m, size_t most, uint64_t *seen, he_repair_acc
     uint32_t count = he_mesh_issued(m, HE_HALFEDGE);
     for (uint32_t i = 0; i < count && status == HE_OK; i++) {
         he_halfedge h = {i}, k = h;
-        status = he_watch_at(m->watch, i, count, err);
+        status = he_progress_at(m->progress, i, count, err);
         if (status != HE_OK || he_bits_get(seen, i) || !he_is_boundary_halfedge(m, h)) {
             continue;
         }
@@ -76,7 +76,7 @@ he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan, he_repaired 
     if ((plan->which & he_repair_bit(HE_REPAIR_FILL)) == 0) {
         return HE_OK;
     }
-    he_status status = he_watch_phase(mesh->watch, "fill", 1, err);
+    he_status status = he_progress_phase(mesh->progress, "fill", 1, err);
     if (status != HE_OK) {
         return status;
     }

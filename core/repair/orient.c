@@ -1,6 +1,6 @@
 /* orient.c - the repair orient: reverses faces until neighbours agree, by a breadth-first search
  * over the edges of two faces, one component after another. */
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/mend.h"
 
 typedef enum state { UNSEEN, KEPT, TURNED } state;
@@ -77,7 +77,7 @@ static he_status walk(orienting *o, uint32_t seed, uint32_t *end, bool *fits, he
     *fits = true;
     for (uint32_t i = begin; i < *end && status == HE_OK; i++) {
         uint32_t f = o->queue[i], last = he_soup_end(soup, f);
-        status = he_watch_at(soup->limits.watch, i, soup->face_count, err);
+        status = he_progress_at(soup->limits.progress, i, soup->face_count, err);
         for (uint32_t c = soup->starts[f]; c < last; c++) {
             uint32_t mate = o->mate[c];
             if (mate == HE_NONE) {

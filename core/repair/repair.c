@@ -1,6 +1,6 @@
 #include "repair/repair.h"
 
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/mend.h"
 
 #include <string.h>
@@ -215,8 +215,8 @@ he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired 
         if ((plan->which & he_repair_bit(r)) == 0) {
             continue;
         }
-        status = he_watch_phase(soup->limits.watch, he_repair_names[r],
-                                (double)(r + 1) / HE_REPAIR_FILL, err);
+        status = he_progress_phase(soup->limits.progress, he_repair_names[r],
+                                   (double)(r + 1) / HE_REPAIR_FILL, err);
         if (status == HE_OK && r > HE_REPAIR_DROP_DEGENERATE) {
             status = is_proper(soup, &goes_on, err);
         }

@@ -134,14 +134,14 @@ void he_repaired_report(const he_repaired *repaired, he_report *report);
  * oriented.
  * Returns HE_LIMIT if copies exceed the soup's limits.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_repair_soup(he_soup *soup, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
 /* Applies to the mesh that was built those repairs of the plan that work on meshes: fill. The mesh
  * must not be recording.
  * Returns HE_IDS_EXHAUSTED if no ids are left.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan, he_repaired *out,
                                       he_error *err);
 
@@ -150,7 +150,7 @@ HE_NODISCARD he_status he_repair_mesh(he_mesh *mesh, const he_repair_plan *plan,
  * a corner names a vertex that does not exist. Ignores columns. The faces of the soup may change;
  * the caller can then only clear it.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_repair_advise(he_soup *soup, unsigned asked, unsigned *out,
                                         he_error *err);
 

@@ -129,7 +129,7 @@ static he_status find_fans(he_splitting *s, he_error *err)
     clear_bits(s->closed, soup->vertex_count);
     s->copies = 0;
     for (uint32_t c = 0; c < soup->corner_count && status == HE_OK; c++) {
-        status = he_watch_at(soup->limits.watch, c, soup->corner_count, err);
+        status = he_progress_at(soup->limits.progress, c, soup->corner_count, err);
         if (status == HE_OK && !he_bits_get(s->done, c)) {
             status = find_fan(s, c, err);
         }

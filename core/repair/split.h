@@ -11,7 +11,7 @@
 #ifndef HE_REPAIR_SPLIT_H
 #define HE_REPAIR_SPLIT_H
 
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/mend.h"
 
 typedef struct he_splitting {
@@ -46,7 +46,7 @@ static inline uint32_t he_corner_before(const he_splitting *s, uint32_t c)
  * two edges would join the same two vertices. Before the call `to` must have the fans that follow
  * from the mates; if *exchanged is true, the caller must find the fans again.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_splitting_exchange(he_splitting *s, bool *exchanged, he_error *err);
 
 #endif

@@ -1,11 +1,11 @@
 /* weld.c - the repair weld: merges vertices that are near one another. */
 #include "build/keep.h"
-#include "geometry/near.h"
+#include "geometry/point_grid.h"
 #include "repair/mend.h"
 
 /* Finds the vertices that are kept, and moves their positions to the front of the array. into[v] is
  * the new number of v, or of the vertex it is merged into. */
-static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *from,
+static he_status find_kept(he_mend *m, he_point_grid *grid, uint32_t *into, uint32_t *from,
                            uint32_t *kept, he_error *err)
 {
     he_soup *soup = m->soup;
@@ -13,9 +13,9 @@ static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *
     he_status status = HE_OK;
     *kept = 0;
     for (uint32_t v = 0; v < soup->vertex_count && status == HE_OK; v++) {
-        status = he_watch_at(soup->limits.watch, v, soup->vertex_count, err);
+        status = he_progress_at(soup->limits.progress, v, soup->vertex_count, err);
         he_vec3 p = soup->positions[v];
-        uint32_t home, found = he_near_find(near, p, &home);
+        uint32_t home, found = he_point_grid_find(grid, p, &home);
         if (found != HE_NONE) {
             he_mend_name(account, v, found);
             account->count++;
@@ -24,7 +24,7 @@ static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *
         }
         soup->positions[*kept] = p;
         from[*kept] = v;
-        he_near_keep(near, home, *kept);
+        he_point_grid_keep(grid, home, *kept);
         into[v] = (*kept)++;
     }
     return status;
@@ -33,7 +33,7 @@ static he_status find_kept(he_mend *m, he_near *near, uint32_t *into, uint32_t *
 he_status he_mend_weld(he_mend *m, double tolerance, he_error *err)
 {
     he_soup *soup = m->soup;
-    he_near near = {0};
+    he_point_grid grid = {0};
     uint32_t kept = 0, *into = he_mem_array(NULL, soup->vertex_count, sizeof *into);
     uint32_t *from = he_mem_array(NULL, soup->vertex_count, sizeof *from);
     he_status status = HE_OK;
@@ -42,10 +42,11 @@ he_status he_mend_weld(he_mend *m, double tolerance, he_error *err)
             he_fail_plain(err, HE_NO_MEMORY, "no memory to weld %zu vertices", soup->vertex_count);
         goto out;
     }
-    status = he_near_make(&near, &(he_near_points){.at = soup->positions, .tolerance = tolerance},
-                          soup->vertex_count, soup->limits.watch, err);
+    status = he_point_grid_make(
+        &grid, &(he_point_grid_points){.at = soup->positions, .tolerance = tolerance},
+        soup->vertex_count, soup->limits.progress, err);
     if (status == HE_OK) {
-        status = find_kept(m, &near, into, from, &kept, err);
+        status = find_kept(m, &grid, into, from, &kept, err);
     }
     if (status == HE_OK && kept < soup->vertex_count) {
         status =
@@ -62,7 +63,7 @@ he_status he_mend_weld(he_mend *m, double tolerance, he_error *err)
         from = NULL;
     }
 out:
-    he_near_clear(&near);
+    he_point_grid_clear(&grid);
     he_mem_free(into);
     he_mem_free(from);
     return status;

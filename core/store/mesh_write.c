@@ -90,10 +90,10 @@ const he_mesh *st_write_claimed(const st_write *w)
     return w->mesh->content;
 }
 
-he_status st_write_copy(st_write *w, he_watch *watch, he_error *err)
+he_status st_write_copy(st_write *w, he_progress *progress, he_error *err)
 {
     st_write_discard_copy(w);
-    he_status status = he_mesh_copy_watched(st_write_claimed(w), watch, &w->content, err);
+    he_status status = he_mesh_copy_with_progress(st_write_claimed(w), progress, &w->content, err);
     if (status == HE_OK) {
         he_mesh_expend(w->content);
         he_mesh_record(w->content, w->delta);

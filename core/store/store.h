@@ -30,8 +30,8 @@
  *     waits     answers that wait until they are durable (publish/durability_wait.h)
  *     holders   how much each holder of meshes has (holder/holders.h)
  * The table of jobs (api/job/job_table.h) has a lock that is taken after a mesh's, and connections
- * that wait for events (server/http/http_live.h) one that is taken after all others. A thread that
- * holds a mesh's lock must not take another mesh's lock, not even shared, nor its own again: a
+ * that wait for events (server/http/http_stream.h) one that is taken after all others. A thread
+ * that holds a mesh's lock must not take another mesh's lock, not even shared, nor its own again: a
  * waiting writer would block both. To bring another mesh's content in, take its snapshot first. */
 #ifndef HE_STORE_STORE_H
 #define HE_STORE_STORE_H
@@ -300,7 +300,7 @@ void st_cache_put_of(st_mesh *mesh, const st_mesh_info *of, const void *value, s
 /* Objects that handlers derive from a mesh and keep with it, one of each kind. */
 typedef enum st_derived_kind {
     ST_DERIVED_SLOTS, /* for GET .../geometry, updated as the mesh changes */
-    ST_DERIVED_TREE,  /* for rays and nearest points, for one revision: see api/ask/tree.h */
+    ST_DERIVED_BVH,   /* for rays and nearest points, for one revision: see api/ask/bvh_cache.h */
     ST_DERIVED_COUNT
 } st_derived_kind;
 

@@ -19,7 +19,7 @@
 #ifndef HE_STORE_WRITE_H
 #define HE_STORE_WRITE_H
 
-#include "base/watch.h"
+#include "base/progress.h"
 #include "store/publish/booking.h"
 #include "store/store.h"
 
@@ -72,7 +72,7 @@ st_status st_write_claim(st_mesh *mesh, const st_cause *cause, st_write *out);
 /* Returns the content of a claimed mesh, which may be read until the claim ends. */
 const he_mesh *st_write_claimed(const st_write *write);
 /* Makes the copy that a claim works on; a copy made before is replaced. */
-HE_NODISCARD he_status st_write_copy(st_write *write, he_watch *watch, he_error *err);
+HE_NODISCARD he_status st_write_copy(st_write *write, he_progress *progress, he_error *err);
 /* Frees the copy that the claim works on, with its changes; the claim goes on. */
 void st_write_discard_copy(st_write *write);
 

@@ -19,7 +19,7 @@ typedef struct work {
 } work;
 
 struct st_parallel {
-    he_exec exec;
+    he_parallel parallel;
     pthread_mutex_t lock;
     pthread_cond_t wake;
     bool ending;
@@ -99,8 +99,8 @@ static void *help(void *context)
     return NULL;
 }
 
-/* he_exec.run */
-static he_status run(void *self, uint32_t parts, he_part part, void *context, he_watch *watch,
+/* he_parallel.run */
+static he_status run(void *self, uint32_t parts, he_part part, void *context, he_progress *progress,
                      he_error *err)
 {
     st_parallel *h = self;
@@ -113,7 +113,7 @@ static he_status run(void *self, uint32_t parts, he_part part, void *context, he
     while (has_parts(&w)) {
         uint32_t begun = w.begun;
         pthread_mutex_unlock(&h->lock);
-        given_up = he_watch_step(watch, begun, parts, err);
+        given_up = he_progress_step(progress, begun, parts, err);
         pthread_mutex_lock(&h->lock);
         if (given_up != HE_OK) {
             w.stopped = true;
@@ -141,7 +141,7 @@ st_parallel *st_parallel_new(size_t threads)
     }
     pthread_mutex_init(&h->lock, NULL);
     pthread_cond_init(&h->wake, NULL);
-    h->exec = (he_exec){run, h, (uint32_t)threads + 1};
+    h->parallel = (he_parallel){run, h, (uint32_t)threads + 1};
     h->threads = he_mem_zero(threads, sizeof *h->threads);
     bool started = h->threads != NULL;
     while (started && h->thread_count < threads) {
@@ -173,7 +173,7 @@ void st_parallel_free(st_parallel *h)
     he_mem_free(h);
 }
 
-const he_exec *st_parallel_exec(const st_parallel *h)
+const he_parallel *st_parallel_host(const st_parallel *h)
 {
-    return &h->exec;
+    return &h->parallel;
 }

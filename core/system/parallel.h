@@ -1,4 +1,5 @@
-/* parallel.h - threads that help other threads with parallel loops: a host for core/base/exec.h.
+/* parallel.h - threads that help other threads with parallel loops: a host for
+ * core/base/parallel.h.
  *
  * A thread that has work in parts does them itself, and idle threads of this pool take some of
  * them. The thread never waits for help: if all pool threads are busy, or there are none, it does
@@ -10,7 +11,7 @@
 #ifndef HE_SYSTEM_PARALLEL_H
 #define HE_SYSTEM_PARALLEL_H
 
-#include "base/exec.h"
+#include "base/parallel.h"
 
 #include <stddef.h>
 
@@ -21,7 +22,7 @@ typedef struct st_parallel st_parallel;
 st_parallel *st_parallel_new(size_t threads);
 /* Frees the pool. No thread may have work in parts any more. */
 void st_parallel_free(st_parallel *parallel);
-/* Returns the pool as a host (exec.h), which lives as long as `parallel`. */
-const he_exec *st_parallel_exec(const st_parallel *parallel);
+/* Returns the pool as a host (parallel.h), which lives as long as `parallel`. */
+const he_parallel *st_parallel_host(const st_parallel *parallel);
 
 #endif

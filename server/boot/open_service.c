@@ -91,7 +91,7 @@ static bool open_service(srv_parts *parts)
                             .log = parts->log,
                             .commit = srv_commit,
                             .plain_answers = parts->config->no_compression,
-                            .exec = st_parallel_exec(parts->parallel),
+                            .parallel = st_parallel_host(parts->parallel),
                         });
     return parts->service != NULL || srv_open_failed(parts, "no memory or threads to start");
 }

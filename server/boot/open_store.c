@@ -3,7 +3,7 @@
 #include "api/event/event_follow.h"
 #include "journal/sqlite/sqlite_journal.h"
 #include "server/boot/resources.h"
-#include "server/samples.h"
+#include "server/sample_meshes.h"
 #include "server/version.h"
 
 enum {
@@ -73,7 +73,7 @@ static bool open_store(srv_parts *parts)
         return srv_open_failed(parts, "no memory to start");
     }
     he_error err;
-    if (parts->config->samples && made && srv_samples_add(parts->store, &err) != HE_OK) {
+    if (parts->config->samples && made && srv_sample_meshes_add(parts->store, &err) != HE_OK) {
         return srv_open_failed(parts, err.text);
     }
     if (made && journal.keeps) {

@@ -202,10 +202,10 @@ static struct MHD_Daemon *start_daemon(srv_http *http)
 
 static void http_free(srv_http *http)
 {
-    srv_live_free(http->live);
+    srv_streams_free(http->streams);
     srv_deadlines_free(http->deadlines);
     srv_peers_free(http->peers);
-    srv_gate_clear(&http->gate);
+    srv_inflight_clear(&http->inflight);
     he_mem_free(http);
 }
 
@@ -217,19 +217,19 @@ srv_http *srv_http_start(const srv_http_options *options, char *message, size_t 
         return NULL;
     }
     http->options = *options;
-    srv_gate_init(&http->gate);
+    srv_inflight_init(&http->inflight);
     srv_ids_init(&http->ids);
     srv_spans_init(&http->spans);
     http->options.deadlines.metrics = api_metrics_of(options->service);
     api_set_connection_limit(http->options.deadlines.metrics, options->deadlines.max_connections);
     http->deadlines = srv_deadlines_new(&http->options.deadlines);
-    http->live = srv_live_new(options->heartbeat_micros);
+    http->streams = srv_streams_new(options->heartbeat_micros);
     /* Each worker may have a buffer for one more connection, which is not counted yet or is not
      * counted any more. */
     const size_t most = options->max_sockets + options->workers;
     const bool counts = options->address_connections != 0;
     http->peers = counts ? srv_peers_new(most) : NULL;
-    if (http->deadlines == NULL || http->live == NULL || (counts && http->peers == NULL)) {
+    if (http->deadlines == NULL || http->streams == NULL || (counts && http->peers == NULL)) {
         snprintf(message, size, "no memory or threads to start");
         http_free(http);
         return NULL;
@@ -270,10 +270,10 @@ bool srv_http_stop(srv_http *http, unsigned millis)
      * workers may do that, too, and the library aborts if both try. */
     atomic_store(&http->stopping, true);
     st_waits_stop(st_store_waits(http->options.store));
-    srv_live_stop(http->live);
+    srv_streams_stop(http->streams);
     /* Waits for running requests at most `millis`. After that time requests that are running but
      * not suspended do not prevent the stop. */
-    if (!srv_gate_close(&http->gate, millis)) {
+    if (!srv_inflight_close(&http->inflight, millis)) {
         return false;
     }
     MHD_stop_daemon(http->daemon);

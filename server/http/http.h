@@ -26,7 +26,7 @@ typedef struct srv_http_options {
     api_service *service;
     st_store *store;
     st_pool *pool;
-    st_pool *makers; /* threads that make pieces of answers: http_ahead.h */
+    st_pool *makers; /* threads that make pieces of answers: http_producer.h */
     srv_log *log;    /* NULL if nothing is logged */
     const srv_policy *policy;
     srv_deadline_options deadlines;

@@ -65,13 +65,14 @@ static ssize_t pull(void *context, uint64_t position, char *buffer, size_t size)
     return pulled(r, got);
 }
 
-static void resume_ahead(srv_ahead *ahead)
+static void resume_producer(srv_producer *producer)
 {
-    srv_request *r = (srv_request *)((char *)ahead - offsetof(srv_request, ahead));
+    srv_request *r = (srv_request *)((char *)producer - offsetof(srv_request, producer));
     MHD_resume_connection(r->connection);
 }
 
-/* Makes a piece of an answer. Called by a thread of http_ahead.h while the request is suspended. */
+/* Makes a piece of an answer. Called by a thread of http_producer.h while the request is
+ * suspended. */
 static int64_t read_ahead(void *context, char *buffer, size_t size)
 {
     srv_request *r = context;
@@ -82,19 +83,19 @@ static int64_t read_ahead(void *context, char *buffer, size_t size)
     return got;
 }
 
-/* Passes the pieces of an answer that other threads make (http_ahead.h) to libmicrohttpd. */
-static ssize_t pull_ahead(void *context, uint64_t position, char *buffer, size_t size)
+/* Passes the pieces of an answer that other threads make (http_producer.h) to libmicrohttpd. */
+static ssize_t pull_producer(void *context, uint64_t position, char *buffer, size_t size)
 {
     srv_request *r = context;
     widen_after(r, position);
     srv_request_resumed(r);
-    r->ahead.read = read_ahead;
-    r->ahead.context = r;
-    r->ahead.resume = resume_ahead;
-    int64_t got = srv_ahead_take(&r->ahead, buffer, size);
-    if (got == SRV_AHEAD_WAIT && srv_request_suspend(r)) {
+    r->producer.read = read_ahead;
+    r->producer.context = r;
+    r->producer.resume = resume_producer;
+    int64_t got = srv_producer_take(&r->producer, buffer, size);
+    if (got == SRV_PRODUCER_WAIT && srv_request_suspend(r)) {
         srv_timing_enter(&r->timing, SRV_PART_QUEUE);
-        srv_ahead_make(&r->ahead, r->http->options.makers);
+        srv_producer_make(&r->producer, r->http->options.makers);
         return 0;
     }
     srv_timing_enter(&r->timing, SRV_PART_SEND);
@@ -108,24 +109,24 @@ static void resume_stream(srv_stream *stream)
 }
 
 /* Reads from a stream of events for libmicrohttpd. If there is nothing to send, suspends the
- * request, which the thread of http_live.h owns from then on. */
+ * request, which the thread of http_stream.h owns from then on. */
 static ssize_t pull_live(void *context, uint64_t position, char *buffer, size_t size)
 {
     (void)position;
     srv_request *r = context;
     const api_answer *answer = api_answer_of(r->exchange);
     srv_request_resumed(r);
-    if (r->stream.live == NULL) {
+    if (r->stream.streams == NULL) {
         int socket =
             MHD_get_connection_info(r->connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-        srv_live_begin(r->http->live, &r->stream, answer->live, socket, resume_stream);
+        srv_stream_begin(r->http->streams, &r->stream, answer->live, socket, resume_stream);
     }
-    int64_t got = srv_live_read(&r->stream, buffer, size);
+    int64_t got = srv_stream_read(&r->stream, buffer, size);
     if (got == API_READ_WAIT && srv_request_suspend(r)) {
         /* While the stream waits, the request needs of its buffer only the part with the
          * headers. */
         srv_buffer_rest(r->socket == NULL ? SRV_NO_BUFFER : r->socket->buffer, st_clock_micros());
-        srv_live_aside(&r->stream);
+        srv_stream_aside(&r->stream);
         return 0;
     }
     return pulled(r, got);
@@ -205,7 +206,7 @@ static struct MHD_Response *response_of(srv_request *r, const srv_wire *wire)
                                                                       : (uint64_t)wire->length,
                                                      is_live(r) ? LIVE_BLOCK : ANSWER_BLOCK,
                                                      is_live(r)         ? pull_live
-                                                     : is_made_ahead(r) ? pull_ahead
+                                                     : is_made_ahead(r) ? pull_producer
                                                                         : pull,
                                                      r, NULL);
     } else {

@@ -28,8 +28,8 @@
  *             not when they are in the socket's buffer; on a Unix socket, which acknowledges
  *             nothing, they count when the client has read them. The limit applies during IDLE,
  *             too, while the rest of an answer is in that buffer
- *     LIVE    the stage of a stream of events (http_live.h) instead of ANSWER: at least one byte a
- *             second, measured over `total` seconds, while bytes wait to be read by the client
+ *     LIVE    the stage of a stream of events (http_stream.h) instead of ANSWER: at least one byte
+ * a second, measured over `total` seconds, while bytes wait to be read by the client
  *
  * In the stages HEAD and BODY a connection is also closed if the client has closed its side, so
  * that the request can never become complete.

@@ -131,7 +131,7 @@ static void do_work(void *context)
     if (r->work_until != UINT64_MAX) {
         r->work_until = st_clock_micros() + r->http->options.read_seconds * 1000000;
     }
-    api_watch(r->exchange, is_awaited, r);
+    api_set_progress(r->exchange, is_awaited, r);
     if (api_work(r->exchange) == API_JOB) {
         detach(r);
     }
@@ -290,7 +290,7 @@ static bool read_head(srv_request *r, const char *method, const char *version)
     memcpy(r->method, method, strnlen(method, SRV_METHOD));
     srv_admit_name(&head, &r->http->ids, r->request_id);
     read_trace(r, &head);
-    srv_gate_enter(&r->http->gate);
+    srv_inflight_enter(&r->http->inflight);
     api_count(metrics_of(r), API_COUNT_BEGUN);
     r->counted = true;
     r->state = SRV_BODY;
@@ -386,7 +386,7 @@ static bool end_body(srv_request *r)
         uint64_t now = st_clock_micros();
         srv_connection_enter(r->socket, SRV_STAGE_WORK, now);
         r->work_until = now + WORKER_MICROS;
-        api_watch_worker(r->exchange, is_short, r);
+        api_set_worker_progress(r->exchange, is_short, r);
         r->step = api_end(r->exchange);
     }
     if (r->step == API_JOB) {

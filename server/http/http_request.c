@@ -98,7 +98,7 @@ static void count(const srv_request *r, uint64_t now)
 
 bool srv_request_suspend(srv_request *r)
 {
-    r->aside = srv_gate_wait(&r->http->gate);
+    r->aside = srv_inflight_wait(&r->http->inflight);
     if (r->aside) {
         MHD_suspend_connection(r->connection);
     }
@@ -109,7 +109,7 @@ void srv_request_resumed(srv_request *r)
 {
     if (r->aside) {
         r->aside = false;
-        srv_gate_resume(&r->http->gate);
+        srv_inflight_resume(&r->http->inflight);
     }
 }
 
@@ -134,13 +134,13 @@ void srv_request_end(srv_request *r)
         atomic_fetch_sub(&http->downloads, 1);
         st_memory_count(-(int64_t)r->block);
     }
-    srv_live_end(&r->stream);
-    srv_ahead_clear(&r->ahead);
+    srv_stream_end(&r->stream);
+    srv_producer_clear(&r->producer);
     api_free(r->exchange);
     he_mem_free(r->joined);
     api_text_clear(&r->text);
     he_mem_free(r);
     if (counted) {
-        srv_gate_leave(&http->gate);
+        srv_inflight_leave(&http->inflight);
     }
 }

@@ -27,8 +27,8 @@
  * In WORK and HELD the connection is suspended and no thread of libmicrohttpd touches it; the
  * thread that has done the work, or the store when the changes are durable, resumes it exactly
  * once. In DONE an answer that is sent piece by piece may be suspended again and again: a stream of
- * events by `pull_live` (http_live.h), and an answer made by other threads by `pull_ahead`
- * (http_ahead.h).
+ * events by `pull_live` (http_stream.h), and an answer made by other threads by `pull_producer`
+ * (http_producer.h).
  */
 #ifndef HE_SERVER_HTTP_HTTP_REQUEST_H
 #define HE_SERVER_HTTP_HTTP_REQUEST_H
@@ -36,9 +36,9 @@
 #include "api/json/problem.h"
 #include "server/http/http.h"
 #include "server/http/http_admit.h"
-#include "server/http/http_ahead.h"
-#include "server/http/http_gate.h"
-#include "server/http/http_live.h"
+#include "server/http/http_inflight.h"
+#include "server/http/http_producer.h"
+#include "server/http/http_stream.h"
 #include "server/log/timing.h"
 #include "server/log/trace.h"
 #include "server/net/peers.h"
@@ -55,12 +55,12 @@ struct srv_http {
     srv_http_options options;
     srv_deadlines *deadlines;
     srv_peers *peers; /* NULL if the connections of an address are not limited */
-    srv_live *live;
+    srv_streams *streams;
     unsigned port;
     srv_ids ids;
     srv_spans spans;
     _Atomic bool stopping;
-    srv_gate gate;
+    srv_inflight inflight;
     _Atomic size_t downloads; /* number of answers sent piece by piece, except streams of events */
 };
 
@@ -91,7 +91,7 @@ typedef struct srv_request {
     st_wait hold;                /* the wait for durability in the state HELD */
     uint64_t work_until; /* when the work must end, by st_clock_micros; UINT64_MAX: no limit */
     srv_stream stream;
-    srv_ahead ahead;
+    srv_producer producer;
     size_t block; /* bytes that libmicrohttpd allocated to send a download; 0: none */
     int status;
     srv_trace trace;
@@ -121,7 +121,7 @@ static inline const char *srv_request_client(const srv_request *r)
 }
 
 /* Suspends the connection. Must be called before the request is passed to another thread, which
- * then resumes the connection with MHD_resume_connection, exactly once. Returns false if the gate
+ * then resumes the connection with MHD_resume_connection, exactly once. Returns false if the count
  * is closed, because the server stops: then the connection is not suspended and must be closed. */
 bool srv_request_suspend(srv_request *r);
 /* Records that the connection is not suspended any more. Must be called at the beginning of each

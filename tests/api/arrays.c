@@ -1,6 +1,6 @@
 #include "tests/api/arrays.h"
 
-#include "draw/drawing.h"
+#include "draw/draw_arrays.h"
 #include "mesh/walk.h"
 
 #include <inttypes.h>
@@ -127,10 +127,10 @@ void arrays_check(const arrays *c, const he_mesh *m)
 {
     he_frame frame;
     memcpy(&frame, c->frame, sizeof frame);
-    he_drawing d;
-    he_drawing_walk walk = {0};
+    he_draw_arrays d;
+    he_draw_arrays_walk walk = {0};
     uint32_t faces = 0;
-    assert_int_equal(he_drawing_init(&d, m, &frame, NULL), HE_OK);
+    assert_int_equal(he_draw_arrays_init(&d, m, &frame, NULL), HE_OK);
     bool *seen = calloc(m->c.faces.issued + 1, sizeof *seen);
     assert_non_null(seen);
     for (uint32_t slot = 0; slot < c->count[TRIANGLE_PART]; slot++) {
@@ -146,9 +146,9 @@ void arrays_check(const arrays *c, const he_mesh *m)
             assert_true(he_face_is_live(m, (he_face){face}) && !seen[face]);
             seen[face] = true;
             faces++;
-            he_drawing_begin(&d, face, &walk);
+            he_draw_arrays_begin(&d, face, &walk);
         }
-        assert_true(he_drawing_next(&d, &walk, wanted));
+        assert_true(he_draw_arrays_next(&d, &walk, wanted));
         assert_memory_equal(wanted, words, sizeof words);
     }
     assert_true(walk.left == 0);
@@ -156,10 +156,10 @@ void arrays_check(const arrays *c, const he_mesh *m)
     assert_int_equal(c->count[VERTEX_PART], he_mesh_issued(m, HE_VERTEX));
     for (uint32_t v = 0; v < c->count[VERTEX_PART]; v++) {
         float row[HE_DRAWN_ROW];
-        he_drawing_vertex(&d, v, row);
+        he_draw_arrays_vertex(&d, v, row);
         assert_memory_equal(row, c->rows[VERTEX_PART] + (size_t)v * ROW, ROW);
         assert_true(row[0] * row[0] + row[1] * row[1] + row[2] * row[2] <= 1.000001f);
     }
     free(seen);
-    he_drawing_clear(&d);
+    he_draw_arrays_clear(&d);
 }

@@ -1,4 +1,5 @@
-/* history.h - a mesh with a history of four revisions, for test_history.c and test_past.c. */
+/* history.h - a mesh with a history of four revisions, for test_history.c and
+ * test_at_revision.c. */
 #ifndef TESTS_API_HISTORY_H
 #define TESTS_API_HISTORY_H
 

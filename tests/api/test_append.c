@@ -120,7 +120,7 @@ static void no_request_names_more_meshes_than_it_may(void **state)
     api_bench *b = begin();
     api_text body = {0};
     api_text_add_format(&body, "{\"ops\":[");
-    for (int i = 0; i <= API_MAX_OTHERS; i++) {
+    for (int i = 0; i <= API_MAX_NAMED_MESHES; i++) {
         char target[64];
         (void)snprintf(target, sizeof target, "/v1/meshes/t%d", i);
         bench_done(bench_expect(201, put(b, target, TRIANGLE)));

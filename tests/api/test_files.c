@@ -318,7 +318,7 @@ static void a_file_that_is_read_at_its_end_can_be_given_up(void **state)
     api_bench *b = bench_new();
     unsigned told = 0;
     api_exchange *x = upload_gltf(b, text, LENGTH);
-    api_watch(x, give_up_reading, &told);
+    api_set_progress(x, give_up_reading, &told);
     assert_int_equal(api_work(x), API_READY);
     assert_int_equal(api_answer_of(x)->status, 503);
     assert_int_equal(told, 3);

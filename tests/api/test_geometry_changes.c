@@ -7,7 +7,7 @@
 #include "tests/api/arrays.h"
 #include "tests/writing.h"
 
-#include "draw/drawing.h"
+#include "draw/draw_arrays.h"
 #include "mesh/walk.h"
 #include "model/random.h"
 #include "op/op.h"

@@ -2,7 +2,7 @@
 #include "tests/api/request.h"
 
 #include "api/request/mesh_access.h"
-#include "draw/slots.h"
+#include "draw/draw_slots.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -247,12 +247,12 @@ static uint64_t layout_of(const bench_reply *r)
     return layout;
 }
 
-he_status __real_he_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at, he_slots **out,
-                              he_error *err);
-he_status __wrap_he_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at, he_slots **out,
-                              he_error *err);
-he_status __wrap_he_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at, he_slots **out,
-                              he_error *err)
+he_status __real_he_draw_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at,
+                                   he_draw_slots **out, he_error *err);
+he_status __wrap_he_draw_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at,
+                                   he_draw_slots **out, he_error *err);
+he_status __wrap_he_draw_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at,
+                                   he_draw_slots **out, he_error *err)
 {
     api_bench *b = interrupted;
     if (b != NULL) {
@@ -261,7 +261,7 @@ he_status __wrap_he_slots_new(const he_mesh *mesh, uint64_t layout, uint64_t at,
         others_layout = layout_of(&r);
         bench_done(r);
     }
-    return __real_he_slots_new(mesh, layout, at, out, err);
+    return __real_he_draw_slots_new(mesh, layout, at, out, err);
 }
 
 static void of_two_that_make_slots_both_answer_with_the_first(void **state)

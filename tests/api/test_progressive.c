@@ -381,7 +381,7 @@ static api_exchange *ask(api_bench *b, const char *query,
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {
-        api_watch(x, tell, context);
+        api_set_progress(x, tell, context);
         step = api_work(x);
     }
     assert_int_equal(step, API_READY);

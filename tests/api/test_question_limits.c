@@ -466,7 +466,7 @@ static driven drive(api_bench *b, const char *method, const char *path, const ch
         step = api_body(x, body + at, length - at, &used);
     }
     if (is_hurried) {
-        api_watch_worker(x, has_no_time, NULL);
+        api_set_worker_progress(x, has_no_time, NULL);
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {

@@ -472,7 +472,7 @@ static int upload_broken(api_bench *b, const char *text, size_t length, int *lef
     }
     step = step == API_MORE ? api_end(x) : step;
     if (step == API_WORK) {
-        api_watch(x, count_down, left);
+        api_set_progress(x, count_down, left);
         step = api_work(x);
     }
     assert_int_equal(step, API_READY);

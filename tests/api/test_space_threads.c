@@ -220,7 +220,7 @@ static void *ask_first(void *context)
     step = api_body(x, NEAREST, strlen(NEAREST), &used);
     step = api_end(x);
     if (step == API_WORK) {
-        api_watch(x, give_up, &a->patient);
+        api_set_progress(x, give_up, &a->patient);
         api_work(x);
     }
     const api_answer *answer = api_answer_of(x);

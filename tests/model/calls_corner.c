@@ -58,7 +58,7 @@ static bool draw_vertex_split_corners(md_draft *d)
         }
         he_halfedge h = {a};
         for (uint32_t turns = md_below(d->r, 6); turns > 0; turns--) {
-            h = he_turn_ccw(d->m, h);
+            h = he_swing_ccw(d->m, h);
         }
         b = h.i;
     }
@@ -85,7 +85,7 @@ static uint64_t play_vertex_split_corners(const md_call *c, or_mesh *o, const he
     }
     /* The new vertex takes the edges to the vertices `moved`. At a bow-tie (a vertex with several
      * fans of faces) the order of the fans is hedge's choice, so it is read from hedge's mesh. */
-    for (he_halfedge h = a; h.i != b.i; h = he_turn_ccw(m, h)) {
+    for (he_halfedge h = a; h.i != b.i; h = he_swing_ccw(m, h)) {
         moved[count++] = he_target(m, h).i;
     }
     return or_vertex_split_corners(o, he_origin(m, a).i, moved, count);

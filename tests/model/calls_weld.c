@@ -182,9 +182,9 @@ static uint32_t leaving(const he_mesh *m, uint32_t v, uint32_t starts[OR_VERTICE
     uint32_t n = 0;
     if (he_vertex_fans(m, (he_vertex){v}) > 1) {
         he_halfedge stored = he_vertex_halfedge(m, (he_vertex){v});
-        for (he_halfedge h = stored; n == 0 || h.i != stored.i; h = he_turn_ccw(m, h)) {
+        for (he_halfedge h = stored; n == 0 || h.i != stored.i; h = he_swing_ccw(m, h)) {
             if (he_is_boundary_halfedge(m, h)) {
-                starts[n++] = he_target(m, he_turn_ccw(m, h)).i;
+                starts[n++] = he_target(m, he_swing_ccw(m, h)).i;
             }
         }
         n--;

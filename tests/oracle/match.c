@@ -401,7 +401,7 @@ static bool ring_matches(const or_mesh *o, const he_mesh *m, uint32_t v, char te
     uint32_t seen = 0;
     do {
         uint32_t x = he_target(m, h).i;
-        he_halfedge turned = he_turn_ccw(m, h);
+        he_halfedge turned = he_swing_ccw(m, h);
         uint32_t y = he_target(m, turned).i;
         uint32_t next = or_turn(o, v, x);
         if (he_origin(m, h).i != v || o->joined[v][x] == OR_NONE ||

@@ -73,7 +73,7 @@ static void write_values(he_mesh *m, md_random *random, size_t slot)
     const he_column *column = he_mesh_column(m, slot);
     he_kind domain = column->domain;
     uint32_t rows = domain == HE_MESH_KIND ? 1 : he_mesh_issued(m, domain);
-    assert_int_equal(he_reserve(m, (he_need){.attributes = 4}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.attributes = 4}, NULL), HE_OK);
     for (int i = 0; i < 4; i++) {
         uint32_t row = md_below(random, rows);
         unsigned char value[HE_COLUMN_ROW_BYTES] = {(unsigned char)md_below(random, 2), 0, 1};

@@ -68,17 +68,17 @@ void expect_same_imports(const he_import *a, const he_import *b)
         expect_same_columns(s->columns[i], t->columns[i]);
     }
     for (uint32_t v = 0; v < s->vertex_count; v++) {
-        assert_int_equal(he_places_find(&a->vertices, v), he_places_find(&b->vertices, v));
+        assert_int_equal(he_source_map_find(&a->vertices, v), he_source_map_find(&b->vertices, v));
     }
     for (uint32_t f = 0; f < s->face_count; f++) {
-        assert_int_equal(he_places_find(&a->faces, f), he_places_find(&b->faces, f));
+        assert_int_equal(he_source_map_find(&a->faces, f), he_source_map_find(&b->faces, f));
     }
-    assert_int_equal(a->notes.count, b->notes.count);
-    assert_int_equal(a->notes.more, b->notes.more);
-    for (size_t i = 0; i < a->notes.count; i++) {
+    assert_int_equal(a->warnings.count, b->warnings.count);
+    assert_int_equal(a->warnings.more, b->warnings.more);
+    for (size_t i = 0; i < a->warnings.count; i++) {
         char x[256], y[256];
-        he_note_text(&a->notes.items[i], x, sizeof x);
-        he_note_text(&b->notes.items[i], y, sizeof y);
+        he_warning_text(&a->warnings.items[i], x, sizeof x);
+        he_warning_text(&b->warnings.items[i], y, sizeof y);
         assert_string_equal(x, y);
     }
 }
@@ -231,10 +231,10 @@ const char *face_label(const he_import *import, const char *name, size_t face)
     return he_labels_get(column->labels, value);
 }
 
-const he_note *find_note(const he_notes *notes, const char *code, const char *subject)
+const he_warning *find_warning(const he_warnings *warnings, const char *code, const char *subject)
 {
-    for (size_t i = 0; i < notes->count; i++) {
-        const he_note *note = &notes->items[i];
+    for (size_t i = 0; i < warnings->count; i++) {
+        const he_warning *note = &warnings->items[i];
         if (strcmp(note->code, code) == 0 && strcmp(note->subject, subject) == 0) {
             return note;
         }
@@ -242,10 +242,10 @@ const he_note *find_note(const he_notes *notes, const char *code, const char *su
     return NULL;
 }
 
-void expect_note(const he_import *import, const char *code, const char *subject, uint64_t count,
-                 uint64_t line)
+void expect_warning(const he_import *import, const char *code, const char *subject, uint64_t count,
+                    uint64_t line)
 {
-    const he_note *note = find_note(&import->notes, code, subject);
+    const he_warning *note = find_warning(&import->warnings, code, subject);
     if (note == NULL) {
         fail_msg("no note %s '%s'", code, subject);
         return;
@@ -274,7 +274,7 @@ he_mesh *mesh_of_text(const char *format, const char *text)
 }
 
 char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh, size_t size,
-                    he_notes *notes, size_t *out_length)
+                    he_warnings *warnings, size_t *out_length)
 {
     he_writer *writer;
     he_error err = {0};
@@ -299,8 +299,8 @@ char *write_encoded(const char *format, const char *encoding, const he_mesh *mes
         length += n;
     }
     assert_int_equal(he_writer_read(writer, buffer, size), 0);
-    if (notes != NULL) {
-        *notes = *he_writer_notes(writer);
+    if (warnings != NULL) {
+        *warnings = *he_writer_warnings(writer);
     }
     he_writer_free(writer);
     free(buffer);
@@ -309,17 +309,17 @@ char *write_encoded(const char *format, const char *encoding, const he_mesh *mes
     return text;
 }
 
-char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_notes *notes)
+char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_warnings *warnings)
 {
     size_t length;
-    return write_encoded(format, "ascii", mesh, size, notes, &length);
+    return write_encoded(format, "ascii", mesh, size, warnings, &length);
 }
 
-char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh, he_notes *notes,
-                  size_t *length)
+char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
+                  he_warnings *warnings, size_t *length)
 {
     static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};
-    char *bytes = write_encoded(format, encoding, mesh, 4096, notes, length);
+    char *bytes = write_encoded(format, encoding, mesh, 4096, warnings, length);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         size_t again;
         char *other = write_encoded(format, encoding, mesh, sizes[i], NULL, &again);
@@ -330,10 +330,10 @@ char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
     return bytes;
 }
 
-char *write_text(const char *format, const he_mesh *mesh, he_notes *notes)
+char *write_text(const char *format, const he_mesh *mesh, he_warnings *warnings)
 {
     static const size_t sizes[] = {1, 13, 511, 512, 513, 65536};
-    char *text = write_pieces(format, mesh, 4096, notes);
+    char *text = write_pieces(format, mesh, 4096, warnings);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         char *other = write_pieces(format, mesh, sizes[i], NULL);
         assert_string_equal(other, text);

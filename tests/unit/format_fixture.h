@@ -78,11 +78,11 @@ void expect_u32s(const he_import *import, const attribute_shape *shape, const ui
 const char *face_label(const he_import *import, const char *name, size_t face);
 
 /* Returns the warning with this code about this subject, NULL if there is none. */
-const he_note *find_note(const he_notes *notes, const char *code, const char *subject);
+const he_warning *find_warning(const he_warnings *warnings, const char *code, const char *subject);
 
 /* Requires a warning that stands for `count` places, the first of them at this line. */
-void expect_note(const he_import *import, const char *code, const char *subject, uint64_t count,
-                 uint64_t line);
+void expect_warning(const he_import *import, const char *code, const char *subject, uint64_t count,
+                    uint64_t line);
 
 /* Makes a mesh of the import, and checks it; the caller must free it. */
 he_mesh *build_import(he_import *import);
@@ -93,17 +93,17 @@ he_mesh *mesh_of_text(const char *format, const char *text);
 /* Writes a mesh file through a buffer of `size` bytes; returns its text, ended by NUL, which the
  * caller must free. */
 char *write_encoded(const char *format, const char *encoding, const he_mesh *mesh, size_t size,
-                    he_notes *notes, size_t *out_length);
+                    he_warnings *warnings, size_t *out_length);
 
 /* Writes a mesh file of text through a buffer of `size` bytes, like write_encoded(). */
-char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_notes *notes);
+char *write_pieces(const char *format, const he_mesh *mesh, size_t size, he_warnings *warnings);
 
 /* Writes a mesh file, which may contain any bytes, through buffers of several sizes: the results
  * must be equal. The caller must free the result. */
-char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh, he_notes *notes,
-                  size_t *length);
+char *write_bytes(const char *format, const char *encoding, const he_mesh *mesh,
+                  he_warnings *warnings, size_t *length);
 
 /* Writes a mesh file of text through buffers of several sizes, like write_bytes(). */
-char *write_text(const char *format, const he_mesh *mesh, he_notes *notes);
+char *write_text(const char *format, const he_mesh *mesh, he_warnings *warnings);
 
 #endif

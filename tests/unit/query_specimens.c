@@ -21,9 +21,9 @@ const char *const query_specimens[QUERY_SPECIMENS] = {
 
 void query_bury(he_mesh *m, uint32_t vertex, uint32_t edge, uint32_t face)
 {
-    he_need need = {.deleted_vertices = m->c.vertices.issued - vertex,
-                    .deleted_edges = m->c.edges.issued - edge,
-                    .deleted_faces = m->c.faces.issued - face};
+    he_reservation need = {.deleted_vertices = m->c.vertices.issued - vertex,
+                           .deleted_edges = m->c.edges.issued - edge,
+                           .deleted_faces = m->c.faces.issued - face};
     assert_int_equal(he_reserve(m, need, NULL), HE_OK);
     for (uint32_t i = face; i < m->c.faces.issued; i++) {
         he_delete_face(m, (he_face){i});

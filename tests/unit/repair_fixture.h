@@ -4,7 +4,7 @@
 
 #include "unit/fixture.h"
 
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "repair/repair.h"
 #include "tests/failing.h"
 

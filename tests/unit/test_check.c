@@ -58,7 +58,7 @@ static void each_broken_rule_is_found_and_named(void **state)
     m->c.vertex_halfedge[1] = m->c.vertex_halfedge[0];
     expect_rule(m, 8);
     m = fixture_mesh("012,023");
-    m->c.vertex_halfedge[0] = he_turn_ccw(m, (he_halfedge){m->c.vertex_halfedge[0]}).i;
+    m->c.vertex_halfedge[0] = he_swing_ccw(m, (he_halfedge){m->c.vertex_halfedge[0]}).i;
     expect_rule(m, 8);
     m = fixture_mesh("012,023");
     m->c.position[2].y = INFINITY;
@@ -79,7 +79,7 @@ static void fans_in_separate_boundary_loops_are_found(void **state)
     he_mesh *m = fixture_mesh("012,034");
     he_halfedge a = he_vertex_halfedge(m, (he_vertex){0}), b = a;
     do {
-        b = he_turn_ccw(m, b);
+        b = he_swing_ccw(m, b);
     } while (!he_is_boundary_halfedge(m, b));
     he_halfedge into_a = he_prev(m, a), into_b = he_prev(m, b);
     he_link(m, into_a, b);

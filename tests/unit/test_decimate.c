@@ -150,7 +150,8 @@ static void few_faces_of_a_rough_surface_are_turned(void **state)
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         he_mesh *m = dense_grid(SIDE, NULL, 1);
         uint64_t random = seed;
-        assert_int_equal(he_reserve(m, (he_need){.positions = he_mesh_vertices(m)}, NULL), HE_OK);
+        assert_int_equal(he_reserve(m, (he_reservation){.positions = he_mesh_vertices(m)}, NULL),
+                         HE_OK);
         for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {
             he_vec3 p = he_position(m, (he_vertex){v});
             p.x += 0.6 * (draw(&random) - 0.5);

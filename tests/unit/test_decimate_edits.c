@@ -192,13 +192,13 @@ static void it_can_be_given_up(void **state)
         long told = 0;
         for (long n = 1; cancelled; n++) {
             he_mesh *m = dense_copy(first);
-            he_watch watch;
+            he_progress progress;
             long left = n;
-            he_watch_init(&watch, give_up, &left);
-            he_mesh_watch(m, &watch);
+            he_progress_init(&progress, give_up, &left);
+            he_mesh_set_progress(m, &progress);
             he_decimate_options options = {ways[i].faces, INFINITY, 100};
             he_status status = he_decimate(m, &options, NULL, NULL);
-            he_mesh_watch(m, NULL);
+            he_mesh_set_progress(m, NULL);
             cancelled = status != HE_OK;
             if (cancelled) {
                 assert_int_equal(status, HE_CANCELLED);

@@ -1,6 +1,6 @@
 /* Operations are decoded from JSON, and the names in a list of edits are resolved. */
 #include "api/write/decode_op.h"
-#include "api/write/names.h"
+#include "api/write/result_names.h"
 
 #include "fixture.h"
 #include "tests/failing.h"
@@ -196,13 +196,13 @@ static void arguments_hold_what_was_given(void **state)
 
 /* Decodes a list of operations as a check before any of them runs: each operation may use the names
  * given to results of earlier ones. */
-static bool check_list(const api_in *list, api_names *names, api_arena *arena)
+static bool check_list(const api_in *list, api_result_names *names, api_arena *arena)
 {
     api_in op;
     for (bool more = api_in_first(list, &op); more; more = api_in_next(&op)) {
         api_call call;
         if (!api_decode_op(&op, &(api_op_scope){.references = &names->references}, arena, &call) ||
-            !api_names_add(names, &op, &call)) {
+            !api_result_names_add(names, &op, &call)) {
             return false;
         }
     }
@@ -256,8 +256,8 @@ static void references_are_checked_before_anything_runs(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         parsed p;
-        api_names names;
-        api_names_init(&names, (const uint64_t[2]){1, 2});
+        api_result_names names;
+        api_result_names_init(&names, (const uint64_t[2]){1, 2});
         parse(&p, lists[i].body);
         bool good = check_list(&p.root, &names, &p.arena);
         if (good != (lists[i].code == HE_OK) || p.problem.code != lists[i].code ||
@@ -265,7 +265,7 @@ static void references_are_checked_before_anything_runs(void **state)
             fail_msg("%s: %s at \"%s\" (%s)", lists[i].body, api_code_slug(p.problem.code),
                      p.problem.pointer, p.problem.detail);
         }
-        api_names_clear(&names);
+        api_result_names_clear(&names);
         clear(&p);
     }
 }
@@ -309,10 +309,10 @@ static void references_take_the_values_of_results(void **state)
         char body[256];
         snprintf(body, sizeof body, "[" SPLIT ",%s]", uses[i].op);
         parsed p;
-        api_names names;
+        api_result_names names;
         api_call call;
         api_in op;
-        api_names_init(&names, (const uint64_t[2]){1, 2});
+        api_result_names_init(&names, (const uint64_t[2]){1, 2});
         parse(&p, body);
         assert_true(check_list(&p.root, &names, &p.arena));
         assert_true(api_in_first(&p.root, &op));
@@ -324,7 +324,7 @@ static void references_take_the_values_of_results(void **state)
         results.id[vertex] = 17;
         set_list(&results, result(call.op, "edges"), (const uint32_t[]){30, 31, 32}, 3);
         set_list(&results, result(call.op, "faces"), NULL, 0);
-        api_names_bind(&names, &call, &results);
+        api_result_names_bind(&names, &call, &results);
         he_results_clear(&results);
         assert_true(api_in_next(&op));
         assert_int_equal(
@@ -337,7 +337,7 @@ static void references_take_the_values_of_results(void **state)
             assert_int_equal(arg->count == 0 ? arg->id : arg->ids[0], uses[i].first);
             assert_int_equal(arg->count == 0 ? arg->id : arg->ids[arg->count - 1], uses[i].last);
         }
-        api_names_clear(&names);
+        api_result_names_clear(&names);
         clear(&p);
     }
 }
@@ -359,12 +359,12 @@ static void many_names_are_found(void **state)
     api_text_add_string(&text, "]");
     api_text_add_char(&text, '\0');
     parsed p;
-    api_names names;
-    api_names_init(&names, (const uint64_t[2]){1, 2});
+    api_result_names names;
+    api_result_names_init(&names, (const uint64_t[2]){1, 2});
     parse(&p, text.bytes);
     assert_true(check_list(&p.root, &names, &p.arena));
     assert_int_equal(names.count, MANY);
-    api_names_clear(&names);
+    api_result_names_clear(&names);
     clear(&p);
     api_text_clear(&text);
 }
@@ -377,15 +377,15 @@ static void every_failed_allocation_is_a_problem(void **state)
     failing f = {0};
     while (failing_next(&f)) {
         parsed p = {0};
-        api_names names;
+        api_result_names names;
         const api_in_options options = {.values = 1000};
         const api_bytes text = {body, strlen(body)};
-        api_names_init(&names, (const uint64_t[2]){1, 2});
+        api_result_names_init(&names, (const uint64_t[2]){1, 2});
         bool good = api_document_parse(text, &options, &p.document, &p.root, &p.problem) &&
                     check_list(&p.root, &names, &p.arena);
         failing_end(&f, good);
         assert_int_equal(p.problem.code, good ? HE_OK : HE_NO_MEMORY);
-        api_names_clear(&names);
+        api_result_names_clear(&names);
         clear(&p);
     }
     assert_true(f.n > 20);

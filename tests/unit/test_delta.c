@@ -18,7 +18,7 @@ static he_mesh *copy_of(const he_mesh *m)
 /* Adds a separate triangle by direct writes. */
 static he_status add_triangle(he_mesh *m, he_error *err)
 {
-    he_status status = he_reserve(m, (he_need){.vertices = 3, .edges = 3, .faces = 1}, err);
+    he_status status = he_reserve(m, (he_reservation){.vertices = 3, .edges = 3, .faces = 1}, err);
     if (status != HE_OK) {
         return status;
     }
@@ -47,7 +47,7 @@ static he_status add_triangle(he_mesh *m, he_error *err)
 /* Removes the separate triangle with this face by direct writes. */
 static he_status remove_triangle(he_mesh *m, he_face f, he_error *err)
 {
-    he_need need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
+    he_reservation need = {.deleted_vertices = 3, .deleted_edges = 3, .deleted_faces = 1};
     he_status status = he_reserve(m, need, err);
     if (status != HE_OK) {
         return status;
@@ -161,8 +161,9 @@ static void changes_that_cancel_out_are_not_reported(void **state)
     he_changes_clear(&changes);
 
     size_t from = d->count;
-    assert_int_equal(he_reserve(m, (he_need){.positions = 4, .attributes = 1, .lineage = 2}, NULL),
-                     HE_OK);
+    assert_int_equal(
+        he_reserve(m, (he_reservation){.positions = 4, .attributes = 1, .lineage = 2}, NULL),
+        HE_OK);
     he_vec3 at = he_position(m, (he_vertex){1});
     he_set_position(m, (he_vertex){1}, (he_vec3){5, 5, 5});
     he_set_position(m, (he_vertex){3}, (he_vec3){6, 6, 6});
@@ -227,7 +228,7 @@ static void undo_and_redo_restore_added_and_dropped_columns(void **state)
                      HE_OK);
     assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     assert_int_equal(he_mesh_drop_column(m, 1, NULL), HE_OK);
-    assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.attributes = 1}, NULL), HE_OK);
     he_set_attribute(m, 2, 1, &(double){2.5});
     he_mesh_record(m, NULL);
     he_mesh *end = copy_of(m);
@@ -270,7 +271,7 @@ static void values_of_no_vertex_edge_or_face_count_as_changes(void **state)
         assert_false(he_changes_none(&changes));
         he_changes_clear(&changes);
         size_t from = d->count;
-        assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+        assert_int_equal(he_reserve(m, (he_reservation){.attributes = 1}, NULL), HE_OK);
         /* Half-edge 1 runs along the hole, so it has no corner. */
         he_set_attribute(m, 0, (uint32_t)rows == 1 ? 0 : 1, &(uint32_t){7});
         assert_int_equal(d->count, from + 1);
@@ -303,7 +304,7 @@ static void changes_of_a_dropped_column_are_not_those_of_its_successor(void **st
     for (size_t i = 0; i < sizeof domains / sizeof *domains; i++) {
         he_mesh *m = fixture_mesh("012,345");
         he_vertex far = {0};
-        assert_int_equal(he_reserve(m, (he_need){.vertices = 1000}, NULL), HE_OK);
+        assert_int_equal(he_reserve(m, (he_reservation){.vertices = 1000}, NULL), HE_OK);
         for (int k = 0; k < 1000; k++) {
             far = he_new_vertex(m);
             he_set_vertex_halfedge(m, far, (he_halfedge){HE_NONE});
@@ -356,7 +357,7 @@ static void a_reservation_has_room_for_the_widest_value(void **state)
         start = copy_of(m);
         he_delta *d = he_delta_new();
         he_mesh_record(m, d);
-        assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+        assert_int_equal(he_reserve(m, (he_reservation){.attributes = 1}, NULL), HE_OK);
         assert_in_range(d->capacity, sizeof value / 4, SIZE_MAX);
         he_set_attribute(m, 0, 0, value);
         he_mesh_record(m, NULL);
@@ -373,7 +374,7 @@ static void compact_renumbers_elements_and_can_be_undone(void **state)
     (void)state;
     he_mesh *m = mesh_with_columns();
     assert_int_equal(add_triangle(m, NULL), HE_OK);
-    assert_int_equal(he_reserve(m, (he_need){.attributes = 1}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.attributes = 1}, NULL), HE_OK);
     he_set_attribute(m, 0, 1, &(uint32_t){77});
     assert_int_equal(add_triangle(m, NULL), HE_OK);
     assert_int_equal(remove_triangle(m, (he_face){2}, NULL), HE_OK);
@@ -459,17 +460,17 @@ static void carried_values_follow_the_rule_of_their_column(void **state)
         memcpy(column->fallback, &(double){3}, 8);
         assert_int_equal(he_mesh_add_column(m, column, NULL), HE_OK);
     }
-    assert_int_equal(he_reserve(m, (he_need){.attributes = 12}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.attributes = 12}, NULL), HE_OK);
     for (size_t slot = 0; slot < 3; slot++) {
         he_set_attribute(m, slot, 0, &(double){10});
         he_set_attribute(m, slot, 1, &(double){20});
     }
-    he_carry_between(m, HE_VERTEX, 2, 0, 1, 0.25);
+    he_attributes_between(m, HE_VERTEX, 2, 0, 1, 0.25);
     uint32_t many[200];
     for (uint32_t i = 0; i < 200; i++) {
         many[i] = i % 4 == 0 ? 1 : 0;
     }
-    he_carry_mean(m, HE_VERTEX, 3, many, 200);
+    he_attributes_mean(m, HE_VERTEX, 3, many, 200);
     for (size_t slot = 0; slot < 3; slot++) {
         double value;
         memcpy(&value, he_column_value(m->c.columns[slot], 2), 8);

@@ -308,7 +308,7 @@ static void both_bevels_cut_an_edge_without_length_halfway(void **state)
         do {
             uint32_t w = he_target(m, h).i;
             cut = w == 0 || w > 7 ? w : cut;
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         } while (h.i != first.i);
         assert_at(m, cut, 0, 0, 0);
         memcpy(&value, he_column_value(he_mesh_find_column(m, HE_VERTEX, "a"), cut), sizeof value);

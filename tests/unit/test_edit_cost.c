@@ -113,7 +113,7 @@ static void a_list_is_charged_for_the_hubs_it_walks_about(void **state)
     uint32_t base = find_face(m, true), side = find_face(m, false);
     he_halfedge rim = he_face_halfedge(m, (he_face){base});
     uint32_t ends[2] = {he_origin(m, rim).i, he_target(m, rim).i}, none = HE_MAX_ROWS;
-    uint32_t spoke = he_edge_of(he_turn_ccw(m, rim)).i;
+    uint32_t spoke = he_edge_of(he_swing_ccw(m, rim)).i;
     api_hubs hubs = {.slots = {{0}}};
     /* An operation whose cost is only that of the few rows it changes is not charged for the
      * hub. */

@@ -58,7 +58,7 @@ static uint32_t random_near(const he_mesh *m, he_kind kind, uint32_t id)
     he_halfedge h =
         face ? he_face_halfedge(m, (he_face){id}) : he_vertex_halfedge(m, (he_vertex){id});
     for (uint32_t i = random_below(6); i > 0; i--) {
-        h = face ? he_next(m, h) : he_turn_ccw(m, h);
+        h = face ? he_next(m, h) : he_swing_ccw(m, h);
     }
     return he_target(m, h).i;
 }

@@ -88,8 +88,8 @@ static void a_vertex_split_is_undone_by_a_collapse_where_allowed(void **state)
     for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
         he_mesh *m = script_mesh(meshes[i], NULL);
         for (uint32_t a = 0; a < he_mesh_issued(m, HE_HALFEDGE); a++) {
-            he_halfedge b = he_turn_ccw(m, (he_halfedge){a});
-            for (; b.i != a; b = he_turn_ccw(m, b)) {
+            he_halfedge b = he_swing_ccw(m, (he_halfedge){a});
+            for (; b.i != a; b = he_swing_ccw(m, b)) {
                 split_and_collapse(m, a, b.i);
             }
         }
@@ -250,7 +250,7 @@ static void a_weld_of_100000_vertices_takes_no_quadratic_time(void **state)
     for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) {
         he_mesh *m = he_mesh_new();
         assert_non_null(m);
-        assert_int_equal(he_reserve(m, (he_need){.vertices = COUNT}, NULL), HE_OK);
+        assert_int_equal(he_reserve(m, (he_reservation){.vertices = COUNT}, NULL), HE_OK);
         for (uint32_t k = 0; k < COUNT; k++) {
             he_vertex v = he_new_vertex(m);
             he_set_vertex_halfedge(m, v, (he_halfedge){HE_NONE});
@@ -448,7 +448,7 @@ static void vertex_values_follow_the_rule_of_their_column(void **state)
     for (int i = 0; i < 3; i++) {
         he_halfedge h = he_vertex_halfedge(m, (he_vertex){made[i]}), first = h;
         while (he_target(m, h).i > 2) {
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
             assert_true(h.i != first.i);
         }
         assert_value(m, HE_VERTEX, made[i], 0.01 * 30 + 0.99 * 10 * he_target(m, h).i);

@@ -144,19 +144,19 @@ static void round_trip(const char *format, const char *encoding, const attribute
     md_random random = {seed_of_run()};
     for (int round = 0; round < 20; round++) {
         he_mesh *m = worn_grid(&random, attributes, count);
-        he_notes notes;
+        he_warnings warnings;
         size_t length;
-        char *bytes = write_encoded(format, encoding, m, 777, &notes, &length);
-        /* a GLB stores positions as floats, and a note says which attributes other programs do not
-         * see */
+        char *bytes = write_encoded(format, encoding, m, 777, &warnings, &length);
+        /* a GLB stores positions as floats, and a warning says which attributes other programs do
+         * not see */
         bool narrow = strcmp(format, "glb") == 0;
-        assert_true(narrow || notes.count == 0);
+        assert_true(narrow || warnings.count == 0);
         he_import import = {0};
         he_error err = {0};
         if (read_pieces(&(format_file){format, bytes, length}, 333, NULL, &import, &err) != HE_OK) {
             fail_msg("%s", err.text);
         }
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         assert_int_equal(he_compact(m, NULL, NULL), HE_OK);
         assert_int_equal(import.soup.vertex_count, he_mesh_vertices(m));
         for (uint32_t v = 0; v < he_mesh_vertices(m); v++) {

@@ -54,14 +54,14 @@ static void the_mesh_comes_back(void **state)
     for (size_t i = 0; i < WAYS; i++) {
         he_mesh *mesh = mesh_of_text("obj", seam);
         char *wanted = write_text("obj", mesh, NULL);
-        he_notes notes;
+        he_warnings warnings;
         size_t length;
-        char *bytes = write_bytes(ways[i].format, ways[i].encoding, mesh, &notes, &length);
-        assert_int_equal(find_note(&notes, "split_vertices", "")->count, 2);
-        assert_null(find_note(&notes, "in_extras", "halfedge uv"));
-        assert_null(find_note(&notes, "attribute_lost", "halfedge uv"));
+        char *bytes = write_bytes(ways[i].format, ways[i].encoding, mesh, &warnings, &length);
+        assert_int_equal(find_warning(&warnings, "split_vertices", "")->count, 2);
+        assert_null(find_warning(&warnings, "in_extras", "halfedge uv"));
+        assert_null(find_warning(&warnings, "attribute_lost", "halfedge uv"));
         he_import import = read_it(ways[i].format, bytes, length);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         expect_counts(&import, 6, 2, 7);
         assert_int_equal(import.soup.column_count, 2);
         he_mesh *again = build_import(&import);
@@ -144,8 +144,9 @@ static void texcoord_lists_are_values_of_corners(void **state)
         char text[600];
         snprintf(text, sizeof text, head, rows[i].type, rows[i].second);
         he_import import = read_text("ply", text);
-        assert_int_equal(import.notes.count, rows[i].note != NULL);
-        assert_true(rows[i].note == NULL || strcmp(import.notes.items[0].code, rows[i].note) == 0);
+        assert_int_equal(import.warnings.count, rows[i].note != NULL);
+        assert_true(rows[i].note == NULL ||
+                    strcmp(import.warnings.items[0].code, rows[i].note) == 0);
         assert_null(find_column(&import, HE_VERTEX, "uv"));
         he_mesh *mesh = build_import(&import);
         char *obj = write_text("obj", mesh, NULL);
@@ -183,7 +184,7 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
     copy[0] = '3';
     he_import import = read_text("ply", text);
     expect_counts(&import, 8, 2, 7);
-    assert_non_null(find_note(&import.notes, "stale_copies", ""));
+    assert_non_null(find_warning(&import.warnings, "stale_copies", ""));
     assert_non_null(find_column(&import, HE_HALFEDGE, "uv"));
     he_import_clear(&import);
     free(text);
@@ -196,7 +197,7 @@ static void marks_that_do_not_fit_are_not_believed(void **state)
     *x = 3;
     import = read_it("glb", bytes, length);
     expect_counts(&import, 8, 3, 9);
-    assert_non_null(find_note(&import.notes, "stale_extras", ""));
+    assert_non_null(find_warning(&import.warnings, "stale_extras", ""));
     assert_non_null(find_column(&import, HE_VERTEX, "uv"));
     he_import_clear(&import);
     free(bytes);
@@ -216,19 +217,19 @@ static void corners_come_before_vertices(void **state)
     assert_int_equal(he_column_extend(column, 6, NULL), HE_OK);
     memcpy(he_column_row(column, 3), (double[]){7, 8}, 16);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_encoded("glb", "binary", mesh, 4096, &notes, &length);
-    assert_non_null(find_note(&notes, "in_extras", "vertex uv"));
+    char *bytes = write_encoded("glb", "binary", mesh, 4096, &warnings, &length);
+    assert_non_null(find_warning(&warnings, "in_extras", "vertex uv"));
     he_import import = read_it("glb", bytes, length);
     assert_memory_equal(he_column_value(find_column(&import, HE_VERTEX, "uv"), 3),
                         ((double[]){7, 8}), 16);
     assert_non_null(find_column(&import, HE_HALFEDGE, "uv"));
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
     free(bytes);
-    free(write_encoded("ply", "ascii", mesh, 4096, &notes, &length));
-    assert_non_null(find_note(&notes, "attribute_lost", "vertex uv"));
+    free(write_encoded("ply", "ascii", mesh, 4096, &warnings, &length));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "vertex uv"));
     he_mesh_free(mesh);
 }
 

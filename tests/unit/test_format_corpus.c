@@ -3,7 +3,7 @@
 #include "unit/format_fixture.h"
 
 #include "format/io/export.h"
-#include "build/pair.h"
+#include "build/soup_check.h"
 #include "query/defects.h"
 
 static const char *corpus;

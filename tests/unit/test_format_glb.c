@@ -12,13 +12,13 @@ static void a_square_of_two_triangles(void **state)
     expect_counts(&import, 4, 2, 6);
     expect_corners(&import, two, 6);
     assert_memory_equal(import.soup.positions, glb_square, sizeof glb_square);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     assert_int_equal(import.soup.column_count, 0);
-    uint64_t bin = he_places_find(&import.vertices, 0);
+    uint64_t bin = he_source_map_find(&import.vertices, 0);
     assert_int_equal(import.vertices.unit, HE_PLACE_BYTE);
-    assert_int_equal(he_places_find(&import.vertices, 3), bin + 36);
-    assert_int_equal(he_places_find(&import.faces, 0), bin + 48);
-    assert_int_equal(he_places_find(&import.faces, 1), bin + 54);
+    assert_int_equal(he_source_map_find(&import.vertices, 3), bin + 36);
+    assert_int_equal(he_source_map_find(&import.faces, 0), bin + 48);
+    assert_int_equal(he_source_map_find(&import.faces, 1), bin + 54);
     he_mesh *mesh = build_import(&import);
     fixture_counts(mesh, 4, 5, 2);
     he_mesh_free(mesh);
@@ -66,9 +66,9 @@ static void points_and_lines_are_left_out(void **state)
         "{'attributes':{'POSITION':0},'mode':1},{'attributes':{'POSITION':0},'mode':2},"
         "{'attributes':{'POSITION':0},'mode':3},{'attributes':{'COLOR_0':4}}," PRIMITIVE "]}]}");
     expect_counts(&import, 4, 2, 6);
-    assert_int_equal(find_note(&import.notes, "skipped_points", "")->count, 1);
-    assert_int_equal(find_note(&import.notes, "skipped_lines", "")->count, 3);
-    assert_int_equal(find_note(&import.notes, "no_positions", "")->count, 1);
+    assert_int_equal(find_warning(&import.warnings, "skipped_points", "")->count, 1);
+    assert_int_equal(find_warning(&import.warnings, "skipped_lines", "")->count, 3);
+    assert_int_equal(find_warning(&import.warnings, "no_positions", "")->count, 1);
     he_import_clear(&import);
 }
 
@@ -116,7 +116,7 @@ static void nodes_move_what_they_place(void **state)
         expect_counts(&import, 4, 2, 6);
         expect_position(&import, 2, rows[i].at[0], rows[i].at[1], rows[i].at[2]);
         expect_corners(&import, rows[i].mirrored ? turned : two, 6);
-        const he_note *note = find_note(&import.notes, "mirrored", "");
+        const he_warning *note = find_warning(&import.warnings, "mirrored", "");
         assert_true((note != NULL) == rows[i].mirrored);
         assert_true(note == NULL || note->count == 2);
         he_import_clear(&import);
@@ -146,7 +146,7 @@ static void a_quaternion_of_another_length_is_made_one_of_length_1(void **state)
                  rows[i].rotation);
         he_import import = glb_square_import(json);
         expect_position(&import, 2, -1, 1, 0);
-        const he_note *note = find_note(&import.notes, "rotation_made_unit", "");
+        const he_warning *note = find_warning(&import.warnings, "rotation_made_unit", "");
         assert_true((note != NULL) == rows[i].noted);
         he_import_clear(&import);
     }
@@ -163,7 +163,7 @@ static void a_mesh_of_several_nodes_comes_several_times(void **state)
     expect_corners(&import, corners, 18);
     expect_position(&import, 4, 0, 0, 1);
     expect_position(&import, 8, 0, 0, 2);
-    assert_int_equal(find_note(&import.notes, "instances", "")->count, 2);
+    assert_int_equal(find_warning(&import.warnings, "instances", "")->count, 2);
     he_mesh_free(build_import(&import));
     he_import_clear(&import);
 }
@@ -192,9 +192,9 @@ static void the_scene_that_is_named_is_read(void **state)
         if (rows[i].vertices > 0) {
             expect_position(&import, 0, 0, 0, rows[i].z);
         }
-        assert_int_equal(find_note(&import.notes, "unused_meshes", "") != NULL,
+        assert_int_equal(find_warning(&import.warnings, "unused_meshes", "") != NULL,
                          rows[i].vertices == 0);
-        assert_int_equal(find_note(&import.notes, "other_scenes", "") != NULL, i < 3);
+        assert_int_equal(find_warning(&import.warnings, "other_scenes", "") != NULL, i < 3);
         he_import_clear(&import);
     }
 }
@@ -248,7 +248,7 @@ static void quantized_positions(void **state)
     expect_position(&import, 4, -1, 0, 0);
     expect_position(&import, 7, 51, 102, -52);
     expect_position(&import, 11, 51 / 127.0, 102 / 127.0, -52 / 127.0);
-    assert_int_equal(import.notes.count, 1);
+    assert_int_equal(import.warnings.count, 1);
     float normal[3];
     memcpy(normal, find_column(&import, HE_VERTEX, "normal")->data + 36, sizeof normal);
     assert_true(fabs((double)normal[2] + 52 / 127.0) < 1e-6);
@@ -282,7 +282,7 @@ static void buffers_in_uris(void **state)
         expect_counts(&import, 3, 1, 3);
         assert_memory_equal(import.soup.positions, glb_square, 3 * sizeof *glb_square);
         /* the places of faces are offsets in the JSON text */
-        assert_int_equal(he_places_find(&import.faces, 0),
+        assert_int_equal(he_source_map_find(&import.faces, 0),
                          (i == 0 ? f.json : 0) +
                              (size_t)(strstr(triangle, "{'attributes'") - triangle));
         he_import_clear(&import);
@@ -333,7 +333,7 @@ static void numbers_that_are_not_aligned(void **state)
         "'meshes':[{'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}");
     expect_u32s(&import, &(attribute_shape){HE_VERTEX, "A", 1, 4},
                 (uint32_t[]){0, 255, 0xFF00, 0xCC66});
-    assert_int_equal(find_note(&import.notes, "misaligned", "")->count, 1);
+    assert_int_equal(find_warning(&import.warnings, "misaligned", "")->count, 1);
     he_import_clear(&import);
 }
 
@@ -366,7 +366,7 @@ static void attributes_of_vertices(void **state)
     static const char *const ignored[] = {"_",       "other",     "TEXCOORD_0", "COLOR_01",
                                           "TANGENT", "_position", "JOINTS_0"};
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++) {
-        assert_non_null(find_note(&import.notes, "ignored_attribute", ignored[i]));
+        assert_non_null(find_warning(&import.warnings, "ignored_attribute", ignored[i]));
     }
     assert_int_equal(import.soup.column_count, 5);
     he_import_clear(&import);
@@ -407,8 +407,8 @@ static void attributes_of_some_primitives(void **state)
     static const unsigned char colors[24] = {0,   0, 0, 0, 0,   0, 0, 0, 0,   0,  0,   0,
                                              255, 0, 0, 0, 255, 0, 0, 0, 255, 51, 102, 204};
     expect_bytes(&import, HE_VERTEX, 3, colors, 8);
-    assert_int_equal(find_note(&import.notes, "vertices_without", "color")->count, 12);
-    assert_int_equal(find_note(&import.notes, "attribute_types", "_HEAT")->count, 1);
+    assert_int_equal(find_warning(&import.warnings, "vertices_without", "color")->count, 12);
+    assert_int_equal(find_warning(&import.warnings, "attribute_types", "_HEAT")->count, 1);
     he_import_clear(&import);
 }
 
@@ -468,10 +468,10 @@ static void materials_are_rows_of_the_table(void **state)
     expect_look(table, 3, "old", (double[]){0, 0, 1, 1, 0, 0.75, 0, 0, 0}, false);
     expect_look(table, 4, "odd", (double[]){1, 1, 1, 1, 1, 1, 0, 0, 0}, false);
     assert_string_equal(face_label(&import, "material", 0), "red_2");
-    assert_non_null(find_note(&import.notes, "material_renamed", "red"));
-    assert_non_null(find_note(&import.notes, "opaque", "red"));
-    assert_non_null(find_note(&import.notes, "material_range", "odd"));
-    assert_int_equal(import.notes.count, 3);
+    assert_non_null(find_warning(&import.warnings, "material_renamed", "red"));
+    assert_non_null(find_warning(&import.warnings, "opaque", "red"));
+    assert_non_null(find_warning(&import.warnings, "material_range", "odd"));
+    assert_int_equal(import.warnings.count, 3);
     he_import_clear(&import);
 }
 
@@ -486,10 +486,10 @@ static void what_has_no_place_is_noted(void **state)
         "'extras':{'a':[1,{'b':null}]}}");
     static const char *const codes[] = {"ignored_targets", "ignored_skins", "ignored_animations"};
     for (size_t i = 0; i < 3; i++) {
-        assert_non_null(find_note(&import.notes, codes[i], ""));
+        assert_non_null(find_warning(&import.warnings, codes[i], ""));
     }
-    assert_non_null(find_note(&import.notes, "ignored_images", "file:///etc/passwd"));
-    assert_non_null(find_note(&import.notes, "ignored_extension", "ACME_thing"));
+    assert_non_null(find_warning(&import.warnings, "ignored_images", "file:///etc/passwd"));
+    assert_non_null(find_warning(&import.warnings, "ignored_extension", "ACME_thing"));
     he_import_clear(&import);
     unsigned char bin[SQUARE_BYTES];
     glb_file f;
@@ -502,7 +502,7 @@ static void what_has_no_place_is_noted(void **state)
     f.bytes[9] = (unsigned char)(f.length >> 8);
     he_error err = {0};
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_OK);
-    assert_non_null(find_note(&import.notes, "ignored_chunk", ""));
+    assert_non_null(find_warning(&import.warnings, "ignored_chunk", ""));
     he_import_clear(&import);
 }
 
@@ -537,7 +537,7 @@ static void a_chunk_that_is_not_aligned_is_read_with_a_note(void **state)
         assert_int_equal(read_bytes("glb", g.bytes, g.length, &import, &err), HE_OK);
         expect_counts(&import, 4, 2, 6);
         expect_position(&import, 2, 1, 1, 0);
-        expect_note(&import, "unaligned_chunk", "", 1, 12);
+        expect_warning(&import, "unaligned_chunk", "", 1, 12);
         he_import_clear(&import);
     }
 }

@@ -25,9 +25,10 @@ static he_mesh *grouped(void)
     return mesh;
 }
 
-static char *write_glb(const char *encoding, const he_mesh *mesh, he_notes *notes, size_t *length)
+static char *write_glb(const char *encoding, const he_mesh *mesh, he_warnings *warnings,
+                       size_t *length)
 {
-    return write_encoded("glb", encoding, mesh, 700, notes, length);
+    return write_encoded("glb", encoding, mesh, 700, warnings, length);
 }
 
 static he_import read_glb(const char *bytes, size_t length)
@@ -52,8 +53,8 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
     (void)state;
     he_mesh *mesh = grouped();
     size_t length;
-    he_notes notes;
-    char *bytes = write_glb("binary", mesh, &notes, &length);
+    he_warnings warnings;
+    char *bytes = write_glb("binary", mesh, &warnings, &length);
     expect_json(bytes, "\"scenes\":[{\"nodes\":[0,1,2]}]");
     expect_json(bytes, "\"nodes\":[{\"mesh\":0,\"name\":\"box\"},{\"mesh\":1,\"name\":\"box\"},"
                        "{\"mesh\":2,\"name\":\"other1\"}]");
@@ -78,10 +79,10 @@ static void other_programs_see_meshes_primitives_and_materials(void **state)
 static void expect_back(he_mesh *mesh, const char *encoding)
 {
     size_t length;
-    he_notes notes;
-    char *bytes = write_glb(encoding, mesh, &notes, &length);
+    he_warnings warnings;
+    char *bytes = write_glb(encoding, mesh, &warnings, &length);
     he_import import = read_glb(bytes, length);
-    assert_null(find_note(&import.notes, "stale_extras", ""));
+    assert_null(find_warning(&import.warnings, "stale_extras", ""));
     he_mesh *again = build_import(&import);
     assert_int_equal(he_compact(mesh, NULL, NULL), HE_OK);
     char *left = write_text("obj", mesh, NULL), *right = write_text("obj", again, NULL);
@@ -151,7 +152,7 @@ static void a_changed_scene_is_read_as_it_stands(void **state)
         assert_int_equal(strlen(rows[i].to), size);
         memcpy(at, rows[i].to, size);
         he_import import = read_glb(bytes, length);
-        assert_non_null(find_note(&import.notes, "stale_extras", ""));
+        assert_non_null(find_warning(&import.warnings, "stale_extras", ""));
         assert_int_equal(import.soup.face_count, i == 2 ? 7 : 13); /* triangles */
         assert_string_equal(face_label(&import, "material", 0), "red");
         assert_int_equal(import.soup.materials.count, 3);
@@ -174,10 +175,10 @@ static void too_many_groups_are_told_apart_less(void **state)
                                    i, i, i, i, i % 3);
     }
     he_mesh *mesh = mesh_of_text("obj", text);
-    he_notes notes;
-    char *bytes = write_glb("binary", mesh, &notes, &length);
-    assert_non_null(find_note(&notes, "not_apart", "objects and groups"));
-    assert_null(find_note(&notes, "not_apart", "materials"));
+    he_warnings warnings;
+    char *bytes = write_glb("binary", mesh, &warnings, &length);
+    assert_non_null(find_warning(&warnings, "not_apart", "objects and groups"));
+    assert_null(find_warning(&warnings, "not_apart", "materials"));
     expect_json(bytes, "\"nodes\":[{\"mesh\":0}]");
     free(bytes);
     free(text);

@@ -413,7 +413,7 @@ static void numbers_in_the_buffer(void **state)
         expect_refused_at_byte(&(format_file){"glb", f.bytes, f.length}, HE_BAD_INDEX, f.bin + 56,
                                "meshes/0/primitives/0: index");
     }
-    /* a NaN in an attribute other than the position is read as 0, with a note */
+    /* a NaN in an attribute other than the position is read as 0, with a warning */
     he_import import = {0};
     he_error err = {0};
     glb_square_bin(bin);
@@ -424,7 +424,7 @@ static void numbers_in_the_buffer(void **state)
              "'primitives':[{'attributes':{'POSITION':0,'_A':5},'indices':1}]}]}",
              bin, sizeof bin);
     assert_int_equal(read_bytes("glb", f.bytes, f.length, &import, &err), HE_OK);
-    assert_non_null(find_note(&import.notes, "not_finite", "A"));
+    assert_non_null(find_warning(&import.warnings, "not_finite", "A"));
     he_import_clear(&import);
 }
 

@@ -18,9 +18,9 @@ static const char *const specimens[] = {
     "0123,3245,5467",
 };
 
-static char *write_glb(const he_mesh *mesh, he_notes *notes, size_t *length)
+static char *write_glb(const he_mesh *mesh, he_warnings *warnings, size_t *length)
 {
-    return write_bytes("glb", "binary", mesh, notes, length);
+    return write_bytes("glb", "binary", mesh, warnings, length);
 }
 
 static he_import read_back(const char *bytes, size_t length)
@@ -64,11 +64,11 @@ static void polygons_come_back(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof specimens / sizeof *specimens; i++) {
         he_mesh *mesh = fixture_mesh(specimens[i]);
-        he_notes notes;
+        he_warnings warnings;
         size_t length, triangles = 0;
-        char *bytes = write_glb(mesh, &notes, &length);
+        char *bytes = write_glb(mesh, &warnings, &length);
         he_import import = read_back(bytes, length);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         assert_int_equal(import.soup.vertex_count, he_mesh_vertices(mesh));
         assert_memory_equal(import.soup.positions, mesh->c.position,
                             he_mesh_vertices(mesh) * sizeof(he_vec3));
@@ -76,7 +76,7 @@ static void polygons_come_back(void **state)
         for (uint32_t f = 0; f < he_mesh_faces(mesh); f++) {
             triangles += he_face_degree(mesh, (he_face){f}) - 2;
         }
-        assert_int_equal(find_note(&notes, "triangulated", "") != NULL,
+        assert_int_equal(find_warning(&warnings, "triangulated", "") != NULL,
                          triangles > he_mesh_faces(mesh));
         he_import_clear(&import);
         /* without the renamed member, the file is read as other programs read it */
@@ -105,7 +105,7 @@ static void meshes_without_faces(void **state)
         char *bytes = write_glb(mesh, NULL, &length);
         he_import import = read_back(bytes, length);
         expect_counts(&import, vertices, 0, 0);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_import_clear(&import);
         hide_extras(bytes, length);
         import = read_back(bytes, length);
@@ -162,15 +162,16 @@ static void what_is_not_carried_is_said(void **state)
     assert_int_equal(he_column_extend(column, 1, NULL), HE_OK);
     memcpy(he_column_row(column, 0), (unsigned char[]){0, 1}, 2);
     assert_int_equal(he_mesh_add_column(mesh, column, NULL), HE_OK);
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_glb(mesh, &notes, &length);
-    assert_int_equal(find_note(&notes, "rounded", "")->count, 2);
-    assert_int_equal(find_note(&notes, "triangulated", "")->count, 1);
-    assert_non_null(find_note(&notes, "attribute_lost", "edge crease"));
-    assert_null(find_note(&notes, "in_extras", "halfedge uv")); /* other programs see it, too */
-    assert_null(find_note(&notes, "in_extras", "face material"));
-    assert_non_null(find_note(&notes, "in_extras", "face mark"));
+    char *bytes = write_glb(mesh, &warnings, &length);
+    assert_int_equal(find_warning(&warnings, "rounded", "")->count, 2);
+    assert_int_equal(find_warning(&warnings, "triangulated", "")->count, 1);
+    assert_non_null(find_warning(&warnings, "attribute_lost", "edge crease"));
+    assert_null(
+        find_warning(&warnings, "in_extras", "halfedge uv")); /* other programs see it, too */
+    assert_null(find_warning(&warnings, "in_extras", "face material"));
+    assert_non_null(find_warning(&warnings, "in_extras", "face mark"));
     he_import import = read_back(bytes, length);
     assert_string_equal(face_label(&import, "material", 0), "steel \"1\"");
     assert_int_equal(find_column(&import, HE_FACE, "material")->rule, HE_COPY);
@@ -360,7 +361,7 @@ static void extras_are_not_believed(void **state)
         glb_make(&f, json, bin, sizeof bin);
         he_import import = read_back((const char *)f.bytes, f.length);
         assert_int_equal(import.soup.face_count, rows[i].faces);
-        assert_int_equal(find_note(&import.notes, "stale_extras", "") == NULL, rows[i].fits);
+        assert_int_equal(find_warning(&import.warnings, "stale_extras", "") == NULL, rows[i].fits);
         assert_true(rows[i].column == NULL || find_column(&import, HE_FACE, "n") != NULL);
         assert_true(rows[i].column != NULL || find_column(&import, HE_FACE, "n") == NULL);
         he_mesh_free(build_import(&import));
@@ -411,11 +412,11 @@ static void names_beside_names_in_extras(void **state)
         glb_make(&f, json, bin, sizeof bin);
         he_import import = read_back((const char *)f.bytes, f.length);
         assert_int_equal(import.soup.face_count, 8);
-        assert_null(find_note(&import.notes, "stale_extras", ""));
+        assert_null(find_warning(&import.warnings, "stale_extras", ""));
         for (size_t k = 0; k < 8 && rows[i].names[0] != NULL; k++) {
             assert_string_equal(face_label(&import, rows[i].name, k), rows[i].names[k]);
         }
-        assert_int_equal(find_note(&import.notes, "attribute_types", rows[i].name) != NULL,
+        assert_int_equal(find_warning(&import.warnings, "attribute_types", rows[i].name) != NULL,
                          rows[i].names[0] == NULL);
         failing each = {0};
         while (failing_next(&each)) {

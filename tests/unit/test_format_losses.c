@@ -8,13 +8,13 @@
 
 /* Reads an STL file that was written: reading must be refused exactly if the notes of the writer
  * said so, with as many defects. */
-static void expect_foretold(const char *bytes, size_t length, const he_notes *notes)
+static void expect_foretold(const char *bytes, size_t length, const he_warnings *warnings)
 {
     he_import import = {0};
     he_error err = {0};
     he_mesh *mesh = NULL;
     he_report *report = calloc(1, sizeof *report);
-    const he_note *note = find_note(notes, "no_mesh_again", "");
+    const he_warning *note = find_warning(warnings, "no_mesh_again", "");
     assert_non_null(report);
     assert_int_equal(read_pieces(&(format_file){"stl", bytes, length}, 0, NULL, &import, &err),
                      HE_OK);
@@ -50,12 +50,12 @@ static void an_stl_that_is_no_mesh_again_says_so(void **state)
         he_mesh *mesh = mesh_of_text("obj", rows[i].text);
         for (size_t k = 0; k < 2; k++) {
             size_t length;
-            he_notes notes;
-            char *bytes = write_bytes("stl", k == 0 ? "binary" : "ascii", mesh, &notes, &length);
-            const he_note *note = find_note(&notes, "no_mesh_again", "");
+            he_warnings warnings;
+            char *bytes = write_bytes("stl", k == 0 ? "binary" : "ascii", mesh, &warnings, &length);
+            const he_warning *note = find_warning(&warnings, "no_mesh_again", "");
             assert_int_equal(note == NULL ? 0 : note->count,
                              k == 0 ? rows[i].binary : rows[i].ascii);
-            expect_foretold(bytes, length, &notes);
+            expect_foretold(bytes, length, &warnings);
             free(bytes);
         }
         he_mesh_free(mesh);
@@ -95,7 +95,7 @@ static void an_stl_without_notes_comes_back_the_same(void **state)
     unsigned same = 0, refused = 0;
     for (unsigned i = 0; i < MESHES; i++) {
         he_soup soup;
-        he_notes notes;
+        he_warnings warnings;
         he_import import = {0};
         size_t length;
         he_error err = {0};
@@ -103,9 +103,9 @@ static void an_stl_without_notes_comes_back_the_same(void **state)
         fill_randomly(&random, &soup);
         he_mesh *mesh = NULL;
         assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
-        char *bytes = write_encoded("stl", "binary", mesh, 4096, &notes, &length);
-        expect_foretold(bytes, length, &notes);
-        if (notes.count == 0) {
+        char *bytes = write_encoded("stl", "binary", mesh, 4096, &warnings, &length);
+        expect_foretold(bytes, length, &warnings);
+        if (warnings.count == 0) {
             assert_int_equal(
                 read_pieces(&(format_file){"stl", bytes, length}, 0, NULL, &import, &err), HE_OK);
             he_mesh *again = build_import(&import);
@@ -114,7 +114,7 @@ static void an_stl_without_notes_comes_back_the_same(void **state)
             he_import_clear(&import);
             same++;
         }
-        refused += find_note(&notes, "no_mesh_again", "") != NULL;
+        refused += find_warning(&warnings, "no_mesh_again", "") != NULL;
         free(bytes);
         he_mesh_free(mesh);
         he_soup_clear(&soup);
@@ -170,12 +170,12 @@ static void normals_of_a_point_cloud_are_told(void **state)
                                 "property float ny\nproperty float nz\nproperty float s\n"
                                 "property float t\nend_header\n0 0 0 0 0 1 .5 .5\n"
                                 "1 0 0 0 1 0 0 0\n0 1 0 0 0 0 0 0\n";
-    he_notes notes;
+    he_warnings warnings;
     he_mesh *mesh = mesh_of_text("ply", cloud);
-    char *text = write_text("obj", mesh, &notes);
+    char *text = write_text("obj", mesh, &warnings);
     assert_non_null(strstr(text, "vn 0 1 0\n"));
-    assert_int_equal(find_note(&notes, "unnamed_normal", "")->count, 2);
-    assert_int_equal(find_note(&notes, "unnamed_uv", "")->count, 1);
+    assert_int_equal(find_warning(&warnings, "unnamed_normal", "")->count, 2);
+    assert_int_equal(find_warning(&warnings, "unnamed_uv", "")->count, 1);
     free(text);
     he_mesh_free(mesh);
 }

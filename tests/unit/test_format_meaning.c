@@ -108,10 +108,10 @@ static void no_bit_of_v_is_lost_on_the_way_through(void **state)
     he_import_clear(&raw);
     /* floats of texture coordinates survive in glTF's own attribute, so the writer must not store
      * them in the extras as well */
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    free(write_encoded("glb", "binary", mesh, 4096, &notes, &length));
-    assert_null(find_note(&notes, "in_extras", "vertex uv"));
+    free(write_encoded("glb", "binary", mesh, 4096, &warnings, &length));
+    assert_null(find_warning(&warnings, "in_extras", "vertex uv"));
     he_mesh_free(mesh);
     he_soup_clear(&soup);
 }
@@ -141,20 +141,20 @@ static void bytes_of_colors_come_back_from_every_format(void **state)
         }
         snprintf(text + n, sizeof text - (size_t)n, "3 0 1 2\n");
         he_mesh *mesh = mesh_of_text("ply", text);
-        he_notes notes;
+        he_warnings warnings;
         size_t length;
         char *bytes = write_encoded(ways[i].format, hidden ? "binary" : ways[i].encoding, mesh,
-                                    4096, &notes, &length);
-        assert_int_equal(notes.count, 0);
+                                    4096, &warnings, &length);
+        assert_int_equal(warnings.count, 0);
         if (hidden) {
             rename_all(bytes, length, "\"hedge\":{", "\"Hedge\":{");
         }
         he_import import = read_whole(ways[i].format, bytes, length);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_mesh *again = build_import(&import);
-        char *back = write_text("ply", again, &notes);
+        char *back = write_text("ply", again, &warnings);
         assert_string_equal(back, text);
-        assert_int_equal(notes.count, 0);
+        assert_int_equal(warnings.count, 0);
         free(back);
         free(bytes);
         he_import_clear(&import);

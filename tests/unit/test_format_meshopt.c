@@ -113,7 +113,7 @@ static void expect_square(const he_import *import)
 {
     expect_counts(import, 4, 2, 6);
     assert_memory_equal(import->soup.positions, glb_square, sizeof glb_square);
-    assert_int_equal(import->notes.count, 0);
+    assert_int_equal(import->warnings.count, 0);
 }
 
 static void packed_views_are_read_as_plain_ones(void **state)
@@ -547,7 +547,7 @@ static void a_packed_file_has_what_a_plain_one_has(void **state)
             for (size_t c = 0; c < a.soup.column_count; c++) {
                 expect_same_columns(a.soup.columns[c], b.soup.columns[c]);
             }
-            assert_int_equal(b.notes.count, 0);
+            assert_int_equal(b.warnings.count, 0);
             he_import_clear(&a);
             he_import_clear(&b);
         }

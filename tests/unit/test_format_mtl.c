@@ -49,12 +49,12 @@ static void a_library_fills_the_table(void **state)
     expect_look(table, 1, "grey", (double[]){0.5, 0.5, 0.5, 0.75, 0, 1, 0, 0, 0});
     expect_look(table, 2, "K\xC3\xB6rper", (double[]){1, 1, 1, 0.75, 0, 1, 0, 0, 0});
     expect_look(table, 3, "plain", (double[]){1, 1, 1, 1, 0, 1, 0, 0, 0});
-    assert_int_equal(import.notes.count, 1);
-    expect_note(&import, "not_utf8", "K??rper", 1, 0);
+    assert_int_equal(import.warnings.count, 1);
+    expect_warning(&import, "not_utf8", "K??rper", 1, 0);
     he_import_clear(&import);
     import = read_library("# nothing\n");
     assert_int_equal(import.soup.materials.count, 0);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
 }
 
@@ -64,13 +64,13 @@ static void what_is_not_held_is_told_by_name(void **state)
     he_import import =
         read_library("newmtl a\nmap_Kd -s 1 1 1 the brick.png\nbump b.png\nKs 1 1 1\n"
                      "Ns 10\nNs 20\nKd spectral x.rfl\nsheen 1\n");
-    expect_note(&import, "ignored_texture", "map_Kd -s 1 1 1 the brick.png", 1, 0);
-    expect_note(&import, "ignored_texture", "bump b.png", 1, 0);
-    expect_note(&import, "ignored_keyword", "Ks", 1, 0);
-    expect_note(&import, "ignored_keyword", "Ns", 2, 0);
-    expect_note(&import, "ignored_color", "Kd", 1, 0);
-    expect_note(&import, "unknown_keyword", "sheen", 1, 0);
-    assert_int_equal(import.notes.count, 6);
+    expect_warning(&import, "ignored_texture", "map_Kd -s 1 1 1 the brick.png", 1, 0);
+    expect_warning(&import, "ignored_texture", "bump b.png", 1, 0);
+    expect_warning(&import, "ignored_keyword", "Ks", 1, 0);
+    expect_warning(&import, "ignored_keyword", "Ns", 2, 0);
+    expect_warning(&import, "ignored_color", "Kd", 1, 0);
+    expect_warning(&import, "unknown_keyword", "sheen", 1, 0);
+    assert_int_equal(import.warnings.count, 6);
     he_import_clear(&import);
 }
 
@@ -84,15 +84,15 @@ static void numbers_and_names_are_made_to_fit_with_a_note(void **state)
     expect_look(&import.soup.materials, 0, "a", (double[]){1, 0, 0, 1, 0, 1, 0, 0, 0});
     expect_look(&import.soup.materials, 1, "b", (double[]){1, 0, 0, 1, 0, 1, 0, 0, 0});
     assert_int_equal(import.soup.materials.count, 2);
-    expect_note(&import, "material_range", "a", 1, 0);
-    expect_note(&import, "material_twice", "b", 1, 0);
-    expect_note(&import, "material_name", "", 1, 0);
+    expect_warning(&import, "material_range", "a", 1, 0);
+    expect_warning(&import, "material_twice", "b", 1, 0);
+    expect_warning(&import, "material_name", "", 1, 0);
     he_import_clear(&import);
     snprintf(text, sizeof text, "newmtl %01023d\nnewmtl %01024d\n", 7, 7);
     import = read_library(text);
     assert_int_equal(import.soup.materials.count, 1);
-    assert_int_equal(import.notes.count, 1);
-    assert_string_equal(import.notes.items[0].code, "material_name");
+    assert_int_equal(import.warnings.count, 1);
+    assert_string_equal(import.warnings.items[0].code, "material_name");
     he_import_clear(&import);
 }
 
@@ -108,7 +108,7 @@ static void a_table_has_an_end(void **state)
     (void)snprintf(text + length, room - length, "newmtl m0\nnewmtl m%d\n", HE_MATERIALS);
     he_import import = read_library(text);
     assert_int_equal(import.soup.materials.count, HE_MATERIALS);
-    expect_note(&import, "material_limit", "", 10, 0);
+    expect_warning(&import, "material_limit", "", 10, 0);
     he_import_clear(&import);
     free(text);
 }
@@ -172,23 +172,23 @@ static void an_obj_file_brings_the_library_it_came_with(void **state)
                      HE_OK);
     expect_look(&import.soup.materials, 0, "red", (double[]){1, 0, 0, 1, 0, 1, 0, 0, 0});
     expect_look(&import.soup.materials, 1, "blue", (double[]){0, 0, 1, 1, 0, 1, 0, 0, 0});
-    expect_note(&import, "library_missing", "gone.mtl", 1, 1);
-    expect_note(&import, "ignored_texture", "map_Kd brick.png", 1, 0);
-    assert_int_equal(import.notes.count, 2);
+    expect_warning(&import, "library_missing", "gone.mtl", 1, 1);
+    expect_warning(&import, "ignored_texture", "map_Kd brick.png", 1, 0);
+    assert_int_equal(import.warnings.count, 2);
     he_mesh *mesh = build_import(&import);
     he_import_clear(&import);
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_string_equal(text, "# 3 vertices, 1 faces\nmtllib a.mtl gone.mtl\nmtllib b c.mtl\n"
                               "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-    assert_int_equal(notes.count, 1);
-    assert_non_null(find_note(&notes, "in_library", ""));
+    assert_int_equal(warnings.count, 1);
+    assert_non_null(find_warning(&warnings, "in_library", ""));
     free(text);
-    text = write_text("mtl", mesh, &notes);
+    text = write_text("mtl", mesh, &warnings);
     assert_string_equal(text,
                         "# materials\nnewmtl red\nKd 1 0 0\nd 1\nKe 0 0 0\nPm 0\nPr 1\nillum 2\n"
                         "newmtl blue\nKd 0 0 1\nd 1\nKe 0 0 0\nPm 0\nPr 1\nillum 2\n");
-    assert_int_equal(notes.count, 0);
+    assert_int_equal(warnings.count, 0);
     free(text);
     he_mesh_free(mesh);
 }
@@ -215,10 +215,10 @@ static void a_table_comes_back_from_its_library(void **state)
     he_mesh *mesh = mesh_of_text("obj", TRIANGLE);
     script_prepare(mesh, "material_set name=a base_color=0.1,0.2,0.3,0.4 metallic=0.5 "
                          "roughness=0.6 emission=7e100,0.8,1e-9;material_set name=b two_sided=1");
-    he_notes notes;
-    char *text = write_text("mtl", mesh, &notes);
-    assert_int_equal(notes.count, 1);
-    assert_non_null(find_note(&notes, "two_sided_lost", "b"));
+    he_warnings warnings;
+    char *text = write_text("mtl", mesh, &warnings);
+    assert_int_equal(warnings.count, 1);
+    assert_non_null(find_warning(&warnings, "two_sided_lost", "b"));
     he_import import = read_library(text);
     assert_true(he_material_equal(import.soup.materials.rows[0], he_mesh_materials(mesh)->rows[0]));
     assert_false(import.soup.materials.rows[1]->look.two_sided);
@@ -227,18 +227,18 @@ static void a_table_comes_back_from_its_library(void **state)
     text = write_text("obj", mesh, NULL);
     assert_non_null(strstr(text, "\nmtllib materials.mtl\n"));
     free(text);
-    free(write_text("ply", mesh, &notes));
-    assert_int_equal(find_note(&notes, "materials_lost", "")->count, 2);
-    free(write_text("off", mesh, &notes));
-    assert_non_null(find_note(&notes, "materials_lost", ""));
-    free(write_text("stl", mesh, &notes));
-    assert_non_null(find_note(&notes, "materials_lost", ""));
+    free(write_text("ply", mesh, &warnings));
+    assert_int_equal(find_warning(&warnings, "materials_lost", "")->count, 2);
+    free(write_text("off", mesh, &warnings));
+    assert_non_null(find_warning(&warnings, "materials_lost", ""));
+    free(write_text("stl", mesh, &warnings));
+    assert_non_null(find_warning(&warnings, "materials_lost", ""));
     script_prepare(mesh, "material_set name=a rename=\\");
-    free(write_text("mtl", mesh, &notes));
-    assert_non_null(find_note(&notes, "names_changed", "\\"));
+    free(write_text("mtl", mesh, &warnings));
+    assert_non_null(find_warning(&warnings, "names_changed", "\\"));
     he_mesh_free(mesh);
     mesh = mesh_of_text("obj", TRIANGLE);
-    text = write_text("mtl", mesh, &notes);
+    text = write_text("mtl", mesh, &warnings);
     assert_string_equal(text, "# materials\n");
     free(text);
     he_mesh_free(mesh);

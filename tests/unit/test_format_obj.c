@@ -14,9 +14,9 @@ static void vertices_and_polygons(void **state)
     assert_true(import.soup.positions[4].x == -1.5 && import.soup.positions[4].y == 0.5 &&
                 import.soup.positions[4].z == 2);
     assert_int_equal(import.soup.starts[1], 4);
-    assert_int_equal(import.notes.count, 0);
-    assert_int_equal(he_places_find(&import.vertices, 4), 6);
-    assert_int_equal(he_places_find(&import.faces, 1), 8);
+    assert_int_equal(import.warnings.count, 0);
+    assert_int_equal(he_source_map_find(&import.vertices, 4), 6);
+    assert_int_equal(he_source_map_find(&import.faces, 1), 8);
     he_mesh *mesh = build_import(&import);
     fixture_counts(mesh, 5, 6, 2);
     he_mesh_free(mesh);
@@ -46,7 +46,7 @@ static void white_space_and_line_ends(void **state)
         expect_counts(&import, 3, 1, 3);
         expect_corners(&import, (uint32_t[]){0, 1, 2}, 3);
         assert_true(import.soup.positions[1].x == 1 && import.soup.positions[2].y == 1);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_import_clear(&import);
     }
 }
@@ -63,8 +63,8 @@ static void lines_that_end_in_returns(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         he_import import = read_text("obj", texts[i]);
         expect_counts(&import, 3, 1, 3);
-        assert_int_equal(import.notes.count, 0);
-        assert_int_equal(he_places_find(&import.faces, 0), 6);
+        assert_int_equal(import.warnings.count, 0);
+        assert_int_equal(he_source_map_find(&import.faces, 0), 6);
         he_import_clear(&import);
         assert_string_equal(he_format_sniff(texts[i], strlen(texts[i]))->name, "obj");
     }
@@ -78,7 +78,7 @@ static void vertex_forms(void **state)
     (void)state;
     he_import import = read_text("obj", "v 1 2 3 1\nv 1 2 3 0.5\nv 1 2 3 2.0\n");
     expect_counts(&import, 3, 0, 0);
-    expect_note(&import, "vertex_weight", "", 2, 2);
+    expect_warning(&import, "vertex_weight", "", 2, 2);
     assert_null(find_column(&import, HE_VERTEX, "color"));
     he_import_clear(&import);
 
@@ -90,20 +90,20 @@ static void vertex_forms(void **state)
     import = read_text("obj", "v 0 0 0 255 0 7 128\nv 0 0 0 0 1 0\nv 0 0 0\n");
     expect_bytes(&import, HE_VERTEX, 4,
                  (const unsigned char[]){255, 0, 7, 128, 0, 1, 0, 255, 0, 0, 0, 0}, 3);
-    expect_note(&import, "byte_colors", "", 2, 0);
-    expect_note(&import, "vertices_without_color", "", 1, 0);
+    expect_warning(&import, "byte_colors", "", 2, 0);
+    expect_warning(&import, "vertices_without_color", "", 1, 0);
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0 1.5 0 1 1\nv 0 0 0 0 2 1 1\n");
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 2},
                    (double[]){1.5, 0, 1, 0, 2, 1});
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
 
     import = read_text("obj", "v 0 0 0\nv 0 0 0\nv 0 0 0 1 1 1\n");
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 3, 3},
                    (double[]){0, 0, 0, 0, 0, 0, 1, 1, 1});
-    expect_note(&import, "vertices_without_color", "", 2, 0);
+    expect_warning(&import, "vertices_without_color", "", 2, 0);
     he_import_clear(&import);
 }
 
@@ -142,12 +142,12 @@ static void corner_forms(void **state)
                            (double[]){0, 0, 1, 0, 0, 1, 1, 0, 0});
         }
         if (!rows[i].uv) {
-            expect_note(&import, "unused_uv", "", 3, 0);
+            expect_warning(&import, "unused_uv", "", 3, 0);
         }
         if (!rows[i].normal) {
-            expect_note(&import, "unused_normal", "", 2, 0);
+            expect_warning(&import, "unused_normal", "", 2, 0);
         }
-        assert_int_equal(import.notes.count, !rows[i].uv + !rows[i].normal);
+        assert_int_equal(import.warnings.count, !rows[i].uv + !rows[i].normal);
         he_import_clear(&import);
     }
 
@@ -163,8 +163,8 @@ static void corner_forms(void **state)
                               "f 1 2 3\nf 1/1 2 4//1\n");
     expect_doubles(&import, &(attribute_shape){HE_HALFEDGE, "uv", 2, 6},
                    (double[]){0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0});
-    expect_note(&import, "corners_without_uv", "", 5, 0);
-    expect_note(&import, "corners_without_normal", "", 5, 0);
+    expect_warning(&import, "corners_without_uv", "", 5, 0);
+    expect_warning(&import, "corners_without_normal", "", 5, 0);
     he_import_clear(&import);
 }
 
@@ -225,8 +225,8 @@ static void names_and_smoothing(void **state)
     expect_u32s(&import, &(attribute_shape){HE_FACE, "smoothing", 1, 5},
                 (uint32_t[]){0, 3, 3, 0, 1});
     assert_null(find_column(&import, HE_FACE, "smoothing")->labels);
-    expect_note(&import, "library_missing", "a", 1, 6);
-    expect_note(&import, "library_missing", "file.mtl", 1, 6);
+    expect_warning(&import, "library_missing", "a", 1, 6);
+    expect_warning(&import, "library_missing", "file.mtl", 1, 6);
     he_import_clear(&import);
 
     /* a value that no face has, or that all faces have by default, makes no attribute */
@@ -261,7 +261,7 @@ static void names_are_utf8(void **state)
         snprintf(text, sizeof text, "%so %s\nf 1 2 3\n", start, rows[i].name);
         he_import import = read_text("obj", text);
         assert_string_equal(face_label(&import, "object", 0), rows[i].label);
-        assert_int_equal(import.notes.count, rows[i].noted);
+        assert_int_equal(import.warnings.count, rows[i].noted);
         he_import_clear(&import);
     }
 }
@@ -274,17 +274,17 @@ static void lines_that_are_passed_over(void **state)
                          "vp 0.1 0.2\ncstype bezier\nxyz 1 2 3\ncall evil.obj\nxyz 5\n"
                          "t crease 1/1/0 0 1 4.7\nf 1 2 3\n");
     expect_counts(&import, 3, 1, 3);
-    expect_note(&import, "library_missing", "/etc/passwd", 1, 1);
-    expect_note(&import, "ignored_keyword", "l", 2, 5);
-    expect_note(&import, "ignored_keyword", "p", 1, 7);
-    expect_note(&import, "ignored_keyword", "vp", 1, 8);
-    expect_note(&import, "ignored_keyword", "call", 1, 11);
-    expect_note(&import, "unknown_keyword", "xyz", 2, 10);
-    expect_note(&import, "ignored_keyword", "t", 1, 13);
+    expect_warning(&import, "library_missing", "/etc/passwd", 1, 1);
+    expect_warning(&import, "ignored_keyword", "l", 2, 5);
+    expect_warning(&import, "ignored_keyword", "p", 1, 7);
+    expect_warning(&import, "ignored_keyword", "vp", 1, 8);
+    expect_warning(&import, "ignored_keyword", "call", 1, 11);
+    expect_warning(&import, "unknown_keyword", "xyz", 2, 10);
+    expect_warning(&import, "ignored_keyword", "t", 1, 13);
     char text[100];
-    he_note_text(find_note(&import.notes, "unknown_keyword", "xyz"), text, sizeof text);
+    he_warning_text(find_warning(&import.warnings, "unknown_keyword", "xyz"), text, sizeof text);
     assert_string_equal(text, "ignored: unknown keyword 'xyz', 2 times, first on line 10");
-    he_note_text(find_note(&import.notes, "ignored_keyword", "p"), text, sizeof text);
+    he_warning_text(find_warning(&import.warnings, "ignored_keyword", "p"), text, sizeof text);
     assert_string_equal(text, "ignored: lines that begin with 'p', on line 7");
     he_import_clear(&import);
 }
@@ -302,8 +302,8 @@ static void notes_have_an_end(void **state)
     he_error err = {0};
     assert_int_equal(read_pieces(&(format_file){"obj", text, length}, 0, NULL, &import, &err),
                      HE_OK);
-    assert_int_equal(import.notes.count, HE_NOTES);
-    assert_int_equal(import.notes.more, 5000 - HE_NOTES);
+    assert_int_equal(import.warnings.count, HE_WARNINGS);
+    assert_int_equal(import.warnings.more, 5000 - HE_WARNINGS);
     he_import_clear(&import);
     free(text);
 }
@@ -365,7 +365,7 @@ static void wrong_values_cost_the_corner_its_value(void **state)
             continue;
         }
         he_import import = read_text("obj", text);
-        const he_note *note = find_note(&import.notes, rows[i].code, "");
+        const he_warning *note = find_warning(&import.warnings, rows[i].code, "");
         assert_non_null(note);
         assert_int_equal(note->count, rows[i].count);
         assert_int_equal(note->at, rows[i].at);
@@ -377,7 +377,7 @@ static void wrong_values_cost_the_corner_its_value(void **state)
      * is made */
     he_import import = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n");
     assert_int_equal(import.soup.column_count, 0);
-    assert_int_equal(find_note(&import.notes, "no_such_uv", "")->count, 3);
+    assert_int_equal(find_warning(&import.warnings, "no_such_uv", "")->count, 3);
     he_import_clear(&import);
 }
 
@@ -385,9 +385,9 @@ static void more_numbers_than_a_vertex_has(void **state)
 {
     (void)state;
     he_import import = read_text("obj", "v 1 2 3 4 5\nv 1 2 3 4 5 6 7 8\nv 1 2 3 inf 5 6\n");
-    assert_int_equal(find_note(&import.notes, "extra_numbers", "")->count, 2);
-    assert_int_equal(find_note(&import.notes, "not_finite", "")->at, 3);
-    assert_int_equal(find_note(&import.notes, "vertices_without_color", "")->count, 2);
+    assert_int_equal(find_warning(&import.warnings, "extra_numbers", "")->count, 2);
+    assert_int_equal(find_warning(&import.warnings, "not_finite", "")->at, 3);
+    assert_int_equal(find_warning(&import.warnings, "vertices_without_color", "")->count, 2);
     expect_bytes(&import, HE_VERTEX, 3, (const unsigned char[]){0, 0, 0, 0, 0, 0, 0, 5, 6}, 3);
     he_import_clear(&import);
 }
@@ -399,8 +399,8 @@ static void lines_that_begin_with_a_dollar_are_passed_over(void **state)
                                "  $ f 9 9 \\\n 9\nv 0 1 0\nf 1 2 3\n";
     he_import import = read_text("obj", text);
     expect_counts(&import, 3, 1, 3);
-    expect_note(&import, "ignored_keyword", "$", 3, 1);
-    assert_int_equal(import.notes.count, 1);
+    expect_warning(&import, "ignored_keyword", "$", 3, 1);
+    assert_int_equal(import.warnings.count, 1);
     assert_ptr_equal(he_format_sniff(text, strlen(text)), he_format_find("obj"));
     he_import_clear(&import);
 }

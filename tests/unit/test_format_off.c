@@ -28,7 +28,7 @@ static void plain_files(void **state)
         assert_true(import.soup.positions[0].x == 0 && import.soup.positions[1].x == 1 &&
                     import.soup.positions[2].y == 1);
         assert_int_equal(import.soup.column_count, 0);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_import_clear(&import);
     }
     he_import import = read_text("off", "OFF +2 +1 nan\n0 0 0\n1 0 0\n3 +0 1 +0\n");
@@ -37,7 +37,7 @@ static void plain_files(void **state)
     import = read_text("off", "NOFF 2 0 0\n0 0 0 0 0 1\n1 0 0 nan 0 -inf\n");
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 2},
                    (double[]){0, 0, 1, 0, 0, 0});
-    expect_note(&import, "not_finite", "", 2, 3);
+    expect_warning(&import, "not_finite", "", 2, 3);
     he_import_clear(&import);
     import = read_text("off", "OFF\n0 0 0\n");
     expect_counts(&import, 0, 0, 0);
@@ -53,9 +53,9 @@ static void polygons_and_lines(void **state)
     he_import import = read_text("off", "OFF\n5 2 6\n0 0 0\n1 0 0\n\n1 1 0\n0 1 0\n-1 .5 0\n"
                                         "4 0 1 2 3\n# x\n3 0 3 4\n");
     expect_corners(&import, (uint32_t[]){0, 1, 2, 3, 0, 3, 4}, 7);
-    assert_int_equal(he_places_find(&import.vertices, 1), 4);
-    assert_int_equal(he_places_find(&import.vertices, 2), 6);
-    assert_int_equal(he_places_find(&import.faces, 1), 11);
+    assert_int_equal(he_source_map_find(&import.vertices, 1), 4);
+    assert_int_equal(he_source_map_find(&import.vertices, 2), 6);
+    assert_int_equal(he_source_map_find(&import.faces, 1), 11);
     he_mesh *mesh = build_import(&import);
     fixture_counts(mesh, 5, 6, 2);
     he_mesh_free(mesh);
@@ -87,7 +87,7 @@ static void vertex_data_in_every_mix(void **state)
                  rows[i].second);
         he_import import = read_text("off", text);
         expect_counts(&import, 2, 0, 0);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         assert_int_equal(import.soup.column_count,
                          rows[i].normal + rows[i].uv + (rows[i].color != 0));
         assert_true(import.soup.positions[1].x == 1);
@@ -120,12 +120,12 @@ static void integer_colors_are_bytes(void **state)
                                         "0 0 0 1 2 3 128 0 0\n0 0 0 0 0 0 0 0\n");
     expect_bytes(&import, HE_VERTEX, 4,
                  (const unsigned char[]){255, 0, 7, 255, 1, 2, 3, 128, 0, 0, 0, 255}, 3);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
     static const struct {
         const char *vertex;
         double color[3];
-        bool bytes; /* a note must say that colours are bytes */
+        bool bytes; /* a warning must say that colours are bytes */
     } rows[] = {
         {"1 0 1", {1 / 255.0, 0, 1 / 255.0}, false}, {"1 0 1.0", {1, 0, 1}, false},
         {"255 0 1e1", {1, 0, 10 / 255.0}, true},     {"255 0 .5", {255, 0, .5}, false},
@@ -138,7 +138,7 @@ static void integer_colors_are_bytes(void **state)
         import = read_text("off", text);
         const he_column *column = find_column(&import, HE_VERTEX, "color");
         assert_memory_equal(he_column_value(column, 0), rows[i].color, sizeof rows[i].color);
-        assert_int_equal(import.notes.count, rows[i].bytes);
+        assert_int_equal(import.warnings.count, rows[i].bytes);
         he_import_clear(&import);
     }
 }
@@ -152,7 +152,7 @@ static void vertices_without_what_is_announced(void **state)
     expect_counts(&import, 3, 1, 3);
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 2},
                    (double[]){0, 0, 0, 0, 0, 1});
-    expect_note(&import, "missing_numbers", "", 2, 3);
+    expect_warning(&import, "missing_numbers", "", 2, 3);
     he_mesh *mesh = build_import(&import);
     const he_column *column = he_mesh_find_column(mesh, HE_VERTEX, "normal");
     assert_memory_equal(he_column_value(column, 2), ((double[]){0, 0, 0}), 24);
@@ -166,7 +166,7 @@ static void vertices_without_what_is_announced(void **state)
         import = read_text("off", text);
         expect_counts(&import, 3, 1, 3);
         assert_int_equal(import.soup.column_count, 0);
-        expect_note(&import, "missing_numbers", "", 3, 3);
+        expect_warning(&import, "missing_numbers", "", 3, 3);
         he_import_clear(&import);
     }
     import = read_text("off", "CNOFF\n4 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 7 8 9\n1 1 0\n"
@@ -175,12 +175,12 @@ static void vertices_without_what_is_announced(void **state)
                  4);
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 4},
                    (double[]){0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0});
-    expect_note(&import, "missing_numbers", "", 2, 3);
-    expect_note(&import, "color_index", "", 1, 6);
+    expect_warning(&import, "missing_numbers", "", 2, 3);
+    expect_warning(&import, "color_index", "", 1, 6);
     he_import_clear(&import);
     import = read_text("off", "STNOFF\n2 0 0\n0 0 0 0 0 1\n1 0 0 0 0 1 .5 .5\n");
     expect_doubles(&import, &(attribute_shape){HE_VERTEX, "uv", 2, 2}, (double[]){0, 0, .5, .5});
-    expect_note(&import, "missing_numbers", "", 1, 3);
+    expect_warning(&import, "missing_numbers", "", 1, 3);
     he_import_clear(&import);
 
     /* A missing value can look like numbers on the next line: the refusal must then say what
@@ -211,17 +211,17 @@ static void face_colors(void **state)
     snprintf(text, sizeof text, "%s3 0 1 2 9\n3 0 2 3 1 2\n3 3 2 1 1 2 3 4 5\n", start);
     import = read_text("off", text);
     assert_null(find_column(&import, HE_FACE, "color"));
-    expect_note(&import, "color_index", "", 1, 7);
-    expect_note(&import, "extra_numbers", "", 2, 8);
+    expect_warning(&import, "color_index", "", 1, 7);
+    expect_warning(&import, "extra_numbers", "", 2, 8);
     he_import_clear(&import);
 
     import = read_text("off", "OFF\n2 0 0\n0 0 0 1 2 3\n1 0 0\n");
     assert_int_equal(import.soup.column_count, 0);
-    expect_note(&import, "extra_numbers", "", 1, 3);
+    expect_warning(&import, "extra_numbers", "", 1, 3);
     he_import_clear(&import);
 
     import = read_text("off", "COFF\n1 0 0\n0 0 0 5\n");
-    expect_note(&import, "color_index", "", 1, 3);
+    expect_warning(&import, "color_index", "", 1, 3);
     he_import_clear(&import);
 }
 
@@ -428,15 +428,15 @@ static void a_binary_body_is_read_with_a_note(void **state)
         expect_corners(&import, corners, 6);
         assert_true(import.soup.positions[2].x == 1 && import.soup.positions[2].y == 1);
         expect_doubles(&import, &(attribute_shape){HE_FACE, "color", 3, 2}, face_colors);
-        expect_note(&import, "binary_off", "", 1, header);
-        expect_note(&import, "trailing_bytes", "", 1, b.length - 1);
-        expect_note(&import, "extra_numbers", "", 1, b.length - 9);
-        assert_int_equal(he_places_find(&import.vertices, 1), header + 12 + (i < 2 ? 12 : 48));
+        expect_warning(&import, "binary_off", "", 1, header);
+        expect_warning(&import, "trailing_bytes", "", 1, b.length - 1);
+        expect_warning(&import, "extra_numbers", "", 1, b.length - 9);
+        assert_int_equal(he_source_map_find(&import.vertices, 1), header + 12 + (i < 2 ? 12 : 48));
         if (i >= 2) {
             expect_doubles(&import, &(attribute_shape){HE_VERTEX, "uv", 2, 4}, uv);
             expect_doubles(&import, &(attribute_shape){HE_VERTEX, "normal", 3, 4}, normal);
             expect_doubles(&import, &(attribute_shape){HE_VERTEX, "color", 4, 4}, colors);
-            expect_note(&import, "not_finite", "", 1, header + 12 + 3 * 48 + 24);
+            expect_warning(&import, "not_finite", "", 1, header + 12 + 3 * 48 + 24);
         }
         he_mesh_free(build_import(&import));
         he_import_clear(&import);

@@ -58,9 +58,9 @@ static void every_type_in_every_encoding(void **state)
             }
             expect_points(&import, ply_square, 4);
             expect_corners(&import, corners, 6);
-            assert_int_equal(import.notes.count, ply_types[index].is_float);
+            assert_int_equal(import.warnings.count, ply_types[index].is_float);
             if (ply_types[index].is_float) {
-                expect_note(&import, "fraction_indices", ply_types[index].names[0], 1, 9);
+                expect_warning(&import, "fraction_indices", ply_types[index].names[0], 1, 9);
             }
             const he_column *column = find_column(&import, HE_VERTEX, "quality");
             assert_non_null(column);
@@ -155,7 +155,7 @@ static void elements_and_properties_in_any_order(void **state)
         expect_corners(&import, corners, 7);
         expect_u32s(&import, &(attribute_shape){HE_FACE, "group", 1, 2}, groups);
         assert_int_equal(find_column(&import, HE_FACE, "angle")->type, HE_FLOAT);
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_import_clear(&import);
     }
 }
@@ -196,7 +196,7 @@ static void properties_become_attributes(void **state)
     assert_int_equal(column->rule, HE_COPY);
     assert_memory_equal(column->data, marks, sizeof marks);
     assert_non_null(find_column(&import, HE_VERTEX, "u"));
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
 }
 
@@ -310,11 +310,11 @@ static void what_is_left_out_is_noted(void **state)
         he_import import = ply_read(&f);
         expect_counts(&import, 3, 1, 3);
         expect_points(&import, ply_square, 3);
-        expect_note(&import, "ignored_element", "material", 1, 3);
-        expect_note(&import, "ignored_list", "weights", 1, 10);
-        expect_note(&import, "ignored_list", "heights", 1, 13);
-        expect_note(&import, "ignored_element", "strange", 1, 14);
-        assert_int_equal(import.notes.count, 4);
+        expect_warning(&import, "ignored_element", "material", 1, 3);
+        expect_warning(&import, "ignored_list", "weights", 1, 10);
+        expect_warning(&import, "ignored_list", "heights", 1, 13);
+        expect_warning(&import, "ignored_element", "strange", 1, 14);
+        assert_int_equal(import.warnings.count, 4);
         assert_int_equal(import.soup.column_count, 0);
         he_import_clear(&import);
     }
@@ -323,18 +323,18 @@ static void what_is_left_out_is_noted(void **state)
                      "property float a_name_of_more_bytes_than_the_name_of_an_attribute_can_have_"
                      "in_all\nproperty float caf\xC3\xA9\nproperty uchar uv\nproperty float s\n"
                      "property float t\nend_header\n0 0 0 1 2 3 4 5 6 7\n\n1 2\n3\n");
-    expect_note(&import, "ignored_property", "caf??", 1, 8);
-    expect_note(&import, "ignored_property", "uv", 1, 9);
-    expect_note(&import, "extra_numbers", "", 1, 13);
-    expect_note(&import, "trailing_lines", "", 2, 15);
-    assert_int_equal(import.notes.count, 5);
+    expect_warning(&import, "ignored_property", "caf??", 1, 8);
+    expect_warning(&import, "ignored_property", "uv", 1, 9);
+    expect_warning(&import, "extra_numbers", "", 1, 13);
+    expect_warning(&import, "trailing_lines", "", 2, 15);
+    assert_int_equal(import.warnings.count, 5);
     he_import_clear(&import);
     static const char trailing[] =
         LITTLE "element vertex 1\nproperty char x\nproperty char y\nproperty char z\nend_header\n"
                "\1\2\3\n\0\0";
     assert_int_equal(read_bytes("ply", trailing, sizeof trailing - 1, &import, &(he_error){0}),
                      HE_OK);
-    expect_note(&import, "trailing_bytes", "", 1, sizeof trailing - 4);
+    expect_warning(&import, "trailing_bytes", "", 1, sizeof trailing - 4);
     he_import_clear(&import);
 }
 
@@ -354,14 +354,14 @@ static void values_that_are_not_finite(void **state)
         }
         he_import import = ply_read(&f);
         assert_memory_equal(find_column(&import, HE_VERTEX, "q")->data, wanted, sizeof wanted);
-        expect_note(&import, "not_finite", "q", 3, f.length - 64);
+        expect_warning(&import, "not_finite", "q", 3, f.length - 64);
         he_import_clear(&import);
     }
     he_import import =
         read_text("ply", ASCII "element vertex 4\n" XYZ "property float q\nend_header\n"
                                "0 0 0 nan\n0 0 0 1\n0 0 0 1e999\n0 0 0 -1e39\n");
     assert_memory_equal(find_column(&import, HE_VERTEX, "q")->data, wanted, sizeof wanted);
-    expect_note(&import, "not_finite", "q", 3, 9);
+    expect_warning(&import, "not_finite", "q", 3, 9);
     he_import_clear(&import);
 }
 
@@ -376,8 +376,8 @@ static void lines_that_end_in_returns(void **state)
         "0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r";
     he_import import = read_text("ply", text);
     expect_counts(&import, 3, 1, 3);
-    assert_int_equal(he_places_find(&import.vertices, 2), 12);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(he_source_map_find(&import.vertices, 2), 12);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
     static const char empty[] = "ply\rformat ascii 1.0\relement vertex 0\rend_header";
     import = read_text("ply", empty);
@@ -409,8 +409,8 @@ static void a_header_that_ends_in_returns_before_a_binary_body(void **state)
     expect_counts(&import, 3, 1, 3);
     expect_corners(&import, corners, 3);
     assert_true(import.soup.positions[0].x == 10 && import.soup.positions[1].z == 0);
-    assert_int_equal(he_places_find(&import.vertices, 1), at + 3);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(he_source_map_find(&import.vertices, 1), at + 3);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
     for (size_t end = at; end < length; end++) {
         expect_refused_at_byte(&(format_file){"ply", bytes, end}, HE_SYNTAX, end,
@@ -442,8 +442,8 @@ static void strips_become_triangles(void **state)
         he_import import = ply_read(&f);
         expect_counts(&import, 5, 6, 18);
         expect_corners(&import, corners, 18);
-        assert_int_equal(he_places_find(&import.faces, 0), e == TEXT ? 15 : f.length - 64);
-        assert_int_equal(he_places_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
+        assert_int_equal(he_source_map_find(&import.faces, 0), e == TEXT ? 15 : f.length - 64);
+        assert_int_equal(he_source_map_find(&import.faces, 5), e == TEXT ? 15 : f.length - 4);
         he_import_clear(&import);
     }
     /* the file has triangle strips in an element of their own, and faces with an attribute */
@@ -455,7 +455,7 @@ static void strips_become_triangles(void **state)
                      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2 1\n2 0 1 2\n3 2 1 3 3\n3 0 2 1 7\n");
     expect_corners(&import, both, 9);
     expect_u32s(&import, &(attribute_shape){HE_FACE, "mark", 1, 3}, marks);
-    expect_note(&import, "ignored_property", "id", 1, 9);
+    expect_warning(&import, "ignored_property", "id", 1, 9);
     he_import_clear(&import);
 }
 
@@ -471,12 +471,12 @@ static void line_ends_of_the_header(void **state)
     assert_int_equal(read_bytes("ply", crlf, sizeof crlf - 1, &import, &err), HE_OK);
     assert_true(import.soup.positions[0].x == 0x0D0A && import.soup.positions[0].y == 255 &&
                 import.soup.positions[0].z == 13);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
     import = read_text("ply", "\r\n\nply\r\nformat ascii 1.0\r\nelement vertex 1\r\n" XYZ
                               "end_header\r\n\r\ncomment not a row\r\n1 2\t3");
     expect_counts(&import, 1, 0, 0);
-    assert_int_equal(he_places_find(&import.vertices, 0), 12);
+    assert_int_equal(he_source_map_find(&import.vertices, 0), 12);
     he_import_clear(&import);
     import = read_text("ply", "\xEF\xBB\xBFply\nformat ascii 1.0\nelement face 0\nend_header");
     expect_counts(&import, 0, 0, 0);
@@ -512,10 +512,10 @@ static void places_are_known(void **state)
     import = ply_read(&f);
     static const size_t places[] = {9, 13, 18, 22};
     for (uint32_t i = 0; i < 4; i++) {
-        assert_int_equal(he_places_find(&import.faces, i), body + places[i]);
+        assert_int_equal(he_source_map_find(&import.faces, i), body + places[i]);
     }
     for (uint32_t v = 0; v < 3; v++) {
-        assert_int_equal(he_places_find(&import.vertices, v), body + 3 * v);
+        assert_int_equal(he_source_map_find(&import.vertices, v), body + 3 * v);
     }
     he_import_clear(&import);
 }

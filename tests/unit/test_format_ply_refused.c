@@ -219,7 +219,7 @@ typedef struct largest {
     size_t size;
 } largest;
 
-static void *watch(void *context, void *memory, size_t size)
+static void *progress(void *context, void *memory, size_t size)
 {
     largest *most = context;
     most->size = size > most->size ? size : most->size;
@@ -270,7 +270,7 @@ static void counts_are_not_believed(void **state)
          "after 0 of the 9 rows"},
     };
     largest most = {0};
-    const he_mem_hook hook = {watch, &most};
+    const he_mem_hook hook = {progress, &most};
     for (ply_encoding e = TEXT; e <= MOST_FIRST; e++) {
         for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
             ply_file f;

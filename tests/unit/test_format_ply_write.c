@@ -24,9 +24,9 @@ static void text_is_as_expected(void **state)
 {
     (void)state;
     he_mesh *mesh = colored_square();
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
+    char *text = write_bytes("ply", "ascii", mesh, &warnings, &length);
     assert_string_equal(
         text, ASCII "element vertex 5\nproperty double x\nproperty double y\nproperty double z\n"
                     "property float nx\nproperty float ny\nproperty float nz\n"
@@ -39,7 +39,7 @@ static void text_is_as_expected(void **state)
                     "1 1 -0 0 0 1 1 2 3 4 1 1 7\n0 1 5e-324 0 0.6 0.8 0 0 0 0 0 1 -2147483648\n"
                     "9 9 1e300 0 0 1 9 9 9 9 0 0 0\n"
                     "3 0 1 2 10 20 30 4294967295\n3 0 2 3 1 0 1 0\n");
-    assert_int_equal(notes.count, 0);
+    assert_int_equal(warnings.count, 0);
     free(text);
     he_mesh_free(mesh);
 }
@@ -54,15 +54,15 @@ static void all_encodings_round_trip(void **state)
         const he_mesh *mesh = meshes[i % 3];
         const char *name = encodings[i / 3];
         size_t length, again_length;
-        he_notes notes;
-        char *bytes = write_bytes("ply", name, mesh, &notes, &length);
-        assert_int_equal(notes.count, 0);
+        he_warnings warnings;
+        char *bytes = write_bytes("ply", name, mesh, &warnings, &length);
+        assert_int_equal(warnings.count, 0);
         he_import import = {0};
         he_error err = {0};
         if (read_bytes("ply", bytes, length, &import, &err) != HE_OK) {
             fail_msg("%s", err.text);
         }
-        assert_int_equal(import.notes.count, 0);
+        assert_int_equal(import.warnings.count, 0);
         he_mesh *again = build_import(&import);
         assert_true(he_mesh_equal(mesh, again));
         char *repeated = write_encoded("ply", name, again, 100, NULL, &again_length);
@@ -149,12 +149,12 @@ static void colors_between_bytes_are_rounded_and_counted(void **state)
     (void)state;
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0 0.5 0 1\nv 1 0 0 1.5 -1 0.2\nv 0 1 0 0 1 0.2\n"
                                         "f 1 2 3\n");
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
+    char *text = write_bytes("ply", "ascii", mesh, &warnings, &length);
     assert_non_null(strstr(text, "end_header\n0 0 0 128 0 255\n1 0 0 255 0 51\n0 1 0 0 255 51\n"));
-    assert_int_equal(find_note(&notes, "rounded_colors", "")->count, 2);
-    assert_int_equal(notes.count, 1);
+    assert_int_equal(find_warning(&warnings, "rounded_colors", "")->count, 2);
+    assert_int_equal(warnings.count, 1);
     free(text);
     he_mesh_free(mesh);
 }
@@ -176,15 +176,15 @@ static void what_is_lost_is_named(void **state)
         add_column(&soup, &attributes[i]);
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, NULL), HE_OK);
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *text = write_bytes("ply", "ascii", mesh, &notes, &length);
+    char *text = write_bytes("ply", "ascii", mesh, &warnings, &length);
     static const char *const lost[] = {"vertex x",   "vertex two words", "vertex pair",
                                        "vertex red", "halfedge heat",    "face color"};
     for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
-        assert_non_null(find_note(&notes, "attribute_lost", lost[i]));
+        assert_non_null(find_warning(&warnings, "attribute_lost", lost[i]));
     }
-    assert_int_equal(notes.count, 6);
+    assert_int_equal(warnings.count, 6);
     assert_non_null(strstr(text, "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                                  "property uchar flag\nelement face"));
     assert_non_null(strstr(text, "3 0 1 2 16843009\n3 0 2 3 0\n"));

@@ -76,15 +76,15 @@ static void binary_is_welded(void **state)
             he_import import = read_file(&f);
             expect_counts(&import, 4, 4, 12);
             expect_corners(&import, tetrahedron, 12);
-            expect_note(&import, "welded", "", 8, 0);
-            assert_int_equal(import.notes.count, 1 + (stray > 0));
+            expect_warning(&import, "welded", "", 8, 0);
+            assert_int_equal(import.warnings.count, 1 + (stray > 0));
             if (stray > 0) {
-                expect_note(&import, "trailing_bytes", "", 1, HEADER + 4 * FACET);
+                expect_warning(&import, "trailing_bytes", "", 1, HEADER + 4 * FACET);
             }
             static const uint64_t places[] = {0, 0, 0, FACET};
             for (uint32_t k = 0; k < 4; k++) {
-                assert_int_equal(he_places_find(&import.faces, k), HEADER + FACET * k);
-                assert_int_equal(he_places_find(&import.vertices, k), HEADER + places[k]);
+                assert_int_equal(he_source_map_find(&import.faces, k), HEADER + FACET * k);
+                assert_int_equal(he_source_map_find(&import.vertices, k), HEADER + places[k]);
             }
             he_mesh *mesh = build_import(&import);
             fixture_counts(mesh, 4, 6, 4);
@@ -103,12 +103,12 @@ static void attribute_bytes_are_noted(void **state)
     put_facet(&f, facets[1], 0x8000);
     put_facet(&f, facets[2], 1);
     he_import import = read_file(&f);
-    expect_note(&import, "attribute_bytes", "", 2, HEADER + FACET);
+    expect_warning(&import, "attribute_bytes", "", 2, HEADER + FACET);
     he_import_clear(&import);
     begin(&f, "nothing", 0);
     import = read_file(&f);
     expect_counts(&import, 0, 0, 0);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
 }
 
@@ -206,8 +206,8 @@ static void text_in_all_its_forms(void **state)
         he_import import = read_text("stl", texts[i]);
         expect_counts(&import, 4, 2, 6);
         expect_corners(&import, corners, 6);
-        expect_note(&import, "welded", "", 2, 0);
-        assert_int_equal(import.notes.count, 1);
+        expect_warning(&import, "welded", "", 2, 0);
+        assert_int_equal(import.warnings.count, 1);
         he_import_clear(&import);
     }
 }
@@ -222,11 +222,11 @@ static void several_solids_keep_their_names(void **state)
     assert_string_equal(face_label(&import, "object", 1), "left arm");
     assert_string_equal(face_label(&import, "object", 2), "left arm");
     assert_string_equal(face_label(&import, "object", 3), "K\xC3\xB6rper");
-    expect_note(&import, "not_utf8", "K?rper", 1, 26);
-    assert_int_equal(he_places_find(&import.faces, 1), 11);
-    assert_int_equal(he_places_find(&import.faces, 2), 18);
-    assert_int_equal(he_places_find(&import.vertices, 0), 4);
-    assert_int_equal(he_places_find(&import.vertices, 3), 14);
+    expect_warning(&import, "not_utf8", "K?rper", 1, 26);
+    assert_int_equal(he_source_map_find(&import.faces, 1), 11);
+    assert_int_equal(he_source_map_find(&import.faces, 2), 18);
+    assert_int_equal(he_source_map_find(&import.vertices, 0), 4);
+    assert_int_equal(he_source_map_find(&import.vertices, 3), 14);
     he_import_clear(&import);
 }
 
@@ -237,14 +237,14 @@ static void what_does_not_belong_is_noted(void **state)
                                         "vertex 0 0 0 1\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
                                         "endfacet\ncolor vertex\n");
     expect_counts(&import, 3, 1, 3);
-    expect_note(&import, "unknown_keyword", "color", 2, 2);
-    expect_note(&import, "unknown_keyword", "1", 1, 5);
-    expect_note(&import, "no_endsolid", "", 1, 10);
-    assert_int_equal(import.notes.count, 3);
+    expect_warning(&import, "unknown_keyword", "color", 2, 2);
+    expect_warning(&import, "unknown_keyword", "1", 1, 5);
+    expect_warning(&import, "no_endsolid", "", 1, 10);
+    assert_int_equal(import.warnings.count, 3);
     he_import_clear(&import);
     import = read_text("stl", "solid nothing\nendsolid nothing\n");
     expect_counts(&import, 0, 0, 0);
-    assert_int_equal(import.notes.count, 0);
+    assert_int_equal(import.warnings.count, 0);
     he_import_clear(&import);
 }
 
@@ -362,22 +362,22 @@ static void text_is_as_expected(void **state)
     (void)state;
     he_mesh *mesh =
         mesh_of_text("off", "OFF 4 2 0\n0 0 0\n1.1 0 0\n0 1e-7 -0\n0 0 5\n3 0 1 2\n3 0 3 1\n");
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *text = write_bytes("stl", "ascii", mesh, &notes, &length);
+    char *text = write_bytes("stl", "ascii", mesh, &warnings, &length);
     assert_string_equal(text,
                         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.1 0 0\n"
                         "vertex 0 1e-7 -0\nendloop\nendfacet\nfacet normal 0 1 0\n"
                         "outer loop\nvertex 0 0 0\nvertex 0 0 5\nvertex 1.1 0 0\nendloop\n"
                         "endfacet\nendsolid\n");
-    assert_int_equal(notes.count, 0);
+    assert_int_equal(warnings.count, 0);
     free(text);
-    text = write_bytes("stl", "binary", mesh, &notes, &length);
+    text = write_bytes("stl", "binary", mesh, &warnings, &length);
     assert_int_equal(length, HEADER + 2 * FACET);
     assert_int_equal(strncmp(text, "solid", 5) == 0, 0);
     assert_int_equal(text[80], 2);
-    assert_int_equal(notes.count, 1);
-    assert_int_equal(find_note(&notes, "rounded", "")->count, 2);
+    assert_int_equal(warnings.count, 1);
+    assert_int_equal(find_warning(&warnings, "rounded", "")->count, 2);
     free(text);
     he_mesh_free(mesh);
 }
@@ -395,9 +395,9 @@ static void triangles_round_trip(void **state)
     he_mesh *mesh = build_import(&import);
     for (size_t i = 0; i < 2; i++) {
         size_t length, again_length;
-        he_notes notes;
-        char *bytes = write_bytes("stl", names[i], mesh, &notes, &length);
-        assert_int_equal(notes.count, 0);
+        he_warnings warnings;
+        char *bytes = write_bytes("stl", names[i], mesh, &warnings, &length);
+        assert_int_equal(warnings.count, 0);
         he_import other = {0};
         he_error err = {0};
         assert_int_equal(read_bytes("stl", bytes, length, &other, &err), HE_OK);
@@ -438,13 +438,13 @@ static void polygons_are_cut_into_triangles(void **state)
     he_mesh *mesh = mesh_of_text("off", "OFF 11 3 0\n0 0 0\n4 0 0\n4 2 0\n2 2 0\n2 4 0\n0 4 0\n"
                                         "6 0 0\n9 -3 0\n7 0 0\n9 3 0\n5 5 5\n"
                                         "6 0 1 2 3 4 5\n3 1 6 2\n4 6 7 8 9\n");
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_bytes("stl", "binary", mesh, &notes, &length);
+    char *bytes = write_bytes("stl", "binary", mesh, &warnings, &length);
     assert_int_equal(length, HEADER + 7 * FACET);
-    assert_int_equal(find_note(&notes, "triangulated", "")->count, 2);
-    assert_int_equal(find_note(&notes, "isolated_vertices", "")->count, 1);
-    assert_int_equal(notes.count, 2);
+    assert_int_equal(find_warning(&warnings, "triangulated", "")->count, 2);
+    assert_int_equal(find_warning(&warnings, "isolated_vertices", "")->count, 1);
+    assert_int_equal(warnings.count, 2);
     he_import import = {0};
     assert_int_equal(read_pieces(&(format_file){"stl", bytes, length}, 9, NULL, &import, NULL),
                      HE_OK);
@@ -463,11 +463,11 @@ static void diagonals_that_exist(void **state)
 {
     (void)state;
     he_mesh *mesh = fixture_mesh("0123,024,135");
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_bytes("stl", "binary", mesh, &notes, &length);
+    char *bytes = write_bytes("stl", "binary", mesh, &warnings, &length);
     assert_int_equal(length, HEADER + 4 * FACET);
-    assert_int_equal(find_note(&notes, "triangulated", "")->count, 1);
+    assert_int_equal(find_warning(&warnings, "triangulated", "")->count, 1);
     free(bytes);
     he_mesh_free(mesh);
 }
@@ -479,28 +479,28 @@ static void what_is_lost_is_named(void **state)
     he_mesh *mesh = mesh_of_text("obj", "v 0 0 0\nv 1 0 0 1\nv 0 1 0\nv 1e30 1 0\nv -0 0 0\n"
                                         "v 1.00000000001 0 5\nv 1 0 5\nv 7 7 7\n"
                                         "usemtl red\nf 1 2 3\nf 3 2 4\nf 5 6 7\n");
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_bytes("stl", "binary", mesh, &notes, &length);
-    assert_int_equal(find_note(&notes, "merged", "")->count, 2);
-    assert_int_equal(find_note(&notes, "rounded", "")->count, 2);
-    assert_int_equal(find_note(&notes, "isolated_vertices", "")->count, 1);
-    assert_non_null(find_note(&notes, "attribute_lost", "face material"));
-    assert_int_equal(find_note(&notes, "no_mesh_again", "")->count, 1);
-    assert_int_equal(notes.count, 5);
+    char *bytes = write_bytes("stl", "binary", mesh, &warnings, &length);
+    assert_int_equal(find_warning(&warnings, "merged", "")->count, 2);
+    assert_int_equal(find_warning(&warnings, "rounded", "")->count, 2);
+    assert_int_equal(find_warning(&warnings, "isolated_vertices", "")->count, 1);
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face material"));
+    assert_int_equal(find_warning(&warnings, "no_mesh_again", "")->count, 1);
+    assert_int_equal(warnings.count, 5);
     float x;
     memcpy(&x, bytes + HEADER + FACET + 12 + 2 * 12, sizeof x);
     assert_true(x == 1e30f);
     free(bytes);
-    bytes = write_bytes("stl", "ascii", mesh, &notes, &length);
-    assert_int_equal(find_note(&notes, "merged", "")->count, 1);
-    assert_null(find_note(&notes, "rounded", ""));
+    bytes = write_bytes("stl", "ascii", mesh, &warnings, &length);
+    assert_int_equal(find_warning(&warnings, "merged", "")->count, 1);
+    assert_null(find_warning(&warnings, "rounded", ""));
     assert_non_null(strstr(bytes, "vertex 1e30 1 0\n"));
     free(bytes);
     he_mesh_free(mesh);
     mesh = mesh_of_text("off", "OFF 4 1 0\n0 0 0\n1 1 0\n1 0 0\n0 1 0\n4 0 1 2 3\n");
-    bytes = write_bytes("stl", "ascii", mesh, &notes, &length);
-    assert_int_equal(find_note(&notes, "turned_triangles", "")->count, 1);
+    bytes = write_bytes("stl", "ascii", mesh, &warnings, &length);
+    assert_int_equal(find_warning(&warnings, "turned_triangles", "")->count, 1);
     free(bytes);
     he_mesh_free(mesh);
 }
@@ -544,11 +544,11 @@ static void faces_that_cross_themselves_are_cut_all_the_same(void **state)
         assert_int_equal(he_soup_add_corner(&soup, i, &err), HE_OK);
     }
     assert_int_equal(he_build(&soup, HE_BUILD_TAKE, &mesh, NULL, &err), HE_OK);
-    he_notes notes;
+    he_warnings warnings;
     size_t length;
-    char *bytes = write_encoded("stl", "binary", mesh, 65536, &notes, &length);
+    char *bytes = write_encoded("stl", "binary", mesh, 65536, &warnings, &length);
     assert_int_equal(length, HEADER + FACET * (2 * POINTS - 2));
-    assert_int_equal(find_note(&notes, "turned_triangles", "")->count, 1);
+    assert_int_equal(find_warning(&warnings, "turned_triangles", "")->count, 1);
     free(bytes);
     he_mesh_free(mesh);
     he_soup_clear(&soup);

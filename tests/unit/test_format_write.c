@@ -11,22 +11,22 @@ static void text_is_as_expected(void **state)
         mesh_of_text("obj", "v 0 0 0\nv 1.5 0 -0\nv 1e-7 1 0.1\nv 0 2 1e300\n"
                             "vt 0 0\nvt 1 0\nvt .5 1\nvt 0 0\n"
                             "s 1\ng a\nf 1/1 2/2 3/3\ns off\nusemtl m\nf 1/4 3/3 4/1\n");
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_string_equal(text, "# 4 vertices, 2 faces\n"
                               "v 0 0 0\nv 1.5 0 -0\nv 1e-7 1 0.1\nv 0 2 1e300\n"
                               "vt 0 0\nvt 1 0\nvt 0.5 1\n"
                               "g a\ns 1\nf 1/1 2/2 3/3\nusemtl m\ns 0\nf 1/1 3/3 4/1\n");
-    assert_int_equal(notes.count, 0);
+    assert_int_equal(warnings.count, 0);
     free(text);
-    text = write_text("off", mesh, &notes);
+    text = write_text("off", mesh, &warnings);
     assert_string_equal(text, "OFF\n4 2 5\n0 0 0\n1.5 0 -0\n1e-7 1 0.1\n0 2 1e300\n"
                               "3 0 1 2\n3 0 2 3\n");
-    assert_int_equal(notes.count, 4);
-    assert_non_null(find_note(&notes, "attribute_lost", "halfedge uv"));
-    assert_non_null(find_note(&notes, "attribute_lost", "face group"));
-    assert_non_null(find_note(&notes, "attribute_lost", "face material"));
-    assert_non_null(find_note(&notes, "attribute_lost", "face smoothing"));
+    assert_int_equal(warnings.count, 4);
+    assert_non_null(find_warning(&warnings, "attribute_lost", "halfedge uv"));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face group"));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face material"));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face smoothing"));
     free(text);
     he_mesh_free(mesh);
 
@@ -101,9 +101,9 @@ static void obj_round_trips(void **state)
         char text[500];
         snprintf(text, sizeof text, "%s%s", quads, lines[i]);
         he_mesh *mesh = mesh_of_text("obj", text);
-        he_notes notes;
-        char *written = write_text("obj", mesh, &notes);
-        assert_int_equal(notes.count, 0);
+        he_warnings warnings;
+        char *written = write_text("obj", mesh, &warnings);
+        assert_int_equal(warnings.count, 0);
         he_import before = read_text("obj", text), after = read_text("obj", written);
         assert_int_equal(after.soup.column_count, before.soup.column_count);
         for (size_t k = 0; k < before.soup.column_count; k++) {
@@ -139,10 +139,10 @@ static void off_round_trips(void **state)
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         he_mesh *mesh = mesh_of_text("off", texts[i]);
-        he_notes notes;
-        char *written = write_text("off", mesh, &notes);
+        he_warnings warnings;
+        char *written = write_text("off", mesh, &warnings);
         assert_string_equal(written, texts[i]);
-        assert_int_equal(notes.count, 0);
+        assert_int_equal(warnings.count, 0);
         free(written);
         he_mesh_free(mesh);
     }
@@ -154,14 +154,14 @@ static void vertex_values_go_to_obj(void **state)
     he_mesh *mesh = mesh_of_text("off", "STCNOFF\n3 1 3\n0 0 0 0 0 1 255 0 0 7 0 0.25\n"
                                         "1 0 0 0 1 0 0 255 0 8 0 1\n0 1 0 0 0 1 0 0 51 9 1 1\n"
                                         "3 0 1 2 1 2 3\n");
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_string_equal(text, "# 3 vertices, 1 faces\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\n"
                               "v 0 1 0 0 0 0.2\nvt 0 0.25\nvt 0 1\nvt 1 1\n"
                               "vn 0 0 1\nvn 0 1 0\nvn 0 0 1\nf 1/1/1 2/2/2 3/3/3\n");
-    assert_int_equal(notes.count, 2);
-    assert_non_null(find_note(&notes, "alpha_lost", "vertex color"));
-    assert_non_null(find_note(&notes, "attribute_lost", "face color"));
+    assert_int_equal(warnings.count, 2);
+    assert_non_null(find_warning(&warnings, "alpha_lost", "vertex color"));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face color"));
     free(text);
     he_mesh_free(mesh);
 }
@@ -228,11 +228,11 @@ static void names_that_do_not_fit_a_line(void **state)
                                   (const char *const[]){"", longer, NULL}});
     add_column(mesh, &(attribute){"material", HE_FACE, HE_UINT32, 1, &(uint32_t){77},
                                   (const char *const[]){"only", NULL}});
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_non_null(strstr(text, "\ng _a_f 9 9 9_\n"));
-    assert_int_equal(notes.count, 1);
-    assert_string_equal(notes.items[0].code, "names_changed");
+    assert_int_equal(warnings.count, 1);
+    assert_string_equal(warnings.items[0].code, "names_changed");
     he_import import = read_text("obj", text);
     assert_string_equal(face_label(&import, "object", 0), longer);
     assert_string_equal(face_label(&import, "group", 0), "_a_f 9 9 9_");
@@ -254,18 +254,20 @@ static void what_is_lost_is_named(void **state)
                &(attribute){"color", HE_VERTEX, HE_BOOL, 4, (unsigned char[]){1, 0, 1, 1}, NULL});
     add_column(mesh, &(attribute){"group", HE_FACE, HE_UINT32, 1, &(uint32_t){1}, NULL});
     add_column(mesh, &(attribute){"weight", HE_EDGE, HE_INT32, 1, &(int32_t){-4}, NULL});
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_non_null(strstr(text, "v 0 0 0\n"));
     assert_non_null(strstr(text, "vt 0 1\n"));
     assert_non_null(strstr(text, "vn 0.1 0 -1\n"));
-    assert_int_equal(notes.count, 4);
-    assert_int_equal(find_note(&notes, "not_finite", "uv")->count, 1);
-    assert_non_null(find_note(&notes, "attribute_lost", "vertex color")); /* not with fractions */
-    assert_non_null(find_note(&notes, "attribute_lost", "face group"));
-    assert_non_null(find_note(&notes, "attribute_lost", "edge weight"));
+    assert_int_equal(warnings.count, 4);
+    assert_int_equal(find_warning(&warnings, "not_finite", "uv")->count, 1);
+    assert_non_null(
+        find_warning(&warnings, "attribute_lost", "vertex color")); /* not with fractions */
+    assert_non_null(find_warning(&warnings, "attribute_lost", "face group"));
+    assert_non_null(find_warning(&warnings, "attribute_lost", "edge weight"));
     char sentence[100];
-    he_note_text(find_note(&notes, "attribute_lost", "edge weight"), sentence, sizeof sentence);
+    he_warning_text(find_warning(&warnings, "attribute_lost", "edge weight"), sentence,
+                    sizeof sentence);
     assert_string_equal(sentence, "not written: attribute 'edge weight'");
     free(text);
     he_mesh_free(mesh);

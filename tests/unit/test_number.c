@@ -2,8 +2,8 @@
  * locale) and with big integers. SEED= repeats a run, ROUNDS= makes it longer. */
 #include "format/text/number.h"
 
-#include "format/text/exact.h"
-#include "format/text/power.h"
+#include "format/text/decimal_exact.h"
+#include "format/text/pow5.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -114,13 +114,13 @@ static void divide_by_five(whole *n)
     }
 }
 
-static he_power leading_bits(const whole *n)
+static he_pow5 leading_bits(const whole *n)
 {
     size_t top = 3200;
     while (top > 0 && (n->words[(top - 1) / 32] >> (top - 1) % 32 & 1) == 0) {
         top--;
     }
-    he_power p = {0, 0};
+    he_pow5 p = {0, 0};
     for (size_t i = 0; i < 128; i++) {
         uint64_t bit = top > i ? n->words[(top - 1 - i) / 32] >> (top - 1 - i) % 32 & 1 : 0;
         if (i < 64) {
@@ -138,8 +138,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
     static whole n;
     memset(&n, 0, sizeof n);
     n.words[0] = 1;
-    for (int k = 0; k <= HE_POWER_MAX; k++, times_five(&n)) {
-        he_power wanted = leading_bits(&n), got = he_power_of_five(k);
+    for (int k = 0; k <= HE_POW5_MAX; k++, times_five(&n)) {
+        he_pow5 wanted = leading_bits(&n), got = he_pow5_get(k);
         assert_int_equal(got.high, wanted.high);
         assert_int_equal(got.low, wanted.low);
     }
@@ -147,8 +147,8 @@ static void powers_are_the_floor_of_the_true_ones(void **state)
      * enough bits are left */
     memset(&n, 0, sizeof n);
     n.words[99] = 0x80000000;
-    for (int k = 0; k >= HE_POWER_MIN; k--, divide_by_five(&n)) {
-        he_power wanted = leading_bits(&n), got = he_power_of_five(k);
+    for (int k = 0; k >= HE_POW5_MIN; k--, divide_by_five(&n)) {
+        he_pow5 wanted = leading_bits(&n), got = he_pow5_get(k);
         assert_int_equal(got.high, wanted.high);
         assert_int_equal(got.low, wanted.low);
     }
@@ -326,7 +326,7 @@ static void exact_rounding_from_any_near_guess(void **state)
         int64_t exponent = strtol(e + 1, NULL, 10) - (point == NULL ? 0 : e - point - 1);
         uint64_t guess = to_bits(wanted) + next_random() % 7;
         guess = guess > 3 ? guess - 3 : 0;
-        assert_int_equal(he_exact_round(text, e, exponent, guess), to_bits(wanted));
+        assert_int_equal(he_decimal_exact_round(text, e, exponent, guess), to_bits(wanted));
     }
 }
 

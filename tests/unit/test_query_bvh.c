@@ -3,8 +3,8 @@
 #include "query_specimens.h"
 
 #include "edit/local/vertex.h"
-#include "geometry/meet.h"
 #include "geometry/orient.h"
+#include "geometry/triangle_intersection.h"
 #include "query/bvh.h"
 #include "query/bvh_disc.h"
 #include "query/bvh_walk.h"
@@ -542,8 +542,8 @@ static void triangles_meet_where_they_should_not(void **state)
                 c[k] = a[(k + turn) % 3];
                 d[k] = rows[i].b[turn < 9 ? (k + turn / 3) % 3 : (3 - k + turn / 3) % 3];
             }
-            if (he_triangles_meet(c, d) != rows[i].meet ||
-                he_triangles_meet(d, c) != rows[i].meet) {
+            if (he_triangles_intersect(c, d) != rows[i].meet ||
+                he_triangles_intersect(d, c) != rows[i].meet) {
                 fail_msg("%s, turned %d", rows[i].what, turn);
             }
         }
@@ -607,7 +607,7 @@ static void pairs_are_those_that_trying_all_finds(void **state)
                     a[j] = m->c.position[tree->triangles[i].vertex[j]];
                     b[j] = m->c.position[tree->triangles[k].vertex[j]];
                 }
-                if (f < g && !wanted[f * faces + g] && he_triangles_meet(a, b)) {
+                if (f < g && !wanted[f * faces + g] && he_triangles_intersect(a, b)) {
                     wanted[f * faces + g] = true;
                     count++;
                 }
@@ -652,16 +652,16 @@ static void trees_and_searches_can_be_given_up(void **state)
     long calls = 0;
     for (long most = 0; most <= calls; most++) {
         patience p = {.most = most == 0 ? LONG_MAX : most - 1};
-        he_watch watch;
+        he_progress progress;
         he_bvh *tree = NULL;
         he_ids pairs = {0};
         bool complete;
-        he_budget budget = {.left = UINT64_MAX, .watch = &watch};
-        he_watch_init(&watch, tell, &p);
-        he_watch_span(&watch, 0.5);
-        he_status status = he_bvh_new(m, &watch, &tree, NULL);
+        he_budget budget = {.left = UINT64_MAX, .progress = &progress};
+        he_progress_init(&progress, tell, &p);
+        he_progress_span(&progress, 0.5);
+        he_status status = he_bvh_new(m, &progress, &tree, NULL);
         if (status == HE_OK) {
-            he_watch_span(&watch, 1);
+            he_progress_span(&progress, 1);
             status = he_bvh_intersections(tree, m, 1000, &budget, &pairs, &complete, NULL);
         } else {
             assert_null(tree);

@@ -357,9 +357,9 @@ static void a_search_can_be_given_up(void **state)
     long calls = 0;
     for (long most = 0; most <= calls; most++) {
         patience p = {.most = most == 0 ? LONG_MAX : most - 1};
-        he_watch watch;
-        he_watch_init(&watch, tell, &p);
-        he_status status = he_defects_find(m, &t, &watch, &found, NULL);
+        he_progress progress;
+        he_progress_init(&progress, tell, &p);
+        he_status status = he_defects_find(m, &t, &progress, &found, NULL);
         assert_int_equal(status, most == 0 ? HE_OK : HE_CANCELLED);
         calls = most == 0 ? p.calls : calls;
     }

@@ -3,9 +3,9 @@
  * square. */
 #include "query_specimens.h"
 
-#include "geometry/meet.h"
+#include "geometry/triangle_intersection.h"
 #include "geometry/scale.h"
-#include "meet_oracle.h"
+#include "triangle_intersection_oracle.h"
 #include "query/bvh.h"
 #include "tests/seed.h"
 #include "tests/failing.h"
@@ -193,7 +193,7 @@ static void expect_pairs(const specimen *s, uint64_t seed)
         for (uint32_t k = i + 1; k < s->count; k++) {
             bool meet = oracle_triangles_meet(s->corner[i], s->corner[k]);
             bool told = at < pairs.count && pairs.ids[at] == i && pairs.ids[at + 1] == k;
-            if (he_triangles_meet(s->corner[i], s->corner[k]) != meet || told != meet) {
+            if (he_triangles_intersect(s->corner[i], s->corner[k]) != meet || told != meet) {
                 fail_msg("SEED=%llu: faces %u and %u of %u", (unsigned long long)seed, i, k,
                          s->count);
             }
@@ -372,9 +372,9 @@ static void a_search_at_a_hub_ends_when_it_is_given_up(void **state)
     assert_int_equal(he_bvh_new(m, NULL, &tree, NULL), HE_OK);
     for (uint64_t most = 1; most < 20; most += 6) {
         patience p = {.most = most};
-        he_watch watch;
-        he_watch_init(&watch, ask, &p);
-        he_budget budget = {.left = UINT64_MAX, .watch = &watch};
+        he_progress progress;
+        he_progress_init(&progress, ask, &p);
+        he_budget budget = {.left = UINT64_MAX, .progress = &progress};
         he_ids pairs = {0};
         bool complete;
         assert_int_equal(he_bvh_intersections(tree, m, SIZE_MAX, &budget, &pairs, &complete, NULL),

@@ -588,12 +588,12 @@ static void a_long_path_can_be_given_up(void **state)
     he_mesh *m = fixture_mesh("012,023");
     const he_step steps[] = {HE_STEP_NEXT};
     he_ids ids = {0};
-    he_watch watch;
+    he_progress progress;
     int told = 0;
-    he_watch_init(&watch, give_up, &told);
+    he_progress_init(&progress, give_up, &told);
     assert_int_equal(he_traverse_path(m, (he_halfedge){0},
                                       &(he_path_steps){steps, 1, 1000000, HE_UNTIL_COUNT, 0},
-                                      &watch, &ids, NULL),
+                                      &progress, &ids, NULL),
                      HE_CANCELLED);
     assert_int_equal(told, 3);
     assert_int_equal(ids.count, 0);

@@ -211,7 +211,7 @@ static void small_holes_are_filled(void **state)
 
 /* --- failures --- */
 
-static he_status mend_or_fail(const he_soup *soup, unsigned which, he_watch *watch)
+static he_status mend_or_fail(const he_soup *soup, unsigned which, he_progress *progress)
 {
     he_soup copy;
     he_repaired done = {0};
@@ -220,14 +220,14 @@ static he_status mend_or_fail(const he_soup *soup, unsigned which, he_watch *wat
     he_repair_plan plan = repair_plan_of(which);
     failing_pause();
     repair_copy_soup(soup, &copy);
-    copy.limits.watch = watch;
+    copy.limits.progress = progress;
     failing_resume();
     he_status status = he_repair_soup(&copy, &plan, &done, &err);
     if (status == HE_OK) {
         status = he_build(&copy, 0, &mesh, NULL, &err);
     }
     if (status == HE_OK) {
-        he_mesh_watch(mesh, watch);
+        he_mesh_set_progress(mesh, progress);
         status = he_repair_mesh(mesh, &plan, &done, &err);
     }
     assert_int_equal(err.status, status);
@@ -289,9 +289,9 @@ static void it_can_be_given_up_at_any_time(void **state)
     he_status status = HE_CANCELLED;
     for (int n = 1; status != HE_OK; n++) {
         teller t = {.left = n};
-        he_watch watch;
-        he_watch_init(&watch, tell, &t);
-        status = mend_or_fail(&soup, ALL, &watch);
+        he_progress progress;
+        he_progress_init(&progress, tell, &t);
+        status = mend_or_fail(&soup, ALL, &progress);
         assert_true(status == HE_OK || status == HE_CANCELLED);
     }
     he_soup_clear(&soup);

@@ -42,11 +42,11 @@ static void a_seam_of_texture_stays_a_seam(void **state)
     /* if the values are equal on both sides, no corners are needed */
     assert_null(he_mesh_find_column(mesh, HE_HALFEDGE, "color"));
     assert_non_null(he_mesh_find_column(mesh, HE_VERTEX, "color"));
-    he_notes notes;
-    char *text = write_text("obj", mesh, &notes);
+    he_warnings warnings;
+    char *text = write_text("obj", mesh, &warnings);
     assert_non_null(strstr(text, "vt 0 0\nvt 1 0\nvt 0 1\nvt 0.5 0.5\nvt 0.25 0.5\nvt 0.5 0.25\n"
                                  "f 1/1 2/2 3/3\nf 4/4 3/5 2/6\n"));
-    assert_int_equal(notes.count, 0);
+    assert_int_equal(warnings.count, 0);
     free(text);
     he_repaired_clear(&done);
     he_mesh_free(mesh);

@@ -504,7 +504,7 @@ static void readers_of_the_past_and_a_writer(void **state)
     st_write w;
     he_mesh *m = writing_begin(mesh, &w);
     he_vec3 point = {2, 0, 0};
-    assert_int_equal(he_reserve(m, (he_need){.positions = 2}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.positions = 2}, NULL), HE_OK);
     he_set_position(m, (he_vertex){0}, point);
     he_set_position(m, (he_vertex){1}, point);
     assert_true(writing_commit(&w, "vertex_move", NULL));

@@ -99,7 +99,7 @@ static he_vec3 ring(const he_mesh *m, uint32_t v, bool across)
     do {
         he_halfedge to = across ? he_next(m, he_next(m, h)) : he_twin(h);
         sum = plus(sum, 1, at(m, he_origin(m, to).i));
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     return sum;
 }
@@ -337,7 +337,7 @@ static uint32_t along(const he_mesh *m, uint32_t rim)
             least = distance;
             best = he_target(m, h).i;
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     assert_int_not_equal(best, HE_NONE);
     return best;
@@ -639,13 +639,13 @@ static void it_can_be_given_up_wherever_it_tells(void **state)
             he_mesh *m = wheel(6, false), *before = copy_of(m);
             add_column(m, "uv", HE_HALFEDGE, HE_DOUBLE, 2, HE_INTERPOLATE);
             add_column(before, "uv", HE_HALFEDGE, HE_DOUBLE, 2, HE_INTERPOLATE);
-            he_watch watch;
+            he_progress progress;
             told = 0;
             last = 0;
-            he_watch_init(&watch, give_up_at, &n);
-            he_mesh_watch(m, &watch);
+            he_progress_init(&progress, give_up_at, &n);
+            he_mesh_set_progress(m, &progress);
             status = he_subdivide(m, schemes[s], 2, NULL, NULL);
-            he_mesh_watch(m, NULL);
+            he_mesh_set_progress(m, NULL);
             if (status == HE_CANCELLED) {
                 assert_equal(m, before);
             } else {

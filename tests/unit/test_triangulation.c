@@ -18,20 +18,20 @@
 
 #include <math.h>
 
-static int turn(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+static int turn(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c)
 {
     return he_orient2((he_vec2){f->x[a], f->y[a]}, (he_vec2){f->x[b], f->y[b]},
                       (he_vec2){f->x[c], f->y[c]});
 }
 
-static double doubled_area(const he_flat *f, uint32_t a, uint32_t b, uint32_t c)
+static double doubled_area(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c)
 {
     return (f->x[b] - f->x[a]) * (f->y[c] - f->y[a]) - (f->y[b] - f->y[a]) * (f->x[c] - f->x[a]);
 }
 
 /* Requires that each triangle cuts its middle corner off the rest: then there are n - 2 triangles,
  * every diagonal belongs to two of them, and every side to one. */
-static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
+static void assert_cuts_corners(const he_planar_loop *f, const uint32_t *corners)
 {
     uint32_t n = f->n, *next = calloc(n, sizeof *next);
     assert_non_null(next);
@@ -54,7 +54,7 @@ static void assert_cuts_corners(const he_flat *f, const uint32_t *corners)
 
 /* Requires that all triangles turn left and that their areas add up to the polygon's area: then
  * they cover it once. */
-static void assert_covers(const he_flat *f, const uint32_t *corners)
+static void assert_covers(const he_planar_loop *f, const uint32_t *corners)
 {
     double whole = 0, sum = 0;
     for (uint32_t i = 1; i + 1 < f->n; i++) {
@@ -92,17 +92,17 @@ static void every_shape_is_covered(void **state)
         for (unsigned i = 0; i < 4; i++) {
             he_mesh *m = mesh_of(&polygon_shapes[s], sizes[i]);
             he_triangulation t;
-            he_flat f;
+            he_planar_loop f;
             print_message("%s of %u corners\n", polygon_shapes[s].name, sizes[i]);
             assert_int_equal(
                 he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, NULL, &t, NULL), HE_OK);
-            assert_int_equal(he_flat_init(&f, m, first_of(m), NULL), HE_OK);
+            assert_int_equal(he_planar_loop_init(&f, m, first_of(m), NULL), HE_OK);
             assert_cuts_corners(&f, t.corners);
             if (polygon_shapes[s].simple) {
                 assert_false(t.degenerate);
                 assert_covers(&f, t.corners);
             }
-            he_flat_clear(&f);
+            he_planar_loop_clear(&f);
             he_triangulation_clear(&t);
             he_mesh_free(m);
         }
@@ -147,14 +147,14 @@ static uint64_t random_bits(uint64_t *state)
     return *state >> 11;
 }
 
-static bool on_segment(const he_flat *f, uint32_t a, uint32_t b, uint32_t p)
+static bool on_segment(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t p)
 {
     return turn(f, a, b, p) == 0 && fmin(f->x[a], f->x[b]) <= f->x[p] &&
            f->x[p] <= fmax(f->x[a], f->x[b]) && fmin(f->y[a], f->y[b]) <= f->y[p] &&
            f->y[p] <= fmax(f->y[a], f->y[b]);
 }
 
-static bool meet(const he_flat *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+static bool meet(const he_planar_loop *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
     return (turn(f, a, b, c) * turn(f, a, b, d) < 0 && turn(f, c, d, a) * turn(f, c, d, b) < 0) ||
            on_segment(f, a, b, c) || on_segment(f, a, b, d) || on_segment(f, c, d, a) ||
@@ -164,7 +164,7 @@ static bool meet(const he_flat *f, uint32_t a, uint32_t b, uint32_t c, uint32_t 
 /* Reverses pieces of a random polygon until no two sides cross; returns false if that takes too
  * long, or if a point lies on a side. There are few points, on a grid, so that three are often
  * collinear. */
-static bool untangle(he_flat *f)
+static bool untangle(he_planar_loop *f)
 {
     uint32_t n = f->n;
     for (unsigned tries = 0; tries < 2000; tries++) {
@@ -208,7 +208,7 @@ static bool untangle(he_flat *f)
 }
 
 /* Requires that no diagonal meets a side except at its ends. */
-static void assert_inside(const he_flat *f, const uint32_t *corners)
+static void assert_inside(const he_planar_loop *f, const uint32_t *corners)
 {
     for (uint32_t k = 0; k + 3 < f->n; k++) {
         uint32_t a = corners[3 * (size_t)k], b = corners[3 * (size_t)k + 2];
@@ -231,7 +231,7 @@ static void random_polygons_both_ways(void **state)
     he_mesh *m = mesh_of(&polygon_shapes[0], 64);
     unsigned made = 0, swept = 0;
     for (unsigned round = 0; round < POLYGONS; round++) {
-        he_flat f = {
+        he_planar_loop f = {
             .n = 3 + (uint32_t)(random_bits(&seed) % (MOST - 2)), halfedges, x, y, false, NULL};
         uint32_t side = round % 2 == 0 ? 64 : 1u << 20;
         for (uint32_t i = 0; i < f.n; i++) {
@@ -269,11 +269,11 @@ static void what_meets_itself_is_not_swept(void **state)
     (void)state;
     for (unsigned s = 0; s < polygon_shape_count; s++) {
         he_mesh *m = mesh_of(&polygon_shapes[s], 500);
-        he_flat f;
+        he_planar_loop f;
         bool done = false;
         uint64_t steps = 0;
         uint32_t corners[3 * 500];
-        assert_int_equal(he_flat_init(&f, m, first_of(m), NULL), HE_OK);
+        assert_int_equal(he_planar_loop_init(&f, m, first_of(m), NULL), HE_OK);
         assert_int_equal(he_sweep_cut(&f, corners, &done, &steps, NULL), HE_OK);
         if (!done && polygon_shapes[s].simple) {
             fail_msg("%s was not swept", polygon_shapes[s].name);
@@ -282,12 +282,12 @@ static void what_meets_itself_is_not_swept(void **state)
             assert_cuts_corners(&f, corners);
             assert_covers(&f, corners);
         }
-        he_flat_clear(&f);
+        he_planar_loop_clear(&f);
         he_mesh_free(m);
     }
 }
 
-/* --- edges, memory, watches --- */
+/* --- edges, memory, progress --- */
 
 /* An export first computes triangles without regard to the edges of the mesh. If none of their
  * diagonals is an edge already, it must use them as they are. */
@@ -353,10 +353,10 @@ static void a_long_loop_is_given_up(void **state)
     (void)state;
     for (unsigned s = 0; s < polygon_shape_count; s++) {
         he_mesh *m = mesh_of(&polygon_shapes[s], 40000);
-        he_watch watch;
+        he_progress progress;
         unsigned told = 0;
-        he_watch_init(&watch, give_up, &told);
-        he_triangulation_work work = {.watch = &watch, .of = 1};
+        he_progress_init(&progress, give_up, &told);
+        he_triangulation_work work = {.progress = &progress, .of = 1};
         he_triangulation t;
         assert_int_equal(he_triangulation_make(m, first_of(m), HE_ANY_DIAGONALS, &work, &t, NULL),
                          HE_CANCELLED);
@@ -434,7 +434,7 @@ static void a_copy_that_moves_on_forgets(void **state)
     he_delta *delta = he_delta_new();
     assert_non_null(delta);
     he_mesh_record(m, delta);
-    assert_int_equal(he_reserve(m, (he_need){.positions = 1}, NULL), HE_OK);
+    assert_int_equal(he_reserve(m, (he_reservation){.positions = 1}, NULL), HE_OK);
     he_set_position(m, (he_vertex){7}, (he_vec3){-1, -2, 3});
     he_mesh_record(m, NULL);
     const uint32_t issued[HE_KIND_COUNT] = {
@@ -455,10 +455,10 @@ static void keeping_fails_cleanly(void **state)
     (void)state;
     he_replay *replay = replay_of(&polygon_shapes[4], 1000);
     const he_mesh *m = he_replay_mesh(replay);
-    he_watch watch;
+    he_progress progress;
     unsigned told = 0;
-    he_watch_init(&watch, give_up, &told);
-    assert_int_equal(he_long_faces_keep(m, &watch, NULL), HE_CANCELLED);
+    he_progress_init(&progress, give_up, &told);
+    assert_int_equal(he_long_faces_keep(m, &progress, NULL), HE_CANCELLED);
     assert_null(he_long_faces_find(m, first_of(m)));
     failing f = {0};
     while (failing_next(&f)) {
@@ -478,7 +478,7 @@ static void a_list_of_corners_finds_what_a_tree_finds(void **state)
     double x[ALL], y[ALL];
     uint32_t corners[ALL], found = 0;
     uint64_t seed = seed_of_run() | 1, steps = 0;
-    he_flat f = {.n = ALL, .x = x, .y = y};
+    he_planar_loop f = {.n = ALL, .x = x, .y = y};
     for (uint32_t i = 0; i < ALL; i++) {
         corners[i] = i;
         x[i] = (i < NEAR ? 0 : 1.5) + (double)(random_bits(&seed) % 64) / 128;
@@ -493,7 +493,7 @@ static void a_list_of_corners_finds_what_a_tree_finds(void **state)
         uint32_t a = (uint32_t)(random_bits(&seed) % NEAR);
         uint32_t b = (uint32_t)(random_bits(&seed) % NEAR);
         uint32_t c = (uint32_t)(random_bits(&seed) % NEAR);
-        if (he_flat_turns_left(&f, a, b, c)) {
+        if (he_planar_loop_turns_left(&f, a, b, c)) {
             uint32_t one = he_corner_tree_find(&list, a, b, c, &steps);
             assert_int_equal(one, he_corner_tree_find(&tree, a, b, c, &steps));
             found += one != HE_NONE;

@@ -23,8 +23,8 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
 {
     out->along = along;
     he_status status = HE_OK;
-    for (he_halfedge h = he_turn_ccw(m, along); status == HE_OK && h.i != along.i;
-         h = he_turn_ccw(m, h)) {
+    for (he_halfedge h = he_swing_ccw(m, along); status == HE_OK && h.i != along.i;
+         h = he_swing_ccw(m, h)) {
         status = he_ids_add(&out->ring, h.i, err);
         if (!he_is_boundary_halfedge(m, h)) {
             continue;
@@ -36,7 +36,7 @@ static he_status walk_end(const he_mesh *m, he_halfedge along, bevel_end *out, h
         while (!he_is_boundary_halfedge(m, he_twin(h))) {
             h = he_next(m, he_twin(h));
         }
-        for (; status == HE_OK && h.i != along.i; h = he_turn_ccw(m, h)) {
+        for (; status == HE_OK && h.i != along.i; h = he_swing_ccw(m, h)) {
             status = he_ids_add(&out->ring, h.i, err);
         }
         return status;
@@ -107,7 +107,7 @@ static he_status check(const he_mesh *m, he_edge e, double width, bevel_end ends
 static he_status reserve(he_mesh *m, const bevel_end ends[2], he_bevel *made, he_error *err)
 {
     size_t cuts = ends[0].ring.count + ends[1].ring.count;
-    he_need need = {.faces = 1, .deleted_edges = 1};
+    he_reservation need = {.faces = 1, .deleted_edges = 1};
     if (cuts > HE_MAX_ROWS / 4) {
         return he_fail_plain(err, HE_IDS_EXHAUSTED,
                              "the mesh has no ids left for %zu more vertices", cuts);
@@ -159,7 +159,7 @@ static he_halfedge new_edge(he_mesh *m, he_vertex from, he_vertex to)
 
 static void descend(he_mesh *m, he_edge e, he_edge from)
 {
-    he_carry_copy(m, HE_EDGE, e.i, from.i);
+    he_attributes_copy(m, HE_EDGE, e.i, from.i);
     he_note_parent(m, HE_EDGE, e.i, from.i);
 }
 
@@ -183,7 +183,7 @@ static void make_cuts(he_mesh *m, bevel_end *end, double width, he_bevel *made)
         he_vertex c = he_new_vertex(m), x = he_target(m, at(end, i));
         double t = part_of(m, end, i, width);
         he_set_position(m, c, he_point_between(he_position(m, v), he_position(m, x), t));
-        he_carry_between(m, HE_VERTEX, c.i, v.i, x.i, t);
+        he_attributes_between(m, HE_VERTEX, c.i, v.i, x.i, t);
         he_note_parent(m, HE_VERTEX, c.i, v.i);
         made->vertices.ids[made->vertices.count++] = c.i;
     }
@@ -204,7 +204,7 @@ static he_halfedge make_long_side(he_mesh *m, he_halfedge h, const bevel_end *fr
     if (he_face_halfedge(m, f).i == h.i) {
         he_set_face_halfedge(m, f, out);
     }
-    he_carry_between(m, HE_HALFEDGE, out.i, h.i, before.i, part_of(m, from, 0, width));
+    he_attributes_between(m, HE_HALFEDGE, out.i, h.i, before.i, part_of(m, from, 0, width));
     descend(m, he_edge_of(in), he_edge_of(h));
     return in;
 }
@@ -220,7 +220,7 @@ static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new
     he_link(m, he_prev(m, before), he_twin(in));
     he_link(m, he_twin(in), before);
     he_set_face(m, he_twin(in), (he_face){HE_NONE});
-    he_carry_copy(m, HE_HALFEDGE, in.i, corner.i);
+    he_attributes_copy(m, HE_HALFEDGE, in.i, corner.i);
     descend(m, he_edge_of(in), he_edge_of(before));
     add_side(m, rim, in);
 
@@ -228,7 +228,7 @@ static void make_stubs(he_mesh *m, const bevel_end *end, he_halfedge corner, new
     he_link(m, he_twin(in), he_next(m, after));
     he_link(m, after, he_twin(in));
     he_set_face(m, he_twin(in), (he_face){HE_NONE});
-    he_carry_copy(m, HE_HALFEDGE, in.i, end->along.i);
+    he_attributes_copy(m, HE_HALFEDGE, in.i, end->along.i);
     descend(m, he_edge_of(in), he_edge_of(after));
     add_side(m, rim, in);
 }
@@ -254,13 +254,13 @@ static void make_short_sides(he_mesh *m, const bevel_end *end, double width, he_
             he_link(m, before, corner);
             he_link(m, corner, h);
             he_set_face(m, corner, he_face_of(m, h));
-            he_carry_between(m, HE_HALFEDGE, corner.i, h.i, before.i,
-                             part_of(m, end, i + 1, width));
+            he_attributes_between(m, HE_HALFEDGE, corner.i, h.i, before.i,
+                                  part_of(m, end, i + 1, width));
             add_side(m, rim, in);
         }
-        he_carry_between(m, HE_HALFEDGE, h.i, h.i, he_next(m, h).i, part_of(m, end, i, width));
+        he_attributes_between(m, HE_HALFEDGE, h.i, h.i, he_next(m, h).i, part_of(m, end, i, width));
         if (in.i != HE_NONE) {
-            he_carry_copy(m, HE_HALFEDGE, in.i, h.i);
+            he_attributes_copy(m, HE_HALFEDGE, in.i, h.i);
         }
         he_set_origin(m, h, cut_at(end, i));
         /* The first cut after the hole must store a boundary half-edge, which is that of its
@@ -278,7 +278,7 @@ static void commit(he_mesh *m, he_edge e, double width, bevel_end ends[2], he_be
     make_cuts(m, &ends[1], width, made);
     new_face rim = {he_new_face(m), {HE_NONE}, {HE_NONE}, &made->edges};
     made->face = rim.face;
-    he_carry_copy(m, HE_FACE, rim.face.i, he_face_of(m, h).i);
+    he_attributes_copy(m, HE_FACE, rim.face.i, he_face_of(m, h).i);
     he_note_parent(m, HE_FACE, rim.face.i, he_face_of(m, h).i);
     he_halfedge left = make_long_side(m, h, &ends[0], &ends[1], width);
     he_halfedge right = make_long_side(m, back, &ends[1], &ends[0], width);
@@ -288,8 +288,8 @@ static void commit(he_mesh *m, he_edge e, double width, bevel_end ends[2], he_be
     add_side(m, &rim, left);
     he_link(m, left, rim.first);
     he_set_face_halfedge(m, rim.face, rim.first);
-    he_carry_copy(m, HE_HALFEDGE, right.i, at(&ends[0], ends[0].ring.count - 1).i);
-    he_carry_copy(m, HE_HALFEDGE, left.i, at(&ends[1], ends[1].ring.count - 1).i);
+    he_attributes_copy(m, HE_HALFEDGE, right.i, at(&ends[0], ends[0].ring.count - 1).i);
+    he_attributes_copy(m, HE_HALFEDGE, left.i, at(&ends[1], ends[1].ring.count - 1).i);
     const he_vertex v[2] = {he_origin(m, h), he_origin(m, back)};
     he_delete_edge(m, e);
     for (unsigned i = 0; i < 2; i++) {

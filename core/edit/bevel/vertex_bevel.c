@@ -44,8 +44,8 @@ static he_halfedge cut_corner(he_mesh *m, he_halfedge h, he_halfedge following, 
     he_halfedge in = he_twin(following), out = he_edge_halfedge(he_new_edge(m), 0);
     he_halfedge inner = he_twin(out);
     he_set_face(m, inner, he_face_of(m, h));
-    he_carry_between(m, HE_HALFEDGE, inner.i, h.i, in.i, s);
-    he_carry_mix(m, HE_HALFEDGE, h.i, he_next(m, h).i, 1 - t);
+    he_attributes_between(m, HE_HALFEDGE, inner.i, h.i, in.i, s);
+    he_attributes_mix(m, HE_HALFEDGE, h.i, he_next(m, h).i, 1 - t);
     he_link(m, in, inner);
     he_link(m, inner, h);
     return out;
@@ -57,9 +57,9 @@ static void move(he_mesh *m, he_vertex w, he_vertex v, he_halfedge h, double t)
     he_vertex far = he_target(m, h);
     he_set_position(m, w, he_point_between(he_position(m, v), he_position(m, far), t));
     if (w.i == v.i) {
-        he_carry_mix(m, HE_VERTEX, v.i, far.i, 1 - t);
+        he_attributes_mix(m, HE_VERTEX, v.i, far.i, 1 - t);
     } else {
-        he_carry_between(m, HE_VERTEX, w.i, v.i, far.i, t);
+        he_attributes_between(m, HE_VERTEX, w.i, v.i, far.i, t);
     }
 }
 
@@ -80,7 +80,7 @@ static he_face commit(he_mesh *m, he_vertex v, double width, he_ids *vertices, h
     do {
         /* After the last edge comes the first again. Its end has not moved yet either: it is v,
          * which moves last. */
-        he_halfedge following = he_turn_ccw(m, h);
+        he_halfedge following = he_swing_ccw(m, h);
         double s = following.i == first.i ? at_first : he_bevel_part(m, following, width);
         he_halfedge out = cut_corner(m, h, following, t, s);
         he_set_origin(m, out, w);
@@ -119,7 +119,7 @@ he_status he_vertex_bevel(he_mesh *m, he_vertex v, double width, he_ids *vertice
         return status;
     }
     uint32_t degree = he_vertex_degree(m, v);
-    he_need need = {.vertices = degree - 1, .edges = degree, .faces = 1};
+    he_reservation need = {.vertices = degree - 1, .edges = degree, .faces = 1};
     need.links = 3 * (size_t)degree;
     need.positions = 1;
     need.attributes = (size_t)degree + 1;

@@ -253,7 +253,7 @@ static void pass_over_joined(const plan *p, uint64_t *passed)
             if (index != HE_NONE && index >= n) {
                 he_bits_set(passed, (index - i) % n);
             }
-            h = he_turn_ccw(p->m, h);
+            h = he_swing_ccw(p->m, h);
         } while (h.i != first.i);
     }
 }
@@ -405,7 +405,7 @@ he_status he_loop_bridge(he_mesh *m, he_halfedge a, he_halfedge b, he_bridge *ou
         status = he_ids_reserve(&made.faces, count, err);
     }
     if (status == HE_OK) {
-        he_need need = {.edges = (uint32_t)count, .faces = (uint32_t)count};
+        he_reservation need = {.edges = (uint32_t)count, .faces = (uint32_t)count};
         need.links = 3 * (p.a.count + p.b.count) + HE_SETTLE_LINKS * p.corners.ids.count;
         status = he_reserve(m, need, err);
     }

@@ -151,7 +151,7 @@ static he_status reserve(he_mesh *m, const plan *p, he_walls *made, he_error *er
                              p->count);
     }
     uint32_t count = (uint32_t)p->count, ends = (uint32_t)p->ends.count;
-    he_need need = {.vertices = ends, .edges = ends + count, .faces = count};
+    he_reservation need = {.vertices = ends, .edges = ends + count, .faces = count};
     need.links = 3 * p->count + (2 + HE_GAP_LINKS + HE_SETTLE_LINKS) * p->ends.count;
     need.attributes = p->count;
     need.lineage = p->ends.count + 2 * p->count;
@@ -191,7 +191,7 @@ static void make_corner(he_mesh *m, const plan *p, const fresh *new, size_t i, h
     he_set_origin(m, up, v);
     he_set_origin(m, down, w);
     he_set_position(m, w, moved(m, v.i, by));
-    he_carry_copy(m, HE_VERTEX, w.i, v.i);
+    he_attributes_copy(m, HE_VERTEX, w.i, v.i);
     he_note_parent(m, HE_VERTEX, w.i, v.i);
     joint j = p->joints[i];
     if (j.in != HE_NONE && j.out != HE_NONE) {
@@ -224,11 +224,11 @@ static he_face make_wall(he_mesh *m, const plan *p, const fresh *new, uint32_t i
         he_set_face(m, loop[k], f);
         /* The first and the last corner of the quad lie at the origin of h, or above it on the
          * copy. */
-        he_carry_copy(m, HE_HALFEDGE, loop[k].i, k % 3 == 0 ? he_next(m, inner).i : inner.i);
+        he_attributes_copy(m, HE_HALFEDGE, loop[k].i, k % 3 == 0 ? he_next(m, inner).i : inner.i);
     }
     he_set_face_halfedge(m, f, h);
-    he_carry_copy(m, HE_FACE, f.i, beside.i);
-    he_carry_copy(m, HE_EDGE, he_edge_of(far).i, he_edge_of(h).i);
+    he_attributes_copy(m, HE_FACE, f.i, beside.i);
+    he_attributes_copy(m, HE_EDGE, he_edge_of(far).i, he_edge_of(h).i);
     he_note_parent(m, HE_FACE, f.i, beside.i);
     he_note_parent(m, HE_EDGE, he_edge_of(far).i, he_edge_of(h).i);
     return f;

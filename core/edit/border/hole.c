@@ -62,14 +62,14 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
     he_poke poke = {.keep = false};
     he_triangles triangles = {.side = NULL};
     he_filled made = {.vertex = {HE_NONE}};
-    he_need need = {0};
+    he_reservation need = {0};
     he_status status = check(m, h, &loop, err);
     if (status != HE_OK) {
         goto out;
     }
     switch (method) {
     case HE_FILL_POLYGON:
-        need = (he_need){.faces = 1, .links = loop.count};
+        need = (he_reservation){.faces = 1, .links = loop.count};
         break;
     case HE_FILL_FAN:
         status = he_poke_plan(m, h, false, &poke, &need, err);
@@ -77,7 +77,7 @@ he_status he_hole_fill(he_mesh *m, he_halfedge h, he_fill method, he_filled *out
     case HE_FILL_TRIANGULATE:
         status = he_triangles_plan(m, h, NULL, &triangles, err);
         if (status == HE_OK) {
-            he_triangles_need(&triangles, false, &need);
+            he_triangles_reservation(&triangles, false, &need);
         }
         break;
     }

@@ -137,7 +137,7 @@ static he_status gather_faces(const plan *p, he_halfedge own, he_halfedge first,
             return he_fail(err, HE_REPEATED_CORNER, HE_FACE, f,
                            "face %u has two corners that would become the same vertex", f);
         }
-        h = he_turn_ccw(p->m, h);
+        h = he_swing_ccw(p->m, h);
     } while (h.i != first.i);
     return HE_OK;
 }
@@ -174,7 +174,7 @@ static he_status gather_neighbours(const plan *p, he_halfedge first, const he_ha
             return he_fail(err, HE_DOUBLED_EDGE, HE_EDGE, e,
                            "edge %u and another edge would join the same two vertices", e);
         }
-        h = he_turn_ccw(p->m, h);
+        h = he_swing_ccw(p->m, h);
     } while (h.i != first.i);
     return HE_OK;
 }
@@ -228,7 +228,7 @@ static he_status check_marks(const plan *p, he_error *err)
 static he_status reserve(const plan *p, he_error *err)
 {
     size_t n = p->n;
-    he_need need = {.deleted_vertices = n, .deleted_edges = n, .deleted_faces = 2};
+    he_reservation need = {.deleted_vertices = n, .deleted_edges = n, .deleted_faces = 2};
     need.links = n * (6 + HE_SETTLE_LINKS);
     for (uint32_t i = 0; i < p->n; i++) {
         need.links += he_vertex_degree(p->m, goes(p, i));
@@ -245,7 +245,7 @@ static void move_ring(he_mesh *m, he_halfedge first, he_vertex to)
     do {
         /* Turning about a vertex reads only links, and this loop changes origins only. */
         he_set_origin(m, h, to);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
 }
 
@@ -270,7 +270,7 @@ static void sew_side(const plan *p, uint32_t i)
     if (f.i != HE_NONE && he_face_halfedge(m, f).i == outer.i) {
         he_set_face_halfedge(m, f, a);
     }
-    he_carry_move(m, HE_HALFEDGE, a.i, outer.i);
+    he_attributes_move(m, HE_HALFEDGE, a.i, outer.i);
 }
 
 static void commit(const plan *p)

@@ -51,7 +51,7 @@ static he_status check_faces(const he_mesh *m, const he_halfedge cycle[3], he_er
  * of the cycle: those lie between the edge of the cycle that arrives and the one that leaves. */
 static he_halfedge first_on_right(const he_mesh *m, const he_halfedge cycle[3], unsigned i)
 {
-    return he_turn_ccw(m, he_twin(cycle[(i + 2) % 3]));
+    return he_swing_ccw(m, he_twin(cycle[(i + 2) % 3]));
 }
 
 static he_status check_locks(const he_mesh *m, const he_halfedge cycle[3], he_error *err)
@@ -64,7 +64,7 @@ static he_status check_locks(const he_mesh *m, const he_halfedge cycle[3], he_er
     for (unsigned i = 0; i < 3; i++) {
         he_halfedge h = first_on_right(m, cycle, i);
         status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, he_twin(cycle[i])).i, err);
-        for (; status == HE_OK && h.i != cycle[i].i; h = he_turn_ccw(m, h)) {
+        for (; status == HE_OK && h.i != cycle[i].i; h = he_swing_ccw(m, h)) {
             status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
             if (status == HE_OK) {
                 status = he_require_unlocked(&marks, HE_FACE, he_face_of(m, h).i, err);
@@ -104,7 +104,7 @@ static he_status check(const he_mesh *m, const he_edge edges[3], he_halfedge cyc
  * cycle. */
 static void move_right(he_mesh *m, const he_halfedge cycle[3], unsigned i, he_vertex to)
 {
-    for (he_halfedge h = first_on_right(m, cycle, i); h.i != cycle[i].i; h = he_turn_ccw(m, h)) {
+    for (he_halfedge h = first_on_right(m, cycle, i); h.i != cycle[i].i; h = he_swing_ccw(m, h)) {
         he_set_origin(m, h, to);
     }
 }
@@ -120,7 +120,7 @@ static void take_place(he_mesh *m, he_halfedge outer, he_halfedge twin)
     if (he_face_halfedge(m, f).i == twin.i) {
         he_set_face_halfedge(m, f, outer);
     }
-    he_carry_move(m, HE_HALFEDGE, outer.i, twin.i);
+    he_attributes_move(m, HE_HALFEDGE, outer.i, twin.i);
 }
 
 static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
@@ -132,14 +132,14 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
         he_vertex u = he_origin(m, cycle[i]);
         made->vertices[i] = he_new_vertex(m);
         he_set_position(m, made->vertices[i], he_position(m, u));
-        he_carry_copy(m, HE_VERTEX, made->vertices[i].i, u.i);
+        he_attributes_copy(m, HE_VERTEX, made->vertices[i].i, u.i);
         he_note_parent(m, HE_VERTEX, made->vertices[i].i, u.i);
     }
     for (unsigned i = 0; i < 3; i++) {
         he_edge e = he_edge_of(cycle[i]);
         made->edges[i] = he_new_edge(m);
         inner[i] = he_edge_halfedge(made->edges[i], cycle[i].i & 1);
-        he_carry_copy(m, HE_EDGE, made->edges[i].i, e.i);
+        he_attributes_copy(m, HE_EDGE, made->edges[i].i, e.i);
         he_note_parent(m, HE_EDGE, made->edges[i].i, e.i);
     }
     /* The elements on the right are found by walking around the vertices, so this must come before
@@ -149,7 +149,7 @@ static void commit(he_mesh *m, const he_halfedge cycle[3], he_loop_parts *made)
     }
     for (unsigned i = 0; i < 3; i++) {
         take_place(m, he_twin(inner[i]), he_twin(cycle[i]));
-        he_carry_copy(m, HE_HALFEDGE, inner[i].i, cycle[i].i);
+        he_attributes_copy(m, HE_HALFEDGE, inner[i].i, cycle[i].i);
     }
     for (unsigned k = 0; k < 2; k++) {
         made->faces[k] = he_new_face(m);
@@ -181,7 +181,7 @@ he_status he_loop_split(he_mesh *m, he_edge a, he_edge b, he_edge c, he_loop_par
     if (status != HE_OK) {
         return status;
     }
-    he_need need = {.vertices = 3, .edges = 3, .faces = 2, .lineage = 6};
+    he_reservation need = {.vertices = 3, .edges = 3, .faces = 2, .lineage = 6};
     for (unsigned i = 0; i < 3; i++) {
         /* The links are the origins around the vertex, two links of neighbours, the stored
          * half-edge of a face, three links of the cap, and the vertex's stored half-edge. */

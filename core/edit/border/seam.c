@@ -67,7 +67,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
     }
     for (he_halfedge h = first; status == HE_OK && h.i != end.i;) {
         status = he_require_unlocked(&p->marks, HE_FACE, he_face_of(m, h).i, err);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
         /* If h is a cut edge, this part of the fan may lie on the side that gets a new edge; then
          * the lock of the old edge does not matter. */
         if (status == HE_OK && !(is_cut(p, h) && keeps_id(h))) {
@@ -80,7 +80,7 @@ static he_status check_part(const he_mesh *m, const plan *p, he_halfedge first, 
 static he_status add_part(const he_mesh *m, plan *p, he_halfedge first, he_halfedge end,
                           he_error *err)
 {
-    for (he_halfedge h = first; h.i != end.i; h = he_turn_ccw(m, h)) {
+    for (he_halfedge h = first; h.i != end.i; h = he_swing_ccw(m, h)) {
         p->moved++;
     }
     p->moved++;
@@ -99,7 +99,7 @@ static uint32_t count_cuts(const he_mesh *m, const plan *p, he_halfedge first, h
             *lowest = count == 0 || h.i < lowest->i ? h : *lowest;
             count++;
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i && !he_is_boundary_halfedge(m, h));
     return count;
 }
@@ -128,7 +128,7 @@ static he_status plan_fan(const he_mesh *m, plan *p, he_halfedge first, he_error
     he_status status = HE_OK;
     he_halfedge from = first, h = first;
     do {
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
         if (is_cut(p, h) || he_is_boundary_halfedge(m, h)) {
             he_halfedge side = keeps_id(lowest) ? from : h;
             if (side.i != lowest.i) {
@@ -145,16 +145,16 @@ static he_status plan_vertex(const he_mesh *m, plan *p, he_vertex v, he_error *e
     he_halfedge stored = he_vertex_halfedge(m, v), h = stored;
     if (!he_is_boundary_vertex(m, v)) {
         while (!is_cut(p, h)) {
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         }
         return plan_fan(m, p, h, err);
     }
     he_status status = HE_OK;
     do {
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
         status = plan_fan(m, p, h, err);
         while (!he_is_boundary_halfedge(m, h)) {
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         }
     } while (status == HE_OK && h.i != stored.i);
     return status;
@@ -217,8 +217,8 @@ static he_edge open_edge(he_mesh *m, he_edge e)
     he_set_face(m, t, (he_face){HE_NONE});
     he_link(m, t, out);
     he_link(m, out, t);
-    he_carry_move(m, HE_HALFEDGE, in.i, t.i);
-    he_carry_copy(m, HE_EDGE, made.i, e.i);
+    he_attributes_move(m, HE_HALFEDGE, in.i, t.i);
+    he_attributes_copy(m, HE_EDGE, made.i, e.i);
     he_note_parent(m, HE_EDGE, made.i, e.i);
     he_ring_settle(m, he_origin(m, t), t);
     he_ring_settle(m, he_origin(m, out), out);
@@ -232,7 +232,7 @@ static he_vertex split_fan(he_mesh *m, he_halfedge first)
     he_halfedge in = he_twin(first), out = first;
     he_set_origin(m, out, w);
     while (!he_is_boundary_halfedge(m, out)) {
-        out = he_turn_ccw(m, out);
+        out = he_swing_ccw(m, out);
         he_set_origin(m, out, w);
     }
     he_halfedge after = he_next(m, in);
@@ -240,7 +240,7 @@ static he_vertex split_fan(he_mesh *m, he_halfedge first)
     he_link(m, in, out);
     he_set_vertex_halfedge(m, w, out);
     he_set_position(m, w, he_position(m, v));
-    he_carry_copy(m, HE_VERTEX, w.i, v.i);
+    he_attributes_copy(m, HE_VERTEX, w.i, v.i);
     he_note_parent(m, HE_VERTEX, w.i, v.i);
     he_ring_settle(m, v, after);
     return w;
@@ -250,7 +250,7 @@ he_status he_edge_cut(he_mesh *m, const uint32_t *edges, size_t count, he_seam *
 {
     plan p = {.moved = 0};
     he_seam made = {.vertices = {0}};
-    he_need need = {0};
+    he_reservation need = {0};
     he_status status = plan_cut(m, edges, count, &p, err);
     if (status == HE_OK) {
         status = he_ids_reserve(&made.vertices, p.parts.count, err);

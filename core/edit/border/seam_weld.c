@@ -51,7 +51,7 @@ static he_status check_merge(const he_mesh *m, const pair *end, he_edge a, he_ed
                            "edges %u and %u would join the same vertices", he_edge_of(other).i,
                            he_edge_of(h).i);
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     return HE_OK;
 }
@@ -130,7 +130,7 @@ static void merge(he_mesh *m, const pair *end, he_keep keep)
 {
     he_halfedge first = he_vertex_halfedge(m, end->goes), h = first;
     do {
-        he_halfedge next = he_turn_ccw(m, h);
+        he_halfedge next = he_swing_ccw(m, h);
         he_set_origin(m, h, end->stays);
         h = next;
     } while (h.i != first.i);
@@ -162,7 +162,7 @@ static void commit(he_mesh *m, he_edge a, he_edge b, he_keep keep, const pair en
     if (he_face_halfedge(m, f).i == k.i) {
         he_set_face_halfedge(m, f, h);
     }
-    he_carry_move(m, HE_HALFEDGE, h.i, k.i);
+    he_attributes_move(m, HE_HALFEDGE, h.i, k.i);
     he_note_merged(m, HE_EDGE, b.i, a.i);
     he_delete_edge(m, b);
     for (unsigned i = 0; i < 2; i++) {
@@ -176,7 +176,7 @@ static void commit(he_mesh *m, he_edge a, he_edge b, he_keep keep, const pair en
 
 static he_status reserve(he_mesh *m, const pair ends[2], he_error *err)
 {
-    he_need need = {.deleted_edges = 1, .lineage = 3, .attributes = 1};
+    he_reservation need = {.deleted_edges = 1, .lineage = 3, .attributes = 1};
     need.links = 10 + 2 * (HE_GAP_LINKS + HE_SETTLE_LINKS);
     for (unsigned i = 0; i < 2; i++) {
         if (ends[i].stays.i != ends[i].goes.i) {

@@ -4,7 +4,7 @@
 #include "edit/piece/ring.h"
 #include "mesh/marks.h"
 
-void he_bisect_need(he_need *need)
+void he_bisect_reservation(he_reservation *need)
 {
     need->vertices++;
     need->edges++;
@@ -41,15 +41,15 @@ he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t)
         he_set_face_halfedge(m, right, off);
     }
 
-    he_carry_between(m, HE_VERTEX, w.i, a.i, b.i, t);
-    he_carry_copy(m, HE_EDGE, part.i, e.i);
+    he_attributes_between(m, HE_VERTEX, w.i, a.i, b.i, t);
+    he_attributes_copy(m, HE_EDGE, part.i, e.i);
     if (left.i != HE_NONE) {
-        he_carry_between(m, HE_HALFEDGE, on.i, h.i, next.i, t);
+        he_attributes_between(m, HE_HALFEDGE, on.i, h.i, next.i, t);
     }
     if (right.i != HE_NONE) {
         /* The half-edge `off` now leaves the corner at b, which `back` left before. */
-        he_carry_move(m, HE_HALFEDGE, off.i, back.i);
-        he_carry_between(m, HE_HALFEDGE, back.i, he_next(m, back).i, off.i, t);
+        he_attributes_move(m, HE_HALFEDGE, off.i, back.i);
+        he_attributes_between(m, HE_HALFEDGE, back.i, he_next(m, back).i, off.i, t);
     }
     he_note_parent(m, HE_EDGE, part.i, e.i);
     return on;
@@ -65,8 +65,8 @@ he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex *vertex, he_
     if (!(t > 0 && t < 1)) {
         return he_fail(err, HE_BAD_VALUE, HE_EDGE, e.i, "t must be between 0 and 1, not %g", t);
     }
-    he_need need = {0};
-    he_bisect_need(&need);
+    he_reservation need = {0};
+    he_bisect_reservation(&need);
     status = he_reserve(m, need, err);
     if (status != HE_OK) {
         return status;
@@ -93,7 +93,7 @@ static he_status check_join(const he_mesh *m, he_vertex v, he_error *err)
         return he_fail(err, HE_WRONG_DEGREE, HE_VERTEX, v.i, "vertex %u has degree %u, not 2", v.i,
                        degree);
     }
-    he_halfedge one = he_vertex_halfedge(m, v), other = he_turn_ccw(m, one);
+    he_halfedge one = he_vertex_halfedge(m, v), other = he_swing_ccw(m, one);
     const he_halfedge sides[2] = {one, other};
     for (unsigned i = 0; i < 2; i++) {
         he_face f = he_face_of(m, sides[i]);
@@ -127,18 +127,18 @@ he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)
     he_status status = check_join(m, v, err);
     if (status == HE_OK) {
         status = he_reserve(m,
-                            (he_need){.deleted_vertices = 1,
-                                      .deleted_edges = 1,
-                                      .links = 8,
-                                      .attributes = 2,
-                                      .lineage = 1},
+                            (he_reservation){.deleted_vertices = 1,
+                                             .deleted_edges = 1,
+                                             .links = 8,
+                                             .attributes = 2,
+                                             .lineage = 1},
                             err);
     }
     if (status != HE_OK) {
         return status;
     }
     /* Nothing below can fail. */
-    he_halfedge kept = he_vertex_halfedge(m, v), gone = he_turn_ccw(m, kept);
+    he_halfedge kept = he_vertex_halfedge(m, v), gone = he_swing_ccw(m, kept);
     if (gone.i < kept.i) {
         he_halfedge swap = kept;
         kept = gone;
@@ -161,8 +161,8 @@ he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err)
     if (left.i != HE_NONE && he_face_halfedge(m, left).i == to_v.i) {
         he_set_face_halfedge(m, left, kept);
     }
-    he_carry_move(m, HE_HALFEDGE, kept.i, to_v.i);
-    he_carry_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
+    he_attributes_move(m, HE_HALFEDGE, kept.i, to_v.i);
+    he_attributes_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
     he_note_merged(m, HE_EDGE, he_edge_of(gone).i, he_edge_of(kept).i);
     he_delete_edge(m, he_edge_of(gone));
     he_delete_vertex(m, v);

@@ -40,9 +40,9 @@ HE_NODISCARD he_status he_edge_bisect(he_mesh *m, he_edge e, double t, he_vertex
 HE_NODISCARD he_status he_edge_join(he_mesh *m, he_vertex v, he_edge *edge, he_error *err);
 
 /* The last part of edge_bisect, which writes, for edits that do their own checks and reserve their
- * own memory. he_bisect_need adds what it writes to `need`; he_bisect_commit returns the half-edge
- * 2e' of the new edge e'. */
-void he_bisect_need(he_need *need);
+ * own memory. he_bisect_reservation adds what it writes to `need`; he_bisect_commit returns the
+ * half-edge 2e' of the new edge e'. */
+void he_bisect_reservation(he_reservation *need);
 he_halfedge he_bisect_commit(he_mesh *m, he_edge e, double t);
 
 #endif

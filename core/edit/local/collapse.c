@@ -51,10 +51,10 @@ static bool turn(const he_mesh *m, hands *at, ring *r)
     if (at->up.i != at->down.i) {
         put(m, r, SMALL_RING - ++at->downs, at->down);
     }
-    he_halfedge up = he_turn_ccw(m, at->up);
+    he_halfedge up = he_swing_ccw(m, at->up);
     at->open = at->up.i != at->down.i && up.i != at->down.i;
     at->up = up;
-    at->down = at->open ? he_turn_cw(m, at->down) : at->down;
+    at->down = at->open ? he_swing_cw(m, at->down) : at->down;
     return true;
 }
 
@@ -80,7 +80,7 @@ static bool gather(const he_mesh *m, he_halfedge h, ring *of_u, ring *of_v)
     hands at[2];
     for (unsigned i = 0; i < 2; i++) {
         he_halfedge from = i == 0 ? h : he_twin(h);
-        at[i] = (hands){.up = from, .down = he_turn_cw(m, from), .open = true};
+        at[i] = (hands){.up = from, .down = he_swing_cw(m, from), .open = true};
     }
     while (at[0].open || at[1].open) {
         for (unsigned i = 0; i < 2; i++) {
@@ -142,7 +142,8 @@ static he_status check_ring(const he_mesh *m, he_halfedge h, he_error *err)
         }
         return status;
     }
-    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i && status == HE_OK; k = he_turn_ccw(m, k)) {
+    for (he_halfedge k = he_swing_ccw(m, h); k.i != h.i && status == HE_OK;
+         k = he_swing_ccw(m, k)) {
         status = check_neighbour(m, h, k, NULL, c, d, err);
     }
     return status;
@@ -162,8 +163,8 @@ static he_status check_sides(const he_mesh *m, he_halfedge h, he_error *err)
 /* Returns true if the origin of h is an interior vertex with three triangles around it. */
 static bool is_apex(const he_mesh *m, he_halfedge h)
 {
-    he_halfedge second = he_turn_ccw(m, h), third = he_turn_ccw(m, second);
-    return he_turn_ccw(m, third).i == h.i && he_is_triangle(m, h) && he_is_triangle(m, second) &&
+    he_halfedge second = he_swing_ccw(m, h), third = he_swing_ccw(m, second);
+    return he_swing_ccw(m, third).i == h.i && he_is_triangle(m, h) && he_is_triangle(m, second) &&
            he_is_triangle(m, third);
 }
 
@@ -219,7 +220,7 @@ static uint32_t count_features(const he_mesh *m, const he_marks *marks, he_halfe
             *which = he_edge_of(k);
             count++;
         }
-        k = he_turn_ccw(m, k);
+        k = he_swing_ccw(m, k);
     } while (k.i != h.i);
     return count;
 }
@@ -290,8 +291,8 @@ static void close_sides(he_mesh *m, he_halfedge kept, he_halfedge gone)
     if (x.i != HE_NONE && he_face_halfedge(m, x).i == outer.i) {
         he_set_face_halfedge(m, x, kept);
     }
-    he_carry_move(m, HE_HALFEDGE, kept.i, outer.i);
-    he_carry_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
+    he_attributes_move(m, HE_HALFEDGE, kept.i, outer.i);
+    he_attributes_merge(m, HE_EDGE, he_edge_of(kept).i, he_edge_of(gone).i, 0.5);
     he_note_merged(m, HE_EDGE, he_edge_of(gone).i, he_edge_of(kept).i);
     he_delete_edge(m, he_edge_of(gone));
     he_delete_face(m, f);
@@ -315,8 +316,8 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
     he_vertex u = he_origin(m, h), v = he_target(m, h);
     bool left = he_is_triangle(m, h), right = he_is_triangle(m, back);
     bool interior = !he_is_boundary_vertex(m, u) && !he_is_boundary_vertex(m, v);
-    for (he_halfedge k = he_turn_ccw(m, h); k.i != h.i;) {
-        he_halfedge next = he_turn_ccw(m, k);
+    for (he_halfedge k = he_swing_ccw(m, h); k.i != h.i;) {
+        he_halfedge next = he_swing_ccw(m, k);
         he_set_origin(m, k, v);
         k = next;
     }
@@ -329,7 +330,7 @@ static void commit(he_mesh *m, he_halfedge h, he_vec3 position, double t)
         close_sides(m, back_before, back_after);
     }
     he_set_position(m, v, position);
-    he_carry_merge(m, HE_VERTEX, v.i, u.i, t);
+    he_attributes_merge(m, HE_VERTEX, v.i, u.i, t);
     he_note_merged(m, HE_VERTEX, u.i, v.i);
     he_delete_edge(m, he_edge_of(h));
     he_delete_vertex(m, u);
@@ -361,7 +362,7 @@ static he_status collapse(he_mesh *m, he_halfedge h, double t, const he_vec3 *to
     if (status != HE_OK) {
         return status;
     }
-    he_need need = {.deleted_vertices = 1, .deleted_edges = 3, .deleted_faces = 2};
+    he_reservation need = {.deleted_vertices = 1, .deleted_edges = 3, .deleted_faces = 2};
     need.links = (size_t)he_vertex_degree(m, u) + 24 + HE_SETTLE_LINKS;
     need.positions = 1;
     need.attributes = 5;

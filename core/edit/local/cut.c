@@ -3,7 +3,7 @@
 #include "edit/piece/point.h"
 #include "mesh/marks.h"
 
-void he_cut_need(uint32_t corners, he_need *need)
+void he_cut_reservation(uint32_t corners, he_reservation *need)
 {
     need->edges++;
     need->faces++;
@@ -31,9 +31,9 @@ he_halfedge he_cut_commit(he_mesh *m, he_halfedge from, he_halfedge to)
     if (he_face_of(m, he_face_halfedge(m, old)).i == f.i) {
         he_set_face_halfedge(m, old, d);
     }
-    he_carry_copy(m, HE_FACE, f.i, old.i);
-    he_carry_copy(m, HE_HALFEDGE, d.i, from.i);
-    he_carry_copy(m, HE_HALFEDGE, back.i, to.i);
+    he_attributes_copy(m, HE_FACE, f.i, old.i);
+    he_attributes_copy(m, HE_HALFEDGE, d.i, from.i);
+    he_attributes_copy(m, HE_HALFEDGE, back.i, to.i);
     he_note_parent(m, HE_FACE, f.i, old.i);
     return d;
 }
@@ -97,8 +97,8 @@ he_status he_face_split(he_mesh *m, he_face f, he_halfedge from, he_halfedge to,
     if (status != HE_OK) {
         return status;
     }
-    he_need need = {0};
-    he_cut_need(he_face_degree(m, f), &need);
+    he_reservation need = {0};
+    he_cut_reservation(he_face_degree(m, f), &need);
     status = he_reserve(m, need, err);
     if (status != HE_OK) {
         return status;
@@ -126,7 +126,7 @@ static he_vertex shared_corner(const he_mesh *m, he_halfedge h, he_face other)
             if (he_face_of(m, k).i == other.i) {
                 return he_origin(m, x);
             }
-            k = he_turn_ccw(m, k);
+            k = he_swing_ccw(m, k);
         } while (k.i != x.i);
     }
     return (he_vertex){HE_NONE};
@@ -169,7 +169,7 @@ he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err)
     }
     he_halfedge h = he_edge_halfedge(e, 0), back = he_twin(h);
     he_face f = he_face_of(m, h), g = he_face_of(m, back);
-    he_need need = {.deleted_edges = 1, .deleted_faces = 1, .attributes = 1, .lineage = 1};
+    he_reservation need = {.deleted_edges = 1, .deleted_faces = 1, .attributes = 1, .lineage = 1};
     need.links = (size_t)he_face_degree(m, g) + 7;
     status = he_reserve(m, need, err);
     if (status != HE_OK) {
@@ -191,7 +191,7 @@ he_status he_face_join(he_mesh *m, he_edge e, he_face *face, he_error *err)
     }
     he_link(m, he_prev(m, h), at_a);
     he_link(m, he_prev(m, back), at_b);
-    he_carry_merge(m, HE_FACE, f.i, g.i, 0.5);
+    he_attributes_merge(m, HE_FACE, f.i, g.i, 0.5);
     he_note_merged(m, HE_FACE, g.i, f.i);
     he_delete_edge(m, e);
     he_delete_face(m, g);

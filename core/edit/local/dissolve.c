@@ -14,7 +14,7 @@ static he_status find_ring(const he_mesh *m, he_vertex v, he_ids *ring, he_error
         for (he_halfedge h = he_next(m, k); status == HE_OK && h.i != end.i; h = he_next(m, h)) {
             status = he_ids_add(ring, he_origin(m, h).i, err);
         }
-        k = he_turn_ccw(m, k);
+        k = he_swing_ccw(m, k);
     } while (status == HE_OK && k.i != first.i);
     return status;
 }
@@ -71,7 +71,7 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
                 he_set_face(m, h, f);
             }
         }
-        k = he_turn_ccw(m, k);
+        k = he_swing_ccw(m, k);
     } while (k.i != first.i);
     he_halfedge stored = he_face_halfedge(m, f);
     if (stored.i == first.i || stored.i == he_prev(m, first).i) {
@@ -80,7 +80,7 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
     double taken = 0; /* faces merged into f */
     /* The edges at v keep their links until they are deleted, so turning about v still works. */
     do {
-        he_halfedge next = he_turn_ccw(m, k), back = he_twin(k), out = he_next(m, k);
+        he_halfedge next = he_swing_ccw(m, k), back = he_twin(k), out = he_next(m, k);
         he_vertex a = he_target(m, k);
         he_face g = he_face_of(m, k);
         he_link(m, he_prev(m, back), out);
@@ -89,14 +89,14 @@ static void commit(he_mesh *m, he_vertex v, he_face f)
         }
         if (g.i != f.i) {
             taken++;
-            he_carry_merge(m, HE_FACE, f.i, g.i, taken / (taken + 1));
+            he_attributes_merge(m, HE_FACE, f.i, g.i, taken / (taken + 1));
             he_note_merged(m, HE_FACE, g.i, f.i);
             he_delete_face(m, g);
         }
         k = next;
     } while (k.i != first.i);
     do {
-        he_halfedge next = he_turn_ccw(m, k);
+        he_halfedge next = he_swing_ccw(m, k);
         he_delete_edge(m, he_edge_of(k));
         k = next;
     } while (k.i != first.i);
@@ -112,7 +112,7 @@ he_status he_vertex_dissolve(he_mesh *m, he_vertex v, he_face *face, he_error *e
     }
     uint32_t degree = he_vertex_degree(m, v);
     he_face f = he_face_of(m, he_vertex_halfedge(m, v));
-    he_need need = {.deleted_vertices = 1, .deleted_edges = degree, .deleted_faces = degree};
+    he_reservation need = {.deleted_vertices = 1, .deleted_edges = degree, .deleted_faces = degree};
     need.links = corners + 3 * (size_t)degree + 1;
     need.lineage = degree;
     need.attributes = degree;

@@ -12,7 +12,7 @@ static bool edge_would_die(const he_mesh *m, he_halfedge h)
 
 /* Adds what erasing face f writes to `need`. Unless the face is the only one to be deleted
  * (`alone`), its neighbours may be deleted before it, so any of its edges may die. */
-static void add_need(const he_mesh *m, he_face f, bool alone, he_need *need)
+static void add_need(const he_mesh *m, he_face f, bool alone, he_reservation *need)
 {
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
@@ -94,11 +94,11 @@ static he_status check_face_locks(const he_mesh *m, he_face f, he_leftover lefto
     he_status status = he_require_unlocked(&marks, HE_FACE, f.i, err);
     he_halfedge first = he_face_halfedge(m, f), h = first;
     do {
-        he_halfedge before = he_turn_ccw(m, h);
+        he_halfedge before = he_swing_ccw(m, h);
         if (status == HE_OK && edge_would_die(m, h)) {
             status = he_require_unlocked(&marks, HE_EDGE, he_edge_of(h).i, err);
         }
-        if (status == HE_OK && leftover == HE_DROP_ISOLATED && he_turn_ccw(m, before).i == h.i &&
+        if (status == HE_OK && leftover == HE_DROP_ISOLATED && he_swing_ccw(m, before).i == h.i &&
             edge_would_die(m, h) && he_is_boundary_halfedge(m, before)) {
             status = he_require_unlocked(&marks, HE_VERTEX, he_origin(m, h).i, err);
         }
@@ -121,7 +121,7 @@ static bool origin_goes(const he_mesh *m, he_halfedge h, const he_idmap *faces)
         if (!goes(m, k, faces)) {
             return false;
         }
-        k = he_turn_ccw(m, k);
+        k = he_swing_ccw(m, k);
     } while (k.i != h.i);
     return true;
 }
@@ -165,7 +165,7 @@ static he_status check_star_locks(const he_mesh *m, const he_idmap *faces, he_le
 
 static he_status erase_one(he_mesh *m, he_face f, he_leftover leftover, he_error *err)
 {
-    he_need need = {0};
+    he_reservation need = {0};
     add_need(m, f, true, &need);
     he_status status = check_face_locks(m, f, leftover, err);
     if (status == HE_OK) {
@@ -195,9 +195,9 @@ he_status he_face_delete(he_mesh *m, const uint32_t *faces, size_t count, he_lef
     if (status != HE_OK) {
         return status;
     }
-    status = he_watch_phase(m->watch, "deleting faces", 1, err);
+    status = he_progress_phase(m->progress, "deleting faces", 1, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
-        status = he_watch_at(m->watch, i, count, err);
+        status = he_progress_at(m->progress, i, count, err);
         if (status == HE_OK) {
             status = erase_one(m, (he_face){faces[i]}, leftover, err);
         }
@@ -217,10 +217,10 @@ he_status he_edge_delete(he_mesh *m, const uint32_t *edges, size_t count, he_lef
     if (status != HE_OK) {
         return status;
     }
-    status = he_watch_phase(m->watch, "deleting edges", 1, err);
+    status = he_progress_phase(m->progress, "deleting edges", 1, err);
     for (size_t i = 0; i < 2 * count && status == HE_OK; i++) {
         he_halfedge h = he_edge_halfedge((he_edge){edges[i / 2]}, i % 2);
-        status = he_watch_at(m->watch, i, 2 * count, err);
+        status = he_progress_at(m->progress, i, 2 * count, err);
         /* The edge may be deleted already, together with a face beside an earlier edge of the
          * list. */
         if (status == HE_OK && he_edge_is_live(m, he_edge_of(h)) &&
@@ -239,7 +239,7 @@ static he_status find_star(const he_mesh *m, he_vertex v, he_idmap *faces, he_er
         uint32_t index, f = he_face_of(m, h).i;
         bool added;
         status = f == HE_NONE ? HE_OK : he_idmap_add(faces, f, &index, &added, err);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
         if (h.i == first.i) {
             break;
         }
@@ -250,7 +250,7 @@ static he_status find_star(const he_mesh *m, he_vertex v, he_idmap *faces, he_er
 he_status he_vertex_delete(he_mesh *m, he_vertex v, he_leftover leftover, he_error *err)
 {
     he_idmap faces = {.slots = NULL};
-    he_need need = {.deleted_vertices = 1};
+    he_reservation need = {.deleted_vertices = 1};
     he_marks marks;
     he_status status = he_mesh_require(m, HE_VERTEX, v.i, err);
     if (status == HE_OK && he_marks_find(m, &marks)) {
@@ -285,11 +285,11 @@ he_status he_delete_isolated(he_mesh *m, he_error *err)
 {
     he_marks marks;
     bool marked = he_marks_find(m, &marks);
-    he_need need = {0};
-    he_status status = he_watch_phase(m->watch, "finding isolated vertices", 1, err);
+    he_reservation need = {0};
+    he_status status = he_progress_phase(m->progress, "finding isolated vertices", 1, err);
     uint32_t issued = he_mesh_issued(m, HE_VERTEX);
     for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
-        status = he_watch_at(m->watch, v, issued, err);
+        status = he_progress_at(m->progress, v, issued, err);
         if (status == HE_OK && he_is_isolated(m, (he_vertex){v})) {
             need.deleted_vertices++;
             status = marked ? he_require_unlocked(&marks, HE_VERTEX, v, err) : HE_OK;

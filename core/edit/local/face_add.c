@@ -95,9 +95,9 @@ static void store_boundary(he_mesh *m, he_vertex v, he_halfedge in, bool in_is_n
     if (stored.i == HE_NONE || (in_is_new && stored.i == out.i)) {
         he_set_vertex_halfedge(m, v, he_twin(in));
     } else if (stored.i == out.i) {
-        he_halfedge h = he_turn_ccw(m, out);
+        he_halfedge h = he_swing_ccw(m, out);
         while (h.i != out.i && !he_is_boundary_halfedge(m, h)) {
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         }
         if (h.i != out.i) {
             he_set_vertex_halfedge(m, v, h);
@@ -160,7 +160,7 @@ he_status he_face_add(he_mesh *m, const uint32_t *vertices, size_t count, he_fac
     if (status != HE_OK) {
         goto out;
     }
-    he_need need = {.faces = 1, .links = 8 * count};
+    he_reservation need = {.faces = 1, .links = 8 * count};
     for (size_t i = 0; i < count; i++) {
         need.edges += sides[i] == HE_NONE;
     }

@@ -32,7 +32,7 @@ static he_status check_work(const he_mesh *m, he_face f, uint32_t n, he_error *e
                     j = he_next(m, j);
                 } while (++steps <= most && j.i != k.i);
             }
-            k = he_turn_ccw(m, k);
+            k = he_swing_ccw(m, k);
         } while (++steps <= most && k.i != h.i);
         h = he_next(m, h);
     } while (steps <= most && h.i != first.i);

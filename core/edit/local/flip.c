@@ -8,9 +8,9 @@
  * the whole vertex would make a thousand flips at one vertex slow. */
 static he_status check_end(const he_mesh *m, he_halfedge h, he_error *err)
 {
-    he_halfedge second = he_turn_ccw(m, he_turn_ccw(m, h));
+    he_halfedge second = he_swing_ccw(m, he_swing_ccw(m, h));
     he_vertex v = he_origin(m, h);
-    if ((second.i != h.i && second.i != he_turn_cw(m, h).i) || he_is_boundary_vertex(m, v)) {
+    if ((second.i != h.i && second.i != he_swing_cw(m, h).i) || he_is_boundary_vertex(m, v)) {
         return HE_OK;
     }
     return he_fail(err, HE_LOW_DEGREE, HE_VERTEX, v.i,
@@ -101,7 +101,7 @@ he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
 {
     he_status status = check(m, e, err);
     if (status == HE_OK) {
-        status = he_reserve(m, (he_need){.links = 20, .attributes = 2}, err);
+        status = he_reserve(m, (he_reservation){.links = 20, .attributes = 2}, err);
     }
     if (status != HE_OK) {
         return status;
@@ -119,7 +119,7 @@ he_status he_edge_flip(he_mesh *m, he_edge e, he_error *err)
     he_link(m, before_t, from_b);
     he_link(m, from_b, t);
     he_link(m, t, from_d);
-    he_carry_move(m, HE_HALFEDGE, h.i, from_d.i);
-    he_carry_move(m, HE_HALFEDGE, t.i, from_c.i);
+    he_attributes_move(m, HE_HALFEDGE, h.i, from_d.i);
+    he_attributes_move(m, HE_HALFEDGE, t.i, from_c.i);
     return HE_OK;
 }

@@ -25,8 +25,8 @@ void he_poke_clear(he_poke *poke)
     he_ids_clear(&poke->loop);
 }
 
-he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out, he_need *need,
-                       he_error *err)
+he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
+                       he_reservation *need, he_error *err)
 {
     he_poke poke = {.first = first, .keep = keep};
     poke.corners = he_loop_length(m, first);
@@ -67,10 +67,10 @@ he_vertex he_poke_commit(he_mesh *m, const he_poke *poke, he_ids *edges, he_ids 
     he_halfedge h = poke->first;
     he_halfedge first_spoke = new_spoke(m, he_origin(m, h), w, edges), spoke = first_spoke;
     if (poke->around.count > 0) {
-        he_carry_mean(m, HE_VERTEX, w.i, poke->around.ids, poke->around.count);
+        he_attributes_mean(m, HE_VERTEX, w.i, poke->around.ids, poke->around.count);
         if (poke->keep) {
-            he_carry_mean(m, HE_HALFEDGE, he_twin(spoke).i, poke->loop.ids, poke->loop.count);
-            he_carry_copy(m, HE_HALFEDGE, spoke.i, h.i);
+            he_attributes_mean(m, HE_HALFEDGE, he_twin(spoke).i, poke->loop.ids, poke->loop.count);
+            he_attributes_copy(m, HE_HALFEDGE, spoke.i, h.i);
         }
     }
     for (uint32_t i = 0; i < poke->corners; i++) {
@@ -78,8 +78,8 @@ he_vertex he_poke_commit(he_mesh *m, const he_poke *poke, he_ids *edges, he_ids 
         if (i + 1 < poke->corners) {
             in = new_spoke(m, he_origin(m, next), w, edges);
             if (poke->keep) {
-                he_carry_copy(m, HE_HALFEDGE, in.i, next.i);
-                he_carry_copy(m, HE_HALFEDGE, he_twin(in).i, he_twin(first_spoke).i);
+                he_attributes_copy(m, HE_HALFEDGE, in.i, next.i);
+                he_attributes_copy(m, HE_HALFEDGE, he_twin(in).i, he_twin(first_spoke).i);
             }
         }
         he_face f = old;
@@ -87,7 +87,7 @@ he_vertex he_poke_commit(he_mesh *m, const he_poke *poke, he_ids *edges, he_ids 
             f = he_new_face(m);
             he_set_face_halfedge(m, f, h);
             if (poke->keep) {
-                he_carry_copy(m, HE_FACE, f.i, old.i);
+                he_attributes_copy(m, HE_FACE, f.i, old.i);
                 he_note_parent(m, HE_FACE, f.i, old.i);
             }
             if (faces != NULL) {
@@ -118,7 +118,7 @@ he_status he_face_poke(he_mesh *m, he_face f, const he_vec3 *position, he_vertex
         return he_fail(err, HE_NOT_FINITE, HE_FACE, f.i, "the position must be finite");
     }
     he_poke poke;
-    he_need need = {0};
+    he_reservation need = {0};
     status = he_poke_plan(m, he_face_halfedge(m, f), true, &poke, &need, err);
     if (status != HE_OK) {
         return status;

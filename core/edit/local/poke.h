@@ -43,7 +43,7 @@ typedef struct he_poke {
  * he_poke_clear frees the plan.
  * Returns HE_NO_MEMORY if memory is out. */
 HE_NODISCARD he_status he_poke_plan(const he_mesh *m, he_halfedge first, bool keep, he_poke *out,
-                                    he_need *need, he_error *err);
+                                    he_reservation *need, he_error *err);
 void he_poke_clear(he_poke *poke);
 /* Writes the planned triangles and cannot fail. `edges` and `faces` must have room, or be NULL. For
  * the vertices of a hole's loop the caller must call he_ring_settle. */

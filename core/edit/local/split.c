@@ -31,13 +31,13 @@ he_status he_edge_split(he_mesh *m, he_edge e, double t, he_split *out, he_error
         return status;
     }
     he_halfedge h = he_edge_halfedge(e, 0), back = he_twin(h);
-    he_need need = {0};
-    he_bisect_need(&need);
+    he_reservation need = {0};
+    he_bisect_reservation(&need);
     if (!he_is_boundary_halfedge(m, h)) {
-        he_cut_need(3, &need);
+        he_cut_reservation(3, &need);
     }
     if (!he_is_boundary_halfedge(m, back)) {
-        he_cut_need(he_loop_length(m, back), &need);
+        he_cut_reservation(he_loop_length(m, back), &need);
     }
     status = he_reserve(m, need, err);
     if (status != HE_OK) {

@@ -38,7 +38,7 @@ static void into_corner(he_mesh *m, he_halfedge enters, he_halfedge h)
     he_link(m, h, leaves);
     he_set_face(m, h, he_face_of(m, enters));
     if (!he_is_boundary_halfedge(m, h)) {
-        he_carry_copy(m, HE_HALFEDGE, h.i, leaves.i);
+        he_attributes_copy(m, HE_HALFEDGE, h.i, leaves.i);
     }
 }
 
@@ -49,8 +49,9 @@ he_status he_vertex_split_corners(he_mesh *m, he_halfedge a, he_halfedge b, he_v
     if (status != HE_OK) {
         return status;
     }
-    he_need need = {.vertices = 1, .edges = 1, .links = 4 + 2 * HE_SETTLE_LINKS, .lineage = 1};
-    for (he_halfedge k = a; k.i != b.i; k = he_turn_ccw(m, k)) {
+    he_reservation need = {
+        .vertices = 1, .edges = 1, .links = 4 + 2 * HE_SETTLE_LINKS, .lineage = 1};
+    for (he_halfedge k = a; k.i != b.i; k = he_swing_ccw(m, k)) {
         need.links++;
     }
     status = he_reserve(m, need, err);
@@ -61,9 +62,9 @@ he_status he_vertex_split_corners(he_mesh *m, he_halfedge a, he_halfedge b, he_v
     he_vertex v = he_origin(m, a), u = he_new_vertex(m);
     he_halfedge h = he_edge_halfedge(he_new_edge(m), 0), back = he_twin(h);
     he_set_position(m, u, he_position(m, v));
-    he_carry_copy(m, HE_VERTEX, u.i, v.i);
+    he_attributes_copy(m, HE_VERTEX, u.i, v.i);
     he_note_parent(m, HE_VERTEX, u.i, v.i);
-    for (he_halfedge k = a; k.i != b.i; k = he_turn_ccw(m, k)) {
+    for (he_halfedge k = a; k.i != b.i; k = he_swing_ccw(m, k)) {
         he_set_origin(m, k, u);
     }
     he_set_origin(m, h, u);

@@ -10,7 +10,7 @@ he_status he_vertex_add(he_mesh *m, he_vec3 position, he_vertex *out, he_error *
     if (!he_point_is_finite(position)) {
         return he_fail_plain(err, HE_NOT_FINITE, "the position of a vertex must be finite");
     }
-    he_status status = he_reserve(m, (he_need){.vertices = 1}, err);
+    he_status status = he_reserve(m, (he_reservation){.vertices = 1}, err);
     if (status != HE_OK) {
         return status;
     }
@@ -47,10 +47,10 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
     size_t step = point_count == 1 ? 0 : 1;
     he_marks marks;
     bool marked = he_marks_find(m, &marks);
-    status = he_watch_phase(m->watch, "checking", 0.5, err);
+    status = he_progress_phase(m->progress, "checking", 0.5, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         he_vertex v = {vertices[i]};
-        status = he_watch_at(m->watch, i, count, err);
+        status = he_progress_at(m->progress, i, count, err);
         if (status == HE_OK && marked) {
             status = he_require_unlocked(&marks, HE_VERTEX, v.i, err);
         }
@@ -60,10 +60,10 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
         }
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "moving", 1, err);
+        status = he_progress_phase(m->progress, "moving", 1, err);
     }
     if (status == HE_OK) {
-        status = he_reserve(m, (he_need){.positions = count}, err);
+        status = he_reserve(m, (he_reservation){.positions = count}, err);
     }
     if (status != HE_OK) {
         return status;
@@ -71,7 +71,7 @@ he_status he_vertex_move(he_mesh *m, const uint32_t *vertices, size_t count, he_
     /* Nothing below can fail. */
     for (size_t i = 0; i < count; i++) {
         he_vertex v = {vertices[i]};
-        he_watch_note(m->watch, i, count);
+        he_progress_note(m->progress, i, count);
         he_set_position(m, v, moved(m, v, how, points[i * step]));
     }
     return HE_OK;

@@ -71,12 +71,12 @@ static he_status check(const he_mesh *m, he_vertex v, he_vertex left, he_vertex 
      * between the last half-edge of the fan, which is the boundary half-edge that v stores, and the
      * first. */
     he_halfedge hole = he_vertex_halfedge(m, v);
-    he_halfedge end = c.right.i != HE_NONE ? c.right : he_turn_ccw(m, hole);
-    he_halfedge h = he_turn_ccw(m, c.left.i != HE_NONE ? c.left : hole);
+    he_halfedge end = c.right.i != HE_NONE ? c.right : he_swing_ccw(m, hole);
+    he_halfedge h = he_swing_ccw(m, c.left.i != HE_NONE ? c.left : hole);
     bool sector = c.left.i != HE_NONE && !he_is_boundary_halfedge(m, c.left);
     c.first = h;
     c.count = 0;
-    for (; h.i != end.i; h = he_turn_ccw(m, h)) {
+    for (; h.i != end.i; h = he_swing_ccw(m, h)) {
         sector |= !he_is_boundary_halfedge(m, h);
         c.count++;
     }
@@ -107,7 +107,7 @@ static void replace(he_mesh *m, he_halfedge old, he_halfedge made)
     if (f.i != HE_NONE && he_face_halfedge(m, f).i == old.i) {
         he_set_face_halfedge(m, f, made);
     }
-    he_carry_move(m, HE_HALFEDGE, made.i, old.i);
+    he_attributes_move(m, HE_HALFEDGE, made.i, old.i);
 }
 
 static he_face new_triangle(he_mesh *m, he_halfedge a, he_halfedge b, he_halfedge c)
@@ -138,11 +138,11 @@ static void commit(he_mesh *m, he_vertex v, const cut *c, he_vec3 to, he_vertex_
     he_vertex_parts made = {.vertex = he_new_vertex(m)};
     he_vertex u = made.vertex;
     he_set_position(m, u, to);
-    he_carry_copy(m, HE_VERTEX, u.i, v.i);
+    he_attributes_copy(m, HE_VERTEX, u.i, v.i);
     he_note_parent(m, HE_VERTEX, u.i, v.i);
     he_halfedge k = c->first;
     for (uint32_t i = 0; i < c->count; i++) {
-        he_halfedge next = he_turn_ccw(m, k);
+        he_halfedge next = he_swing_ccw(m, k);
         he_set_origin(m, k, u);
         k = next;
     }
@@ -151,9 +151,9 @@ static void commit(he_mesh *m, he_vertex v, const cut *c, he_vec3 to, he_vertex_
     if (c->left.i != HE_NONE) {
         he_halfedge side = new_edge(m, u, he_target(m, c->left));
         replace(m, c->left, side);
-        he_carry_copy(m, HE_HALFEDGE, he_twin(side).i, he_next(m, side).i);
-        he_carry_copy(m, HE_HALFEDGE, h.i, side.i);
-        he_carry_copy(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->left).i);
+        he_attributes_copy(m, HE_HALFEDGE, he_twin(side).i, he_next(m, side).i);
+        he_attributes_copy(m, HE_HALFEDGE, h.i, side.i);
+        he_attributes_copy(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->left).i);
         he_note_parent(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->left).i);
         made.faces[made.sides++] = new_triangle(m, h, c->left, he_twin(side));
         made.edges[made.sides] = he_edge_of(side);
@@ -167,9 +167,9 @@ static void commit(he_mesh *m, he_vertex v, const cut *c, he_vec3 to, he_vertex_
         if (he_vertex_halfedge(m, d).i == in.i) {
             he_set_vertex_halfedge(m, d, he_twin(side));
         }
-        he_carry_copy(m, HE_HALFEDGE, side.i, he_next(m, he_twin(side)).i);
-        he_carry_copy(m, HE_HALFEDGE, back.i, c->right.i);
-        he_carry_copy(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->right).i);
+        he_attributes_copy(m, HE_HALFEDGE, side.i, he_next(m, he_twin(side)).i);
+        he_attributes_copy(m, HE_HALFEDGE, back.i, c->right.i);
+        he_attributes_copy(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->right).i);
         he_note_parent(m, HE_EDGE, he_edge_of(side).i, he_edge_of(c->right).i);
         made.faces[made.sides++] = new_triangle(m, back, side, in);
         made.edges[made.sides] = he_edge_of(side);
@@ -191,7 +191,7 @@ he_status he_vertex_split(he_mesh *m, he_vertex v, he_vertex left, he_vertex rig
     if (status != HE_OK) {
         return status;
     }
-    he_need need = {.vertices = 1, .edges = 3, .faces = 2, .lineage = 3};
+    he_reservation need = {.vertices = 1, .edges = 3, .faces = 2, .lineage = 3};
     need.links = (size_t)c.count + 16 + 2 * HE_SETTLE_LINKS;
     status = he_reserve(m, need, err);
     if (status == HE_OK) {

@@ -102,7 +102,7 @@ static he_status check_marks(he_merge_plan *p, he_error *err)
 
 static he_status reserve(he_merge_plan *p, he_error *err)
 {
-    he_need need = {.deleted_edges = p->edges.count, .deleted_faces = p->faces.count};
+    he_reservation need = {.deleted_edges = p->edges.count, .deleted_faces = p->faces.count};
     need.deleted_vertices = p->how->count + p->rim.count;
     need.links =
         3 * p->corners + p->faces.count + 4 * p->edges.count + p->holes.count + p->rim.count;
@@ -123,7 +123,7 @@ static void relink_face(const he_merge_plan *p, he_face f)
         he_halfedge next = he_merge_after(p, h), mine = he_merge_heir(p, h);
         if (mine.i != h.i) {
             he_set_face(m, mine, f);
-            he_carry_move(m, HE_HALFEDGE, mine.i, h.i);
+            he_attributes_move(m, HE_HALFEDGE, mine.i, h.i);
         }
         he_link(m, mine, he_merge_heir(p, next));
         h = next;
@@ -186,7 +186,7 @@ static void commit(const he_merge_plan *p)
 {
     he_mesh *m = p->m;
     for (size_t i = 0; i < p->faces.count; i++) {
-        he_watch_note(m->watch, i, p->faces.count);
+        he_progress_note(m->progress, i, p->faces.count);
         if (p->goes[i] == HE_NONE) {
             relink_face(p, (he_face){p->faces.ids[i]});
         }
@@ -247,13 +247,13 @@ he_status he_merge_vertices(he_mesh *m, const he_merge *how, uint64_t *moved, he
     he_merge_plan p = {.m = m, .how = how};
     he_status status = HE_OK;
     for (size_t i = 0; status == HE_OK && i < sizeof parts / sizeof *parts; i++) {
-        status = he_watch_phase(m->watch, parts[i].phase, parts[i].to, err);
+        status = he_progress_phase(m->progress, parts[i].phase, parts[i].to, err);
         if (status == HE_OK) {
             status = parts[i].run(&p, err);
         }
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "merging", 1, err);
+        status = he_progress_phase(m->progress, "merging", 1, err);
     }
     if (status == HE_OK) {
         status = write(&p, moved, err);

@@ -23,8 +23,8 @@ static he_halfedge occupant_of(const he_merge_plan *p, he_halfedge h)
     return he_is_boundary_halfedge(p->m, h) ? (he_halfedge){HE_NONE} : h;
 }
 
-/* Returns what he_turn_ccw of h will be after the merge. h must have a face then. */
-static he_halfedge turn(const he_merge_plan *p, he_halfedge h)
+/* Returns what he_swing_ccw of h will be after the merge. h must have a face then. */
+static he_halfedge swing(const he_merge_plan *p, he_halfedge h)
 {
     return he_twin(he_merge_heir(p, before(p, occupant_of(p, h))));
 }
@@ -86,7 +86,7 @@ he_status he_merge_find_rings(he_merge_plan *p, he_error *err)
             if (status == HE_OK && !he_is_boundary_halfedge(m, h)) {
                 status = he_ids_add(&p->faces, he_face_of(m, h).i, err);
             }
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
             if (h.i == first.i) {
                 break;
             }
@@ -153,7 +153,7 @@ he_status he_merge_find_faces(he_merge_plan *p, he_error *err)
         return HE_NO_MEMORY;
     }
     for (size_t i = 0; status == HE_OK && i < p->faces.count; i++) {
-        status = he_watch_at(p->m->watch, i, p->faces.count, err);
+        status = he_progress_at(p->m->progress, i, p->faces.count, err);
         if (status == HE_OK) {
             status = measure_face(p, i, err);
         }
@@ -276,7 +276,7 @@ he_status he_merge_occupy_edges(he_merge_plan *p, he_error *err)
 {
     const he_mesh *m = p->m;
     for (size_t i = 0; i < p->faces.count; i++) {
-        he_status status = he_watch_at(m->watch, i, p->faces.count, err);
+        he_status status = he_progress_at(m->progress, i, p->faces.count, err);
         if (status != HE_OK) {
             return status;
         }
@@ -346,7 +346,7 @@ static he_status find_ring(const he_merge_plan *p, he_vertex v, he_ids *ring, he
             if (he_merge_stays(p, h)) {
                 status = he_ids_add(ring, h.i, err);
             }
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
             if (status != HE_OK || h.i == first.i) {
                 break;
             }
@@ -387,7 +387,7 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
             first_in = he_twin(h);
         }
         for (; !is_boundary(p, h) && seen < ring->count; seen++) {
-            h = turn(p, h);
+            h = swing(p, h);
         }
         seen++;
         out = h;
@@ -401,7 +401,7 @@ static he_status link_fans(he_merge_plan *p, size_t i, const he_ids *ring, he_er
     } else if (status == HE_OK && ring->count > 0) {
         he_halfedge first = {ring->ids[0]}, h = first;
         do {
-            h = turn(p, h);
+            h = swing(p, h);
             seen++;
         } while (h.i != first.i && seen < ring->count);
         p->stored[i] = old.i < HE_DEAD && he_merge_stays(p, old) ? old.i : first.i;
@@ -419,7 +419,7 @@ he_status he_merge_find_fans(he_merge_plan *p, he_error *err)
     he_ids ring = {0};
     he_status status = find_rim(p, err);
     for (size_t i = 0; status == HE_OK && i < p->rim.count; i++) {
-        status = he_watch_at(p->m->watch, i, p->rim.count, err);
+        status = he_progress_at(p->m->progress, i, p->rim.count, err);
         if (status == HE_OK) {
             status = find_ring(p, (he_vertex){p->rim.ids[i]}, &ring, err);
         }

@@ -1,7 +1,7 @@
 #include "edit/merge/weld.h"
 
 #include "edit/piece/list.h"
-#include "geometry/near.h"
+#include "geometry/point_grid.h"
 #include "mesh/walk.h"
 
 he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size_t count, he_merge_place place,
@@ -39,21 +39,21 @@ static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he
                             he_error *err)
 {
     uint32_t issued = he_mesh_issued(m, HE_VERTEX);
-    he_near near;
-    he_status status =
-        he_near_make(&near, &(he_near_points){.at = m->c.position, .tolerance = tolerance},
-                     he_mesh_vertices(m), m->watch, err);
+    he_point_grid grid;
+    he_status status = he_point_grid_make(
+        &grid, &(he_point_grid_points){.at = m->c.position, .tolerance = tolerance},
+        he_mesh_vertices(m), m->progress, err);
     if (status != HE_OK) {
         return status;
     }
     for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
-        status = he_watch_at(m->watch, v, issued, err);
+        status = he_progress_at(m->progress, v, issued, err);
         if (status != HE_OK || !he_vertex_is_live(m, (he_vertex){v})) {
             continue;
         }
-        uint32_t home, found = he_near_find(&near, he_position(m, (he_vertex){v}), &home);
+        uint32_t home, found = he_point_grid_find(&grid, he_position(m, (he_vertex){v}), &home);
         if (found == HE_NONE) {
-            he_near_keep(&near, home, v);
+            he_point_grid_keep(&grid, home, v);
             continue;
         }
         status = he_ids_add(gone, v, err);
@@ -61,7 +61,7 @@ static he_status find_pairs(const he_mesh *m, double tolerance, he_ids *gone, he
             status = he_ids_add(to, found, err);
         }
     }
-    he_near_clear(&near);
+    he_point_grid_clear(&grid);
     return status;
 }
 
@@ -73,7 +73,7 @@ he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place, he_id
         return he_fail_plain(err, HE_BAD_VALUE,
                              "the tolerance must be finite and not negative, not %g", tolerance);
     }
-    he_status status = he_watch_phase(m->watch, "comparing", 0.4, err);
+    he_status status = he_progress_phase(m->progress, "comparing", 0.4, err);
     if (status == HE_OK) {
         status = find_pairs(m, tolerance, &gone, &to, err);
     }

@@ -34,7 +34,7 @@ HE_NODISCARD he_status he_vertex_weld(he_mesh *m, const uint32_t *vertices, size
  * chains. With a tolerance of 0 vertices at equal positions are merged.
  *
  * The ids of the vertices into which others were merged are appended to `into`, in rising order.
- * Takes time linear in the number of vertices, with the grid of near.h. Returns the errors of
+ * Takes time linear in the number of vertices, with the grid of point_grid.h. Returns the errors of
  * vertex_weld, too.
  * Returns HE_BAD_VALUE if the tolerance is negative. */
 HE_NODISCARD he_status he_weld_near(he_mesh *m, double tolerance, he_merge_place place,

@@ -65,7 +65,7 @@ static bool says_so(const he_mesh *m, const he_column *corners, const he_column 
                 0) {
             return false;
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != first.i);
     return true;
 }
@@ -96,7 +96,7 @@ static he_status add_corners(he_mesh *m, const he_column *column, const char *na
             memcpy(he_column_row(made, h), he_column_value(column, m->c.origin[h]),
                    column->row_bytes);
         }
-        status = he_watch_at(m->watch, h, halfedges, err);
+        status = he_progress_at(m->progress, h, halfedges, err);
     }
     if (status == HE_OK) {
         status = he_mesh_add_column(m, made, err);

@@ -45,7 +45,7 @@ typedef struct he_keeping {
  * and before it reserves memory. On failure the mesh is as it was, and the caller must not call
  * he_keep_end.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_keep_begin(he_mesh *m, const he_keep_pairs *pairs, he_keeping *out,
                                      he_error *err);
 /* Ends the weld, whose outcome is `status`, and returns `status`. If the weld failed, the moved

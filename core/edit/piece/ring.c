@@ -15,7 +15,7 @@ void he_ring_settle(he_mesh *m, he_vertex v, he_halfedge leaving)
             he_set_vertex_halfedge(m, v, h);
             return;
         }
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     } while (h.i != leaving.i);
     if (!leaves) {
         he_set_vertex_halfedge(m, v, leaving);
@@ -26,7 +26,7 @@ he_halfedge he_ring_fan_end(const he_mesh *m, he_halfedge in)
 {
     he_halfedge h = he_twin(in);
     while (!he_is_boundary_halfedge(m, h)) {
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     }
     return h;
 }

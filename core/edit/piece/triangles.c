@@ -24,7 +24,7 @@ he_status he_triangles_plan(const he_mesh *m, he_halfedge first, he_triangulatio
     return HE_OK;
 }
 
-void he_triangles_need(const he_triangles *plan, bool keep, he_need *need)
+void he_triangles_reservation(const he_triangles *plan, bool keep, he_reservation *need)
 {
     uint32_t n = plan->of.flat.n;
     need->edges += n - 3;
@@ -38,14 +38,14 @@ void he_triangles_need(const he_triangles *plan, bool keep, he_need *need)
 static he_halfedge cut_off(he_mesh *m, he_triangles *plan, const uint32_t *corners, bool keep,
                            he_ids *edges)
 {
-    const he_flat *flat = &plan->of.flat;
+    const he_planar_loop *flat = &plan->of.flat;
     he_edge e = he_new_edge(m);
     he_halfedge d = he_edge_halfedge(e, 0);
     he_set_origin(m, d, he_origin(m, (he_halfedge){flat->halfedge[corners[2]]}));
     he_set_origin(m, he_twin(d), he_origin(m, (he_halfedge){flat->halfedge[corners[0]]}));
     if (keep) {
-        he_carry_copy(m, HE_HALFEDGE, d.i, flat->halfedge[corners[2]]);
-        he_carry_copy(m, HE_HALFEDGE, he_twin(d).i, flat->halfedge[corners[0]]);
+        he_attributes_copy(m, HE_HALFEDGE, d.i, flat->halfedge[corners[2]]);
+        he_attributes_copy(m, HE_HALFEDGE, he_twin(d).i, flat->halfedge[corners[0]]);
     }
     if (edges != NULL) {
         edges->ids[edges->count++] = e.i;
@@ -56,7 +56,7 @@ static he_halfedge cut_off(he_mesh *m, he_triangles *plan, const uint32_t *corne
 
 void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edges, he_ids *faces)
 {
-    const he_flat *flat = &plan->of.flat;
+    const he_planar_loop *flat = &plan->of.flat;
     uint32_t n = flat->n, *side = plan->side;
     he_face old = he_face_of(m, (he_halfedge){flat->halfedge[0]});
     uint32_t stored = keep ? he_face_halfedge(m, old).i : HE_NONE;
@@ -70,7 +70,7 @@ void he_triangles_commit(he_mesh *m, he_triangles *plan, bool keep, he_ids *edge
             f = he_new_face(m);
             he_set_face_halfedge(m, f, a);
             if (keep) {
-                he_carry_copy(m, HE_FACE, f.i, old.i);
+                he_attributes_copy(m, HE_FACE, f.i, old.i);
                 he_note_parent(m, HE_FACE, f.i, old.i);
             }
             if (faces != NULL) {

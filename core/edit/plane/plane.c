@@ -91,7 +91,7 @@ static he_status measure(const he_mesh *m, he_vec3 point, he_vec3 n, he_sides *s
     double weight = 0;
     he_status status = HE_OK;
     for (uint32_t v = 0; v < sides->count && status == HE_OK; v++) {
-        status = he_watch_at(m->watch, v, sides->count, err);
+        status = he_progress_at(m->progress, v, sides->count, err);
         if (he_vertex_is_live(m, (he_vertex){v})) {
             sides->distance[v] = distance_of(m->c.position[v], point, n, sides->scale);
         }

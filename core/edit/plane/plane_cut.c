@@ -51,7 +51,7 @@ static he_status find_faces(cutter *c, he_error *err)
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a set of faces");
     }
     for (uint32_t f = 0; status == HE_OK && f < issued; f++) {
-        status = he_watch_at(c->m->watch, f, issued, err);
+        status = he_progress_at(c->m->progress, f, issued, err);
         if (status == HE_OK && he_face_is_live(c->m, (he_face){f}) &&
             side_of_face(c, (he_face){f}) == c->away) {
             he_bits_set(c->going, f);
@@ -67,7 +67,7 @@ static he_status find_rim(cutter *c, he_error *err)
     he_status status = HE_OK;
     for (size_t i = 0; i < c->faces.count; i++) {
         he_halfedge first = he_face_halfedge(m, (he_face){c->faces.ids[i]}), h = first;
-        status = he_watch_at(m->watch, i, c->faces.count, err);
+        status = he_progress_at(m->progress, i, c->faces.count, err);
         do {
             he_face beyond = he_face_of(m, he_twin(h));
             if (beyond.i != HE_NONE && !he_bits_get(c->going, beyond.i)) {
@@ -87,7 +87,7 @@ static he_status erase_isolated(cutter *c, he_error *err)
     he_mesh *m = c->m;
     he_status status = HE_OK;
     for (uint32_t v = 0; status == HE_OK && v < m->c.vertices.issued; v++) {
-        status = he_watch_at(m->watch, v, m->c.vertices.issued, err);
+        status = he_progress_at(m->progress, v, m->c.vertices.issued, err);
         if (status == HE_OK && he_vertex_is_live(m, (he_vertex){v}) &&
             he_is_isolated(m, (he_vertex){v}) && he_side_of(&c->sides, (he_vertex){v}) == c->away) {
             status = he_vertex_delete(m, (he_vertex){v}, HE_DROP_ISOLATED, err);
@@ -117,7 +117,7 @@ static he_status cap_loops(cutter *c, he_error *err)
     for (size_t i = 0; status == HE_OK && i < c->rim.count; i++) {
         he_halfedge h = {c->rim.ids[i]};
         he_filled filled = {.vertex = {HE_NONE}};
-        status = he_watch_at(c->m->watch, i, c->rim.count, err);
+        status = he_progress_at(c->m->progress, i, c->rim.count, err);
         if (status != HE_OK || !he_is_boundary_halfedge(c->m, h)) {
             continue; /* it is on a loop that has its cap already */
         }
@@ -168,19 +168,20 @@ static he_status cut(cutter *c, bool cap, he_error *err)
         {erase_isolated, "deleting vertices", 0.9, true},
         {cap_loops, "closing the cut", 1, cap},
     };
-    he_watch *watch = c->m->watch;
-    const double from = watch == NULL ? 0 : watch->done, to = watch == NULL ? 1 : watch->span_to;
+    he_progress *progress = c->m->progress;
+    const double from = progress == NULL ? 0 : progress->done,
+                 to = progress == NULL ? 1 : progress->span_to;
     he_status status = HE_OK;
     for (size_t i = 0; status == HE_OK && i < sizeof parts / sizeof *parts; i++) {
-        he_watch_span(watch, from + parts[i].to * (to - from));
+        he_progress_span(progress, from + parts[i].to * (to - from));
         if (parts[i].wanted && parts[i].phase != NULL) {
-            status = he_watch_phase(watch, parts[i].phase, 1, err);
+            status = he_progress_phase(progress, parts[i].phase, 1, err);
         }
         if (status == HE_OK && parts[i].wanted) {
             status = parts[i].run(c, err);
         }
     }
-    he_watch_span(watch, to);
+    he_progress_span(progress, to);
     return status;
 }
 

@@ -61,18 +61,18 @@ static he_status split_edges(splitter *s, he_error *err)
 {
     he_mesh *m = s->m;
     uint32_t issued = m->c.edges.issued, crossed = 0;
-    he_need one = {0};
+    he_reservation one = {0};
     he_status status = HE_OK;
     for (uint32_t e = 0; e < issued && status == HE_OK; e++) {
         crossed += is_crossed(s, (he_edge){e});
-        status = he_watch_at(m->watch, e, 2 * (uint64_t)issued, err);
+        status = he_progress_at(m->progress, e, 2 * (uint64_t)issued, err);
     }
-    he_bisect_need(&one);
-    he_need need = {.vertices = crossed * one.vertices,
-                    .edges = crossed * one.edges,
-                    .links = crossed * one.links,
-                    .attributes = crossed * one.attributes,
-                    .lineage = crossed * one.lineage};
+    he_bisect_reservation(&one);
+    he_reservation need = {.vertices = crossed * one.vertices,
+                           .edges = crossed * one.edges,
+                           .links = crossed * one.links,
+                           .attributes = crossed * one.attributes,
+                           .lineage = crossed * one.lineage};
     if (status == HE_OK) {
         status = he_ids_reserve(&s->made.vertices, crossed, err);
     }
@@ -84,7 +84,7 @@ static he_status split_edges(splitter *s, he_error *err)
     }
     /* Nothing below can fail. */
     for (uint32_t e = 0; e < issued; e++) {
-        he_watch_note(m->watch, (uint64_t)issued + e, 2 * (uint64_t)issued);
+        he_progress_note(m->progress, (uint64_t)issued + e, 2 * (uint64_t)issued);
         if (is_crossed(s, (he_edge){e})) {
             he_halfedge h = {2 * e};
             double from = s->sides.distance[he_origin(m, h).i];
@@ -122,8 +122,8 @@ static he_status cut_chord(splitter *s, uint32_t a, uint32_t b, he_error *err)
             "the plane would cut face %u from vertex %u to %u, but edge %u already joins them",
             he_face_of(m, from).i, v.i, w.i, he_edge_of(joined).i);
     }
-    he_need need = {0};
-    he_cut_need(steps_between(m, from, to), &need);
+    he_reservation need = {0};
+    he_cut_reservation(steps_between(m, from, to), &need);
     he_status status = he_ids_reserve(&s->made.edges, 1, err);
     if (status == HE_OK) {
         status = he_ids_reserve(&s->made.faces, 1, err);
@@ -148,7 +148,7 @@ static he_status split_faces(splitter *s, he_error *err)
     const he_ids *pairs = &s->chords.pairs;
     he_status status = HE_OK;
     for (uint32_t f = 0; status == HE_OK && f < issued; f++) {
-        status = he_watch_at(s->m->watch, f, issued, err);
+        status = he_progress_at(s->m->progress, f, issued, err);
         if (status != HE_OK || !he_face_is_live(s->m, (he_face){f}) ||
             !is_chosen(s, (he_face){f})) {
             continue;
@@ -169,7 +169,7 @@ he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *face
     he_bracket bracket;
     he_status status = choose(&s, faces, count, err);
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "measuring", 0.2, err);
+        status = he_progress_phase(m->progress, "measuring", 0.2, err);
     }
     if (status == HE_OK) {
         status = he_sides_find(m, plane, &s.sides, err);
@@ -182,12 +182,12 @@ he_status he_plane_split(he_mesh *m, const he_plane *plane, const uint32_t *face
     }
     /* Faces are split after edges, so that they have the new vertices on their sides, and in order,
      * so that each split knows the diagonals in the faces before. */
-    status = he_watch_phase(m->watch, "splitting edges", 0.5, err);
+    status = he_progress_phase(m->progress, "splitting edges", 0.5, err);
     if (status == HE_OK) {
         status = split_edges(&s, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "splitting faces", 1, err);
+        status = he_progress_phase(m->progress, "splitting faces", 1, err);
     }
     if (status == HE_OK) {
         status = split_faces(&s, err);

@@ -94,8 +94,8 @@ static he_status find_inner(const he_mesh *m, he_region *r, he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = 0; i < r->rim.count; i++) {
-        he_halfedge k = he_turn_ccw(m, (he_halfedge){r->rim.ids[i]});
-        for (; status == HE_OK && is_inside(r, he_face_of(m, k)); k = he_turn_ccw(m, k)) {
+        he_halfedge k = he_swing_ccw(m, (he_halfedge){r->rim.ids[i]});
+        for (; status == HE_OK && is_inside(r, he_face_of(m, k)); k = he_swing_ccw(m, k)) {
             status = he_ids_add(&r->inner, k.i, err);
             if (status == HE_OK) {
                 status = he_ids_add(&r->inner_at, (uint32_t)i, err);
@@ -200,15 +200,15 @@ static void make_rows(he_mesh *m, const he_region *r, const he_vec3 *to, const h
         he_vertex a = he_origin(m, h), w = he_new_vertex(m);
         he_set_position(m, w, to[i]);
         if (mixes == NULL) {
-            he_carry_copy(m, HE_VERTEX, w.i, a.i);
+            he_attributes_copy(m, HE_VERTEX, w.i, a.i);
         }
         he_note_parent(m, HE_VERTEX, w.i, a.i);
         he_edge e = he_new_edge(m);
-        he_carry_copy(m, HE_EDGE, e.i, he_edge_of(h).i);
+        he_attributes_copy(m, HE_EDGE, e.i, he_edge_of(h).i);
         he_note_parent(m, HE_EDGE, e.i, he_edge_of(h).i);
         (void)he_new_edge(m);
         he_face f = he_face_of(m, h), q = he_new_face(m);
-        he_carry_copy(m, HE_FACE, q.i, f.i);
+        he_attributes_copy(m, HE_FACE, q.i, f.i);
         he_note_parent(m, HE_FACE, q.i, f.i);
     }
 }
@@ -239,10 +239,10 @@ static void carry_corners(he_mesh *m, const he_region *r, const fresh *n, size_t
 {
     he_halfedge h = {r->rim.ids[i]};
     uint32_t k = he_idmap_find(&r->corners, he_target(m, h).i);
-    he_carry_move(m, HE_HALFEDGE, above(n, i).i, h.i);
-    he_carry_copy(m, HE_HALFEDGE, he_twin(upright(n, i)).i, h.i);
-    he_carry_copy(m, HE_HALFEDGE, upright(n, k).i, he_next(m, h).i);
-    he_carry_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
+    he_attributes_move(m, HE_HALFEDGE, above(n, i).i, h.i);
+    he_attributes_copy(m, HE_HALFEDGE, he_twin(upright(n, i)).i, h.i);
+    he_attributes_copy(m, HE_HALFEDGE, upright(n, k).i, he_next(m, h).i);
+    he_attributes_copy(m, HE_HALFEDGE, he_twin(above(n, i)).i, he_next(m, h).i);
 }
 
 /* Links the four half-edges of the new quad at half-edge i of the rim: along the rim, up at its
@@ -274,19 +274,19 @@ static void carry_mixes(he_mesh *m, const he_region_mix *mixes, const fresh *n, 
         corners->ids[corners->count++] = he_origin(m, h).i;
         h = he_next(m, h);
     } while (h.i != in.i);
-    he_carry_mean(m, HE_VERTEX, mean, corners->ids, corners->count);
+    he_attributes_mean(m, HE_VERTEX, mean, corners->ids, corners->count);
     for (size_t i = first; i <= last; i++) {
         const he_region_mix *mix = &mixes[i];
         uint32_t below = he_origin(m, mix->in).i, w = n->vertex + (uint32_t)i;
         if (w != mean) {
             double rest = 1 - mix->mean;
-            he_carry_copy(m, HE_VERTEX, w, below);
-            he_carry_mix(m, HE_VERTEX, w, mix->beside.i, rest > 0 ? 1 - mix->side / rest : 1);
-            he_carry_mix(m, HE_VERTEX, w, mean, rest);
+            he_attributes_copy(m, HE_VERTEX, w, below);
+            he_attributes_mix(m, HE_VERTEX, w, mix->beside.i, rest > 0 ? 1 - mix->side / rest : 1);
+            he_attributes_mix(m, HE_VERTEX, w, mean, rest);
         } else {
             double rest = 1 - mix->side;
-            he_carry_mix(m, HE_VERTEX, w, below, rest > 0 ? mix->mean / rest : 0);
-            he_carry_mix(m, HE_VERTEX, w, mix->beside.i, rest);
+            he_attributes_mix(m, HE_VERTEX, w, below, rest > 0 ? mix->mean / rest : 0);
+            he_attributes_mix(m, HE_VERTEX, w, mix->beside.i, rest);
         }
     }
 }
@@ -417,13 +417,13 @@ static he_status draw_one(he_mesh *m, he_region *r, he_region_place place, he_re
         status = mix(m, r, place, to, &mixes, &corners, err);
     }
     uint32_t count = (uint32_t)r->rim.count;
-    he_need need = {.vertices = count,
-                    .edges = 2 * count,
-                    .faces = count,
-                    .links = (size_t)count * RIM_LINKS + r->inner.count,
-                    .positions = inside.ids.count,
-                    .attributes = mixes != NULL ? 2 * (size_t)count : 0,
-                    .lineage = 3 * (size_t)count};
+    he_reservation need = {.vertices = count,
+                           .edges = 2 * count,
+                           .faces = count,
+                           .links = (size_t)count * RIM_LINKS + r->inner.count,
+                           .positions = inside.ids.count,
+                           .attributes = mixes != NULL ? 2 * (size_t)count : 0,
+                           .lineage = 3 * (size_t)count};
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
@@ -458,12 +458,12 @@ static he_status draw_all(he_mesh *m, const he_idmap *listed, bool joined, he_re
     if (done == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to keep regions apart");
     }
-    status = count > 1 ? he_watch_phase(m->watch, "drawing faces off", 1, err) : HE_OK;
+    status = count > 1 ? he_progress_phase(m->progress, "drawing faces off", 1, err) : HE_OK;
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         he_region r = {.faces = {.slots = NULL}};
         uint32_t index;
         bool added;
-        status = he_watch_at(m->watch, i, count, err);
+        status = he_progress_at(m->progress, i, count, err);
         if (status != HE_OK || he_bits_get(done, i)) {
             continue;
         }

@@ -389,7 +389,7 @@ static he_status append_in_bracket(he_mesh *m, const he_mesh *other, target *tar
                                    const maps *at, he_appended *out, he_error *err)
 {
     renames r = {.from = NULL};
-    he_status status = he_watch_phase(m->watch, "matching attributes", 0.2, err);
+    he_status status = he_progress_phase(m->progress, "matching attributes", 0.2, err);
     if (status == HE_OK) {
         status = merge_materials(m, other, &r, err);
     }
@@ -399,14 +399,14 @@ static he_status append_in_bracket(he_mesh *m, const he_mesh *other, target *tar
         }
     }
     renames_clear(&r);
-    const he_need need = {.vertices = other->c.vertices.live,
-                          .edges = other->c.edges.live,
-                          .faces = other->c.faces.live};
+    const he_reservation need = {.vertices = other->c.vertices.live,
+                                 .edges = other->c.edges.live,
+                                 .faces = other->c.faces.live};
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "appending", 1, err);
+        status = he_progress_phase(m->progress, "appending", 1, err);
     }
     if (status != HE_OK) {
         return status;
@@ -419,7 +419,7 @@ static he_status append_in_bracket(he_mesh *m, const he_mesh *other, target *tar
         if (theirs != NULL && theirs->domain != HE_MESH_KIND) {
             carry_column(m, other, theirs, &targets[i], at);
         }
-        he_watch_note(m->watch, i, other->c.column_count);
+        he_progress_note(m->progress, i, other->c.column_count);
     }
     return HE_OK;
 }

@@ -34,7 +34,7 @@ typedef struct he_appended {
  * Returns HE_ATTRIBUTE_CLASH if attributes of one domain and name do not match as above.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_append(he_mesh *m, const he_mesh *other, he_appended *out, he_error *err);
 void he_appended_clear(he_appended *appended);
 

@@ -21,7 +21,7 @@ typedef struct flipper {
     he_ids flips;
     uint64_t steps, limit;
     uint64_t dequeued;
-    uint64_t work;        /* work since the watch was last stepped */
+    uint64_t work;        /* work since the last report of progress */
     size_t from, fold_at; /* records before this call; number of records at the next fold */
 } flipper;
 
@@ -29,9 +29,9 @@ typedef struct flipper {
  * many for each edge. That is fewer than an edge has words. */
 enum { RECORDS_OF_EDGE = 4 };
 
-/* The amount of work between two steps of the progress watch. Testing an edge takes as long as a
+/* The amount of work between two reports of progress. Testing an edge takes as long as a
  * few elements in other loops, and as WORK_OF_EDGE steps around a vertex. */
-enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_WATCH_STRIDE / 2 };
+enum { WORK_OF_EDGE = 16, WORK_PER_LOOK = WORK_OF_EDGE * HE_PROGRESS_STRIDE / 2 };
 
 static void enqueue(flipper *q, he_edge e)
 {
@@ -87,8 +87,8 @@ static uint32_t search_steps(const he_mesh *m, he_edge e)
     uint32_t n = 0;
     do {
         n++;
-        x = he_turn_ccw(m, x);
-        y = he_turn_ccw(m, y);
+        x = he_swing_ccw(m, x);
+        y = he_swing_ccw(m, y);
     } while (x.i != c.i && y.i != d.i);
     return n;
 }
@@ -101,7 +101,7 @@ static he_status fold(flipper *q, he_error *err)
     if (delta->count < q->fold_at) {
         return HE_OK;
     }
-    he_status status = he_delta_fold(delta, q->from, q->m->watch, err);
+    he_status status = he_delta_fold(delta, q->from, q->m->progress, err);
     size_t left = delta->count - q->from;
     q->fold_at = delta->count + left + RECORDS_OF_EDGE * (size_t)q->m->c.edges.live;
     return status;
@@ -146,7 +146,7 @@ static he_status look(flipper *q, he_error *err)
         return HE_OK;
     }
     q->work = 0;
-    return he_watch_step(q->m->watch, q->dequeued, q->dequeued + q->waiting, err);
+    return he_progress_step(q->m->progress, q->dequeued, q->dequeued + q->waiting, err);
 }
 
 static he_status empty_queue(flipper *q, he_error *err)
@@ -196,9 +196,9 @@ static he_status begin(flipper *q, const uint32_t *edges, size_t count, he_error
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a queue of %zu edges", q->room);
     }
     size_t first = edges != NULL ? count : q->room;
-    he_status status = he_watch_phase(m->watch, "flipping", 1, err);
+    he_status status = he_progress_phase(m->progress, "flipping", 1, err);
     for (size_t i = 0; i < first && status == HE_OK; i++) {
-        status = i % HE_WATCH_STRIDE == 0 ? he_watch_step(m->watch, 0, 1, err) : HE_OK;
+        status = i % HE_PROGRESS_STRIDE == 0 ? he_progress_step(m->progress, 0, 1, err) : HE_OK;
         he_edge e = {edges != NULL ? edges[i] : (uint32_t)i};
         if (he_edge_is_live(m, e)) {
             enqueue(q, e);

@@ -22,7 +22,7 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
 {
     for (uint32_t i = 0; i < m->c.vertices.issued; i++) {
         he_vertex v = {i};
-        he_status status = he_watch_at(m->watch, i, m->c.vertices.issued, err);
+        he_status status = he_progress_at(m->progress, i, m->c.vertices.issued, err);
         if (status != HE_OK) {
             return status;
         }
@@ -34,7 +34,7 @@ static he_status check_vertices(const he_mesh *m, he_error *err)
                            "vertex %u has no face, so its dual face would have no corner", i);
         }
         he_halfedge h = he_vertex_halfedge(m, v);
-        if (he_turn_ccw(m, he_turn_ccw(m, h)).i == h.i) {
+        if (he_swing_ccw(m, he_swing_ccw(m, h)).i == h.i) {
             return he_fail(err, HE_TOO_FEW_CORNERS, HE_VERTEX, i,
                            "vertex %u has two edges, so its dual face would have two corners", i);
         }
@@ -50,7 +50,7 @@ static he_status check_neighbours(const he_mesh *m, uint32_t *seen_by, he_error 
         seen_by[i] = HE_NONE;
     }
     for (uint32_t i = 0; i < m->c.faces.issued; i++) {
-        he_status status = he_watch_at(m->watch, i, m->c.faces.issued, err);
+        he_status status = he_progress_at(m->progress, i, m->c.faces.issued, err);
         if (status != HE_OK) {
             return status;
         }
@@ -119,7 +119,7 @@ static void make_rows(he_mesh *m, rows *r)
     for (uint32_t i = 0; i < r->edges; i++) {
         if (he_edge_is_live(m, (he_edge){i})) {
             he_edge e = he_new_edge(m);
-            he_carry_copy(m, HE_EDGE, e.i, i);
+            he_attributes_copy(m, HE_EDGE, e.i, i);
             he_note_parent(m, HE_EDGE, e.i, i);
             r->edge[i] = e.i;
         }
@@ -141,10 +141,10 @@ static he_halfedge star(const rows *r, he_halfedge h)
 static void link_rows(he_mesh *m, const rows *r)
 {
     for (uint32_t i = 0; i < r->edges; i++) {
-        he_watch_note(m->watch, i, r->edges);
+        he_progress_note(m->progress, i, r->edges);
         for (unsigned side = 0; side < 2 && he_edge_is_live(m, (he_edge){i}); side++) {
             he_halfedge h = he_edge_halfedge((he_edge){i}, side), s = star(r, h);
-            he_set_next(m, s, star(r, he_turn_ccw(m, h)));
+            he_set_next(m, s, star(r, he_swing_ccw(m, h)));
             he_set_prev(m, s, star(r, he_next(m, he_twin(h))));
             he_set_origin(m, s, (he_vertex){r->vertex[he_face_of(m, he_twin(h)).i]});
             he_set_face(m, s, (he_face){r->face[he_origin(m, h).i]});
@@ -195,23 +195,23 @@ he_status he_dual(he_mesh *m, he_error *err)
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory for the rows of the dual");
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "checking", 0.4, err);
+        status = he_progress_phase(m->progress, "checking", 0.4, err);
     }
     if (status == HE_OK) {
         status = check(m, r.vertex, err);
     }
-    he_need need = {.vertices = m->c.faces.live,
-                    .edges = m->c.edges.live,
-                    .faces = m->c.vertices.live,
-                    .deleted_vertices = m->c.vertices.live,
-                    .deleted_edges = m->c.edges.live,
-                    .deleted_faces = m->c.faces.live,
-                    .lineage = m->c.edges.live};
+    he_reservation need = {.vertices = m->c.faces.live,
+                           .edges = m->c.edges.live,
+                           .faces = m->c.vertices.live,
+                           .deleted_vertices = m->c.vertices.live,
+                           .deleted_edges = m->c.edges.live,
+                           .deleted_faces = m->c.faces.live,
+                           .lineage = m->c.edges.live};
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "making the dual", 1, err);
+        status = he_progress_phase(m->progress, "making the dual", 1, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

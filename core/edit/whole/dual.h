@@ -28,7 +28,7 @@
  * Returns HE_LOCKED_ELEMENT if any element is locked.
  * Returns HE_NO_MEMORY if memory is out.
  * Returns HE_IDS_EXHAUSTED if no ids are left.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_dual(he_mesh *m, he_error *err);
 
 #endif

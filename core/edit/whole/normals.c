@@ -121,7 +121,7 @@ static size_t each_row(const he_normals *n, size_t slot, bool commit)
             if (turns && commit) {
                 turn_row(n, slot, domain == HE_HALFEDGE ? h.i : f.i);
             }
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
             if (h.i == first.i) {
                 break;
             }

@@ -25,7 +25,7 @@ static he_status take_all(const he_mesh *m, part *out, he_error *err)
         }
     }
     for (uint32_t e = 0; status == HE_OK && e < m->c.edges.issued; e++) {
-        status = he_watch_at(m->watch, e, m->c.edges.issued, err);
+        status = he_progress_at(m->progress, e, m->c.edges.issued, err);
         if (status == HE_OK && he_edge_is_live(m, (he_edge){e})) {
             status = he_ids_add(&out->edges, e, err);
         }
@@ -87,7 +87,7 @@ static he_status check_vertices(const he_mesh *m, const part *p, const uint64_t 
                                "face %u shares vertex %u with a face to reverse: list it too", f.i,
                                p->vertices.ids[i]);
             }
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         } while (h.i != first.i);
     }
     return HE_OK;
@@ -190,23 +190,23 @@ static void commit(he_mesh *m, const part *p)
     for (size_t i = 0; i < p->vertices.count; i++) {
         he_vertex v = {p->vertices.ids[i]};
         if (he_is_boundary_vertex(m, v)) {
-            he_set_vertex_halfedge(m, v, he_turn_ccw(m, he_vertex_halfedge(m, v)));
+            he_set_vertex_halfedge(m, v, he_swing_ccw(m, he_vertex_halfedge(m, v)));
         }
     }
     for (size_t i = 0; i < p->faces.count; i++) {
         he_face f = {p->faces.ids[i]};
-        he_set_face_halfedge(m, f, he_turn_ccw(m, he_face_halfedge(m, f)));
+        he_set_face_halfedge(m, f, he_swing_ccw(m, he_face_halfedge(m, f)));
     }
     for (size_t i = 0; i < p->edges.count; i++) {
         turn_edge(m, (he_edge){p->edges.ids[i]});
-        he_watch_note(m->watch, i, p->edges.count);
+        he_progress_note(m->progress, i, p->edges.count);
     }
 }
 
 he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *err)
 {
     part p = {.vertices = {0}};
-    he_status status = he_watch_phase(m->watch, "gathering", 0.4, err);
+    he_status status = he_progress_phase(m->progress, "gathering", 0.4, err);
     if (status == HE_OK && faces == NULL) {
         status = take_all(m, &p, err);
     } else if (status == HE_OK) {
@@ -218,7 +218,7 @@ he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *
             status = check_whole(m, &p, err);
         }
     }
-    he_need need = {.links = 6 * p.edges.count + p.vertices.count + p.faces.count};
+    he_reservation need = {.links = 6 * p.edges.count + p.vertices.count + p.faces.count};
     if (m->c.column_count > 0) {
         need.attributes = 4 * p.edges.count + p.vertices.count + p.faces.count;
     }
@@ -226,7 +226,7 @@ he_status he_reverse(he_mesh *m, const uint32_t *faces, size_t count, he_error *
         status = he_reserve(m, need, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "turning over", 1, err);
+        status = he_progress_phase(m->progress, "turning over", 1, err);
     }
     if (status == HE_OK) {
         /* Nothing below can fail. */

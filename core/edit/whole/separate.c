@@ -11,7 +11,7 @@ static he_status check_fan(const he_mesh *m, const he_marks *marks, he_halfedge 
     he_status status = he_require_unlocked(marks, HE_EDGE, he_edge_of(*h).i, err);
     while (status == HE_OK && !he_is_boundary_halfedge(m, *h)) {
         status = he_require_unlocked(marks, HE_FACE, he_face_of(m, *h).i, err);
-        *h = he_turn_ccw(m, *h);
+        *h = he_swing_ccw(m, *h);
         if (status == HE_OK) {
             status = he_require_unlocked(marks, HE_EDGE, he_edge_of(*h).i, err);
         }
@@ -26,18 +26,19 @@ static he_status check_locks(const he_mesh *m, he_vertex v, he_error *err)
     if (!he_marks_find(m, &marks)) {
         return HE_OK;
     }
-    he_halfedge stored = he_vertex_halfedge(m, v), h = he_turn_ccw(m, stored);
+    he_halfedge stored = he_vertex_halfedge(m, v), h = he_swing_ccw(m, stored);
     /* The last fan, which ends with the half-edge that v stores, keeps the vertex, so its locks do
      * not matter. */
     for (uint32_t fans = he_vertex_fans(m, v); status == HE_OK && fans > 1; fans--) {
         status = check_fan(m, &marks, &h, err);
-        h = he_turn_ccw(m, h);
+        h = he_swing_ccw(m, h);
     }
     return status;
 }
 
 /* Adds what separating the fans of v will write to `need`, and v to `ties` if it is a bow-tie. */
-static he_status plan(const he_mesh *m, he_vertex v, he_need *need, he_ids *ties, he_error *err)
+static he_status plan(const he_mesh *m, he_vertex v, he_reservation *need, he_ids *ties,
+                      he_error *err)
 {
     if (!he_is_boundary_vertex(m, v)) {
         return HE_OK;
@@ -58,26 +59,26 @@ static he_status plan(const he_mesh *m, he_vertex v, he_need *need, he_ids *ties
 
 static void commit(he_mesh *m, he_vertex v, he_ids *made)
 {
-    he_halfedge stored = he_vertex_halfedge(m, v), h = he_turn_ccw(m, stored);
+    he_halfedge stored = he_vertex_halfedge(m, v), h = he_swing_ccw(m, stored);
     for (;;) {
         he_halfedge first = h;
         while (!he_is_boundary_halfedge(m, h)) {
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         }
         if (h.i == stored.i) {
             he_link(m, he_twin(first), stored);
             return;
         }
-        he_halfedge last = h, next = he_turn_ccw(m, last);
+        he_halfedge last = h, next = he_swing_ccw(m, last);
         he_link(m, he_twin(first), last);
         he_vertex u = he_new_vertex(m);
         he_set_position(m, u, he_position(m, v));
-        he_carry_copy(m, HE_VERTEX, u.i, v.i);
+        he_attributes_copy(m, HE_VERTEX, u.i, v.i);
         he_note_parent(m, HE_VERTEX, u.i, v.i);
         h = first;
         do {
             he_set_origin(m, h, u);
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         } while (h.i != first.i);
         he_set_vertex_halfedge(m, u, last);
         if (made != NULL) {
@@ -88,8 +89,8 @@ static void commit(he_mesh *m, he_vertex v, he_ids *made)
 }
 
 /* Separates the fans of the vertices in `ties`, and frees the list. */
-static he_status take_apart(he_mesh *m, he_ids *ties, he_need need, he_ids *made, he_status status,
-                            he_error *err)
+static he_status take_apart(he_mesh *m, he_ids *ties, he_reservation need, he_ids *made,
+                            he_status status, he_error *err)
 {
     if (status == HE_OK && made != NULL) {
         status = he_ids_reserve(made, need.vertices, err);
@@ -108,7 +109,7 @@ static he_status take_apart(he_mesh *m, he_ids *ties, he_need need, he_ids *made
 he_status he_vertex_separate(he_mesh *m, const uint32_t *vertices, size_t count, he_ids *made,
                              he_error *err)
 {
-    he_need need = {0};
+    he_reservation need = {0};
     he_ids ties = {0};
     he_status status = he_list_require(m, HE_VERTEX, vertices, count, HE_REPEATED_ELEMENT, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
@@ -119,12 +120,12 @@ he_status he_vertex_separate(he_mesh *m, const uint32_t *vertices, size_t count,
 
 he_status he_separate_bowties(he_mesh *m, he_ids *made, he_error *err)
 {
-    he_need need = {0};
+    he_reservation need = {0};
     he_ids ties = {0};
-    he_status status = he_watch_phase(m->watch, "finding bow-ties", 1, err);
+    he_status status = he_progress_phase(m->progress, "finding bow-ties", 1, err);
     uint32_t issued = he_mesh_issued(m, HE_VERTEX);
     for (uint32_t v = 0; status == HE_OK && v < issued; v++) {
-        status = he_watch_at(m->watch, v, issued, err);
+        status = he_progress_at(m->progress, v, issued, err);
         if (status == HE_OK && he_vertex_is_live(m, (he_vertex){v})) {
             status = plan(m, (he_vertex){v}, &need, &ties, err);
         }

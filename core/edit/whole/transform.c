@@ -27,11 +27,11 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
     }
     he_marks marks;
     bool marked = he_marks_find(m, &marks);
-    he_status status = he_watch_phase(m->watch, "checking", 0.3, err);
+    he_status status = he_progress_phase(m->progress, "checking", 0.3, err);
     size_t places = vertices != NULL ? count : m->c.vertices.issued, moved = 0;
     for (size_t i = 0; i < places && status == HE_OK; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
-        status = he_watch_at(m->watch, i, places, err);
+        status = he_progress_at(m->progress, i, places, err);
         if (!he_vertex_is_live(m, v)) {
             continue;
         }
@@ -45,9 +45,9 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
         moved++;
     }
     he_normals normals = {0};
-    he_need need = {.positions = moved};
+    he_reservation need = {.positions = moved};
     if (status == HE_OK) {
-        status = he_watch_phase(m->watch, "moving", 1, err);
+        status = he_progress_phase(m->progress, "moving", 1, err);
     }
     if (status == HE_OK) {
         status = he_normals_init(&normals, m, matrix, vertices, count, &need.links, err);
@@ -62,7 +62,7 @@ he_status he_transform(he_mesh *m, const double matrix[16], const uint32_t *vert
     /* Nothing below can fail. */
     for (size_t i = 0; i < places; i++) {
         he_vertex v = {vertices != NULL ? vertices[i] : (uint32_t)i};
-        he_watch_note(m->watch, i, places);
+        he_progress_note(m->progress, i, places);
         if (he_vertex_is_live(m, v)) {
             he_set_position(m, v, apply(matrix, he_position(m, v)));
         }

@@ -10,12 +10,12 @@ static he_status room(he_ids *list, size_t extra, he_error *err)
 
 /* Records the diagonals of a face that was triangulated: triangulations of later faces must avoid
  * them. */
-static void note_diagonals(const he_mesh *m, const he_triangulation *t, he_joins *joins)
+static void note_diagonals(const he_mesh *m, const he_triangulation *t, he_edge_lookup *lookup)
 {
-    for (uint32_t k = 0; joins->rank != NULL && k + 3 < t->flat.n; k++) {
+    for (uint32_t k = 0; lookup->rank != NULL && k + 3 < t->flat.n; k++) {
         const uint32_t *corners = t->corners + 3 * (size_t)k;
-        he_joins_note(joins, he_origin(m, (he_halfedge){t->flat.halfedge[corners[0]]}),
-                      he_origin(m, (he_halfedge){t->flat.halfedge[corners[2]]}));
+        he_edge_lookup_add(lookup, he_origin(m, (he_halfedge){t->flat.halfedge[corners[0]]}),
+                           he_origin(m, (he_halfedge){t->flat.halfedge[corners[2]]}));
     }
 }
 
@@ -28,8 +28,8 @@ static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *f
         return status;
     }
     work->steps += plan.of.flat.n;
-    he_need need = {0};
-    he_triangles_need(&plan, true, &need);
+    he_reservation need = {0};
+    he_triangles_reservation(&plan, true, &need);
     status = room(edges, need.edges, err);
     if (status == HE_OK) {
         status = room(faces, need.faces, err);
@@ -38,7 +38,7 @@ static he_status triangulate_one(he_mesh *m, he_face f, he_ids *edges, he_ids *f
         status = room(degenerate, 1, err);
     }
     if (status == HE_OK) {
-        status = he_joins_reserve(&work->own, plan.of.flat.n, err);
+        status = he_edge_lookup_reserve(&work->own, plan.of.flat.n, err);
     }
     if (status == HE_OK) {
         status = he_reserve(m, need, err);
@@ -76,8 +76,8 @@ he_status he_face_triangulate(he_mesh *m, const uint32_t *face_ids, size_t count
     if (status != HE_OK) {
         return status;
     }
-    he_triangulation_work work = {.watch = m->watch, .of = count};
-    status = he_watch_phase(m->watch, "triangulating", 1, err);
+    he_triangulation_work work = {.progress = m->progress, .of = count};
+    status = he_progress_phase(m->progress, "triangulating", 1, err);
     for (size_t i = 0; status == HE_OK && i < count; i++) {
         work.done = i;
         status = triangulate_one(m, (he_face){face_ids[i]}, edges, faces, degenerate, &work, err);
@@ -95,7 +95,7 @@ he_status he_triangulate(he_mesh *m, he_ids *edges, he_ids *faces, he_ids *degen
                          he_error *err)
 {
     he_ids polygons = {0};
-    he_status status = he_watch_phase(m->watch, "triangulating", 1, err);
+    he_status status = he_progress_phase(m->progress, "triangulating", 1, err);
     for (uint32_t f = 0; status == HE_OK && f < m->c.faces.issued; f++) {
         if (!he_face_is_live(m, (he_face){f})) {
             continue;

@@ -156,7 +156,7 @@ static he_status sort_groups(he_glb_groups *g, uint32_t *rank, he_error *err)
 }
 
 /* Sorts the faces by groups, and finds where the triangles of each face begin in
- * he_cuts.corners. */
+ * he_export_triangles.corners. */
 static he_status order_faces(finding *f, const uint32_t *rank, he_error *err)
 {
     const he_mesh *m = f->mesh;
@@ -234,7 +234,7 @@ uint32_t he_glb_material(const he_mesh *m, const he_glb_groups *g, const he_glb_
 
 /* --- the whole --- */
 
-static he_status make(finding *f, he_notes *notes, he_error *err)
+static he_status make(finding *f, he_warnings *warnings, he_error *err)
 {
     static const char *const told[] = {"objects and groups", "materials"};
     he_glb_groups *g = f->groups;
@@ -243,8 +243,8 @@ static he_status make(finding *f, he_notes *notes, he_error *err)
     }
     bool found = find_groups(f);
     for (size_t tries = 0; !found && tries < 2; tries++) {
-        he_notes_add(
-            notes,
+        he_warnings_add(
+            warnings,
             &(he_occurrence){.code = "not_apart",
                              .text = "too many to be separate parts for other programs, so merged:",
                              .subject = told[tries],
@@ -267,7 +267,7 @@ static he_status make(finding *f, he_notes *notes, he_error *err)
     return status;
 }
 
-he_status he_glb_groups_make(const he_mesh *mesh, he_notes *notes, he_glb_groups *out,
+he_status he_glb_groups_make(const he_mesh *mesh, he_warnings *warnings, he_glb_groups *out,
                              he_error *err)
 {
     he_glb_groups made = {.list = he_mem_array(NULL, HE_GLB_PRIMITIVES, sizeof *made.list)};
@@ -276,7 +276,7 @@ he_status he_glb_groups_make(const he_mesh *mesh, he_notes *notes, he_glb_groups
     f.slots = he_mem_array(NULL, SLOTS, sizeof *f.slots);
     he_status status = made.list == NULL || f.of == NULL || f.slots == NULL
                            ? he_fail_plain(err, HE_NO_MEMORY, "no memory for groups of faces")
-                           : make(&f, notes, err);
+                           : make(&f, warnings, err);
     he_mem_free(f.of);
     he_mem_free(f.slots);
     if (status != HE_OK) {

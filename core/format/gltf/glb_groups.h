@@ -7,8 +7,8 @@
 #ifndef HE_FORMAT_GLTF_GLB_GROUPS_H
 #define HE_FORMAT_GLTF_GLB_GROUPS_H
 
-#include "format/io/cuts.h"
-#include "format/text/notes.h"
+#include "format/io/export_triangles.h"
+#include "format/text/warnings.h"
 #include "mesh/layout.h"
 
 /* The most primitives of a file. If there would be more, objects and groups are not separated; if
@@ -29,15 +29,16 @@ typedef struct he_glb_groups {
     const he_column *names[HE_GLB_NAMES]; /* attributes by which faces are separated, or NULL */
     he_glb_group *list;
     size_t count;
-    uint32_t *order;   /* live faces in the order of the file, NULL if that is the order of ids */
-    size_t *cut;       /* index in he_cuts.corners at which the triangles of each face begin */
+    uint32_t *order; /* live faces in the order of the file, NULL if that is the order of ids */
+    size_t
+        *cut; /* index in he_export_triangles.corners at which the triangles of each face begin */
     he_ids only_names; /* labels of materials that have no row in the table */
 } he_glb_groups;
 
 /* Groups the faces of a mesh by object, group and material.
  * Returns HE_NO_MEMORY if memory is out. */
-HE_NODISCARD he_status he_glb_groups_make(const he_mesh *mesh, he_notes *notes, he_glb_groups *out,
-                                          he_error *err);
+HE_NODISCARD he_status he_glb_groups_make(const he_mesh *mesh, he_warnings *warnings,
+                                          he_glb_groups *out, he_error *err);
 void he_glb_groups_clear(he_glb_groups *groups);
 /* Returns the name that the faces of a group have in attribute number `which`; "" if they have
  * none. */

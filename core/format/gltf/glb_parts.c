@@ -20,7 +20,7 @@ void he_glb_parts_clear(he_glb_parts *parts)
 {
     he_mem_free(parts->numbers);
     he_splits_clear(&parts->splits);
-    he_cuts_clear(&parts->cuts);
+    he_export_triangles_clear(&parts->cuts);
     he_glb_groups_clear(&parts->groups);
     he_mem_free(parts->parts);
     he_mem_free(parts->streams);
@@ -236,7 +236,7 @@ static bool is_told_apart(const he_glb_parts *g, const he_column *column)
     return i < HE_GLB_NAMES;
 }
 
-static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
+static void add_words(he_glb_parts *g, const he_column *column, he_warnings *warnings)
 {
     uint32_t words = column->components * (column->type == HE_DOUBLE ? 2 : 1);
     char subject[HE_COLUMN_NAME + 16];
@@ -251,16 +251,16 @@ static void add_words(he_glb_parts *g, const he_column *column, he_notes *notes)
     if ((column->domain == HE_HALFEDGE && is_shown(g, column)) || is_told_apart(g, column)) {
         return; /* other programs see the attribute too, so there is no warning */
     }
-    he_notes_add(notes,
-                 &(he_occurrence){.code = "in_extras",
-                                  .text = "stored so that only hedge reads it back: attribute",
-                                  .subject = subject,
-                                  .length = (size_t)length});
+    he_warnings_add(warnings,
+                    &(he_occurrence){.code = "in_extras",
+                                     .text = "stored so that only hedge reads it back: attribute",
+                                     .subject = subject,
+                                     .length = (size_t)length});
 }
 
 /* Adds the attributes that all programs read. Those that only hedge reads follow the triangles, see
  * add_rest. */
-static void add_values(he_glb_parts *g, he_notes *notes)
+static void add_values(he_glb_parts *g, he_warnings *warnings)
 {
     const he_mesh *m = g->mesh;
     unsigned counts[HE_GLTF_SEMANTICS];
@@ -271,7 +271,7 @@ static void add_values(he_glb_parts *g, he_notes *notes)
         const he_column *column = he_mesh_column(m, i);
         he_glb_part part = {.content = HE_GLB_VALUES, .column = column};
         if (column == NULL || (column->domain != HE_VERTEX && column->domain != HE_HALFEDGE) ||
-            he_export_find(m, column->domain, column->name, 1, HE_COLUMN_COMPONENTS, notes) ==
+            he_export_find(m, column->domain, column->name, 1, HE_COLUMN_COMPONENTS, warnings) ==
                 NULL ||
             !find_semantic(m, counts, column, &part)) {
             continue;
@@ -285,7 +285,7 @@ static void add_values(he_glb_parts *g, he_notes *notes)
 }
 
 /* Splits vertices whose corners have different values of the attributes that all programs read. */
-static he_status split(he_glb_parts *g, he_watch *watch, he_error *err)
+static he_status split(he_glb_parts *g, he_progress *progress, he_error *err)
 {
     const he_column *columns[HE_GLTF_SEMANTICS * MOST_NUMBERS];
     size_t count = 0;
@@ -294,17 +294,18 @@ static he_status split(he_glb_parts *g, he_watch *watch, he_error *err)
             columns[count++] = g->parts[i].column;
         }
     }
-    return count == 0 ? HE_OK
-                      : he_splits_make(g->mesh, g->numbers, columns, count, watch, &g->splits, err);
+    return count == 0
+               ? HE_OK
+               : he_splits_make(g->mesh, g->numbers, columns, count, progress, &g->splits, err);
 }
 
-static void add_rest(he_glb_parts *g, const he_column **used, he_notes *notes)
+static void add_rest(he_glb_parts *g, const he_column **used, he_warnings *warnings)
 {
     const he_mesh *m = g->mesh;
     for (size_t i = 0; i < he_mesh_columns(m); i++) {
         const he_column *column = he_mesh_column(m, i);
         if (column != NULL && used[i] == NULL && rows_of(m, column->domain) > 0) {
-            add_words(g, column, notes);
+            add_words(g, column, warnings);
             used[i] = column;
         }
     }
@@ -359,7 +360,7 @@ static void add_rest_of_geometry(he_glb_parts *g)
         add(g, (he_glb_part){.content = HE_GLB_TRIANGLES,
                              .type = few ? HE_GLTF_UINT16 : HE_GLTF_UINT32,
                              .components = 1,
-                             .count = 3 * he_cuts_count(&g->cuts),
+                             .count = 3 * he_export_triangles_count(&g->cuts),
                              .stride = few ? 2 : 4});
     }
     he_glb_part words = {.type = HE_GLTF_UINT32, .components = 1, .stride = 4};
@@ -383,20 +384,20 @@ static void add_rest_of_geometry(he_glb_parts *g)
     }
 }
 
-static he_status add_parts(he_glb_parts *g, const he_column **used, he_watch *watch,
-                           he_notes *notes, he_error *err)
+static he_status add_parts(he_glb_parts *g, const he_column **used, he_progress *progress,
+                           he_warnings *warnings, he_error *err)
 {
-    add_values(g, notes);
-    he_status status = split(g, watch, err);
+    add_values(g, warnings);
+    he_status status = split(g, progress, err);
     if (status == HE_OK) {
         place_values(g, used);
         add_rest_of_geometry(g);
-        add_rest(g, used, notes);
+        add_rest(g, used, warnings);
     }
     return status;
 }
 
-static he_status note_positions(const he_mesh *m, he_notes *notes, he_error *err)
+static he_status note_positions(const he_mesh *m, he_warnings *warnings, he_error *err)
 {
     he_narrowed narrowed = {0};
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
@@ -404,32 +405,32 @@ static he_status note_positions(const he_mesh *m, he_notes *notes, he_error *err
             he_narrowed_add(&narrowed, v, m->c.position[v]);
         }
     }
-    return he_narrowed_finish(&narrowed, notes, err);
+    return he_narrowed_finish(&narrowed, warnings, err);
 }
 
-static void note_geometry(const he_glb_parts *g, he_notes *notes)
+static void note_geometry(const he_glb_parts *g, he_warnings *warnings)
 {
-    he_notes_add_count(notes, "triangulated",
-                       "cut into triangles for other programs, and kept for hedge: a face",
-                       g->cuts.polygons);
-    he_notes_add_count(
-        notes, "split_vertices",
+    he_warnings_add_count(warnings, "triangulated",
+                          "cut into triangles for other programs, and kept for hedge: a face",
+                          g->cuts.polygons);
+    he_warnings_add_count(
+        warnings, "split_vertices",
         "made for other programs where corners differ, and joined by hedge: a vertex",
         g->splits.copies.count);
-    he_notes_add_count(notes, "turned_triangles",
-                       "cut into triangles some of which have no area or are turned over: a face",
-                       g->cuts.turned);
+    he_warnings_add_count(
+        warnings, "turned_triangles",
+        "cut into triangles some of which have no area or are turned over: a face", g->cuts.turned);
 }
 
-static he_status make(he_glb_parts *g, he_watch *watch, he_notes *notes, he_error *err)
+static he_status make(he_glb_parts *g, he_progress *progress, he_warnings *warnings, he_error *err)
 {
     size_t columns = he_mesh_columns(g->mesh);
-    he_status status = note_positions(g->mesh, notes, err);
+    he_status status = note_positions(g->mesh, warnings, err);
     if (status == HE_OK) {
-        status = he_cuts_make(g->mesh, watch, &g->cuts, err);
+        status = he_export_triangles_make(g->mesh, progress, &g->cuts, err);
     }
     if (status == HE_OK) {
-        status = he_glb_groups_make(g->mesh, notes, &g->groups, err);
+        status = he_glb_groups_make(g->mesh, warnings, &g->groups, err);
     }
     if (status == HE_OK) {
         status = he_export_numbers(g->mesh, &g->numbers, err);
@@ -445,19 +446,19 @@ static he_status make(he_glb_parts *g, he_watch *watch, he_notes *notes, he_erro
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for %zu attributes", columns);
     }
     if (g->mesh->c.vertices.live > 0) {
-        status = add_parts(g, used, watch, notes, err);
+        status = add_parts(g, used, progress, warnings, err);
     }
-    note_geometry(g, notes);
-    he_export_note_lost(g->mesh, used, columns, notes);
+    note_geometry(g, warnings);
+    he_export_note_lost(g->mesh, used, columns, warnings);
     he_mem_free(used);
     return status;
 }
 
-he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch, he_notes *notes,
-                            he_glb_parts *out, he_error *err)
+he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_progress *progress,
+                            he_warnings *warnings, he_glb_parts *out, he_error *err)
 {
     he_glb_parts made = {.mesh = mesh, .packs = packs};
-    he_status status = make(&made, watch, notes, err);
+    he_status status = make(&made, progress, warnings, err);
     if (status != HE_OK) {
         he_glb_parts_clear(&made);
         return status;

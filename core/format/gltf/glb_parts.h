@@ -10,7 +10,7 @@
 #include "format/gltf/gltf_attribute.h"
 #include "format/gltf/meshopt.h"
 #include "format/gltf/glb_groups.h"
-#include "format/io/cuts.h"
+#include "format/io/export_triangles.h"
 #include "format/io/splits.h"
 
 typedef enum he_glb_content {
@@ -44,7 +44,7 @@ typedef struct he_glb_parts {
     const he_mesh *mesh;
     uint32_t *numbers; /* number of each vertex in the file, NULL if it is the id */
     he_splits splits;  /* copies of vertices whose corners have different values */
-    he_cuts cuts;
+    he_export_triangles cuts;
     he_glb_groups groups; /* groups of faces */
     he_glb_part *parts;
     size_t count, capacity;
@@ -57,11 +57,11 @@ typedef struct he_glb_parts {
 } he_glb_parts;
 
 /* Computes the parts of the file, except the JSON and, if `packs` is set, the compressed streams.
- * `watch` may be NULL.
+ * `progress` may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
-HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_watch *watch,
-                                         he_notes *notes, he_glb_parts *out, he_error *err);
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_glb_parts_make(const he_mesh *mesh, bool packs, he_progress *progress,
+                                         he_warnings *warnings, he_glb_parts *out, he_error *err);
 void he_glb_parts_clear(he_glb_parts *parts);
 /* Returns the bytes of a part without its padding to a multiple of 4. */
 uint64_t he_glb_part_bytes(const he_glb_part *part);

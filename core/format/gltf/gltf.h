@@ -1,5 +1,5 @@
 /* gltf.h - glTF 2.0, as GLB (the binary container) and as JSON: the functions of both rows in
- * format.c. What is "noted" is reported as a warning (notes.h).
+ * format.c. What is "noted" is reported as a warning (warnings.h).
  *
  *     "glTF" 2 length            twelve bytes
  *     length "JSON" ...          a chunk: the asset

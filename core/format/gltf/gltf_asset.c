@@ -5,15 +5,16 @@
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place)
 {
-    char name[HE_NOTE_SUBJECT];
+    char name[HE_WARNING_SUBJECT];
     size_t length =
         subject == HE_NONE ? 0 : he_json_string(&asset->json, subject, name, sizeof name);
-    he_notes_add(&asset->into->notes, &(he_occurrence){.code = code,
-                                                       .text = text,
-                                                       .subject = name,
-                                                       .length = length,
-                                                       .place = HE_PLACE_BYTE,
-                                                       .at = he_json_place(&asset->json, place)});
+    he_warnings_add(&asset->into->warnings,
+                    &(he_occurrence){.code = code,
+                                     .text = text,
+                                     .subject = name,
+                                     .length = length,
+                                     .place = HE_PLACE_BYTE,
+                                     .at = he_json_place(&asset->json, place)});
 }
 
 /* Reports progress. How much work there is in all is not known, so the fraction only approaches 1:
@@ -21,8 +22,8 @@ void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t s
 he_status he_gltf_tell(he_gltf *asset, he_error *err)
 {
     asset->told = asset->steps;
-    return he_watch_step(asset->into->soup.limits.watch, asset->steps,
-                         asset->steps + asset->size / 16, err);
+    return he_progress_step(asset->into->soup.limits.progress, asset->steps,
+                            asset->steps + asset->size / 16, err);
 }
 
 he_status he_gltf_spend(he_gltf *asset, uint32_t value, uint64_t bytes, he_error *err)
@@ -155,7 +156,7 @@ static he_status check_extensions(he_gltf *asset, he_error *err)
     const he_json *json = &asset->json;
     uint32_t list = he_json_find(json, 0, "extensionsRequired");
     for (uint32_t i = he_json_first(json, list); i != HE_NONE; i = he_json_after(json, list, i)) {
-        char name[HE_NOTE_SUBJECT], quoted[HE_NOTE_SUBJECT];
+        char name[HE_WARNING_SUBJECT], quoted[HE_WARNING_SUBJECT];
         size_t length = he_json_string(json, i, name, sizeof name);
         bool quantized = he_json_is(json, i, "KHR_mesh_quantization");
         bool packed = he_json_is(json, i, HE_GLTF_MESHOPT);
@@ -226,13 +227,13 @@ he_status he_gltf_open(he_gltf *asset, he_import *into, const he_gltf_text *text
         .into = into, .size = (uint64_t)text->length + bin->length + he_beside_bytes(into->beside)};
     asset->room = HE_GLTF_ROOM + HE_GLTF_FACTOR * asset->size;
     asset->unpack_room = HE_GLTF_ROOM + HE_GLTF_UNPACKED * asset->size;
-    he_watch *watch = into->soup.limits.watch;
-    he_status status = he_watch_phase(watch, "parsing", 0.4, err);
+    he_progress *progress = into->soup.limits.progress;
+    he_status status = he_progress_phase(progress, "parsing", 0.4, err);
     if (status == HE_OK) {
-        status = he_json_parse(&asset->json, text->bytes, text->length, text->place, watch, err);
+        status = he_json_parse(&asset->json, text->bytes, text->length, text->place, progress, err);
     }
     if (status == HE_OK) {
-        status = he_watch_phase(watch, "reading", 1, err);
+        status = he_progress_phase(progress, "reading", 1, err);
     }
     if (status == HE_OK) {
         status = check_version(asset, err);

@@ -64,7 +64,7 @@ typedef struct he_gltf_text {
  * Returns HE_SYNTAX, HE_BAD_VALUE or HE_UNSUPPORTED if the asset is not valid.
  * Returns HE_LIMIT if the asset is too large.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_open(he_gltf *asset, he_import *into, const he_gltf_text *text,
                                     const he_gltf_bin *bin, he_error *err);
 void he_gltf_close(he_gltf *asset);
@@ -78,7 +78,7 @@ HE_NODISCARD he_status he_gltf_open_buffers(he_gltf *asset, const he_gltf_bin *b
  * Returns HE_BAD_INDEX, HE_BAD_VALUE or HE_UNSUPPORTED if the view is not valid.
  * Returns HE_LIMIT if the asset would decompress to too many bytes.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_unpack(he_gltf *asset, uint32_t view, uint32_t extension,
                                       const he_gltf_buffer **out, he_error *err);
 /* Finds the bytes to which `object` refers by its members buffer, byteOffset and byteLength.
@@ -92,15 +92,15 @@ HE_NODISCARD he_status he_gltf_list(he_gltf *asset, const char *name, he_ids *li
 void he_gltf_note(he_gltf *asset, const char *code, const char *text, uint32_t subject,
                   uint32_t place);
 
-/* Reports progress to the watch.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+/* Reports progress.
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_tell(he_gltf *asset, he_error *err);
-/* Must be called for each element that is visited; reports progress to the watch once in
- * HE_WATCH_STRIDE calls.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+/* Must be called for each element that is visited; reports progress once in
+ * HE_PROGRESS_STRIDE calls.
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD static inline he_status he_gltf_poll(he_gltf *asset, he_error *err)
 {
-    return ++asset->steps - asset->told < HE_WATCH_STRIDE ? HE_OK : he_gltf_tell(asset, err);
+    return ++asset->steps - asset->told < HE_PROGRESS_STRIDE ? HE_OK : he_gltf_tell(asset, err);
 }
 /* Charges `bytes` of memory that reading the asset takes against the asset's limit.
  * Returns HE_LIMIT, naming `value`, if the asset may not take so many. */

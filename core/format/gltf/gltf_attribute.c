@@ -130,13 +130,13 @@ static void put_row(he_gltf_surface *s, const he_column *column, const double *v
     for (uint32_t i = 0; i < column->components; i++, at += he_type_bytes(column->type)) {
         double value = values[i];
         if (!(fabs(value) <= (double)FLT_MAX) && fraction) {
-            he_notes_add(&s->asset->into->notes,
-                         &(he_occurrence){.code = "not_finite",
-                                          .text = "set to 0: values that are not finite of",
-                                          .subject = column->name,
-                                          .length = strlen(column->name),
-                                          .place = HE_PLACE_BYTE,
-                                          .at = place});
+            he_warnings_add(&s->asset->into->warnings,
+                            &(he_occurrence){.code = "not_finite",
+                                             .text = "set to 0: values that are not finite of",
+                                             .subject = column->name,
+                                             .length = strlen(column->name),
+                                             .place = HE_PLACE_BYTE,
+                                             .at = place});
             value = 0;
         }
         if (column->type == HE_FLOAT) {
@@ -184,13 +184,13 @@ static he_status put_rows(he_gltf_surface *s, const he_gltf_primitive *p, const 
 static void note_ignored(he_gltf_surface *s, const char *code, const char *text,
                          const char *semantic, uint32_t value)
 {
-    he_notes_add(&s->asset->into->notes,
-                 &(he_occurrence){.code = code,
-                                  .text = text,
-                                  .subject = semantic,
-                                  .length = strlen(semantic),
-                                  .place = HE_PLACE_BYTE,
-                                  .at = he_json_place(&s->asset->json, value)});
+    he_warnings_add(&s->asset->into->warnings,
+                    &(he_occurrence){.code = code,
+                                     .text = text,
+                                     .subject = semantic,
+                                     .length = strlen(semantic),
+                                     .place = HE_PLACE_BYTE,
+                                     .at = he_json_place(&s->asset->json, value)});
 }
 
 static bool is_direction(const he_gltf_semantic *known)
@@ -329,14 +329,14 @@ void he_gltf_note_attributes(he_gltf_surface *surface)
         if (given == 0 || given == all || column->domain != HE_VERTEX) {
             continue;
         }
-        size_t before = into->notes.count;
-        he_notes_add(&into->notes,
-                     &(he_occurrence){.code = "vertices_without",
-                                      .text = "set to 0 at vertices without a value: attribute",
-                                      .subject = column->name,
-                                      .length = strlen(column->name)});
-        if (into->notes.count > before) {
-            into->notes.items[before].count = all - given;
+        size_t before = into->warnings.count;
+        he_warnings_add(&into->warnings,
+                        &(he_occurrence){.code = "vertices_without",
+                                         .text = "set to 0 at vertices without a value: attribute",
+                                         .subject = column->name,
+                                         .length = strlen(column->name)});
+        if (into->warnings.count > before) {
+            into->warnings.items[before].count = all - given;
         }
     }
 }

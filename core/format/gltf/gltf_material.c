@@ -6,12 +6,13 @@
 static void note(he_gltf *asset, uint32_t value, const char *code, const char *text,
                  const char *name)
 {
-    he_notes_add(&asset->into->notes, &(he_occurrence){.code = code,
-                                                       .text = text,
-                                                       .subject = name,
-                                                       .length = strlen(name),
-                                                       .place = HE_PLACE_BYTE,
-                                                       .at = he_json_place(&asset->json, value)});
+    he_warnings_add(&asset->into->warnings,
+                    &(he_occurrence){.code = code,
+                                     .text = text,
+                                     .subject = name,
+                                     .length = strlen(name),
+                                     .place = HE_PLACE_BYTE,
+                                     .at = he_json_place(&asset->json, value)});
 }
 
 /* --- names --- */

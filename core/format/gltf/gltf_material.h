@@ -17,7 +17,7 @@ enum { HE_GLTF_NAME = 1024 };
  * material has that name. Materials beyond HE_MATERIALS get names but no rows, with a warning.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_read_materials(he_gltf *asset, he_labels **names, he_error *err);
 
 #endif

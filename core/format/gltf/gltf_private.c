@@ -16,8 +16,8 @@ bool he_gltf_has_private(const he_gltf *asset, uint32_t primitive)
 
 static void note_stale(he_gltf_surface *s, uint32_t value)
 {
-    he_notes_add(
-        &s->asset->into->notes,
+    he_warnings_add(
+        &s->asset->into->warnings,
         &(he_occurrence){
             .code = "stale_extras",
             .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
@@ -63,7 +63,7 @@ typedef struct polygons {
 
 /* Sets *fits to true if the triangles of each polygon, which are its degree - 2, have their corners
  * among those of the polygon, and no polygon has a vertex twice. `marks` has a word for each
- * vertex, 0 at first. Fails only if the watch cancelled the work. */
+ * vertex, 0 at first. Fails only if the work was cancelled. */
 static he_status check_polygons(he_gltf *asset, const he_gltf_primitive *p, const polygons *g,
                                 uint32_t *marks, bool *fits, he_error *err)
 {
@@ -115,7 +115,7 @@ static he_status add_polygons(he_gltf_surface *s, const he_gltf_primitive *p, co
         triangle += degree - 2;
         status = he_gltf_poll(s->asset, err);
         if (status == HE_OK) {
-            status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+            status = he_source_map_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
         }
         if (status == HE_OK) {
             status = he_soup_begin_face(&into->soup, err);
@@ -293,7 +293,7 @@ static bool put_value(he_gltf_walk *walk, he_type type, unsigned char *at)
 }
 
 /* Sets *fits to true if all words are values of the type and, in a column with labels, indices of
- * labels. Fails only if the watch cancelled the work. */
+ * labels. Fails only if the work was cancelled. */
 static he_status check_values(he_gltf *asset, const description *d, size_t labels, bool *fits,
                               he_error *err)
 {
@@ -451,8 +451,8 @@ static const unsigned char *position_at(const he_gltf_primitive *p, uint64_t i)
     return p->positions.bytes + i * p->positions.stride;
 }
 
-/* Sets *fits to false if a copy is not at the position of its vertex. Fails only if the watch
- * cancelled the work. */
+/* Sets *fits to false if a copy is not at the position of its vertex. Fails only if the work was
+ * cancelled. */
 static he_status check_copies(he_gltf *asset, const he_gltf_primitive *p,
                               const he_gltf_accessor *copies, bool *fits, he_error *err)
 {

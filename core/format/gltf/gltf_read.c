@@ -138,8 +138,8 @@ static he_status take_chunk(glb *g, he_error *err)
                           (unsigned long long)g->left, (unsigned long long)(g->length - g->offset));
     }
     if (g->left % 4 != 0) {
-        he_notes_add(
-            &g->into->notes,
+        he_warnings_add(
+            &g->into->warnings,
             &(he_occurrence){.code = "unaligned_chunk",
                              .text = "read although its length is not a multiple of 4: a chunk",
                              .place = HE_PLACE_BYTE,
@@ -160,10 +160,11 @@ static he_status take_chunk(glb *g, he_error *err)
     if (g->chunk != NULL) {
         g->chunk->place = g->offset;
     } else {
-        he_notes_add(&g->into->notes, &(he_occurrence){.code = "ignored_chunk",
-                                                       .text = "ignored: a chunk of another type",
-                                                       .place = HE_PLACE_BYTE,
-                                                       .at = at});
+        he_warnings_add(&g->into->warnings,
+                        &(he_occurrence){.code = "ignored_chunk",
+                                         .text = "ignored: a chunk of another type",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = at});
     }
     return HE_OK;
 }

@@ -83,8 +83,8 @@ static he_status make_unit(he_gltf *asset, uint32_t node, double q[4], he_error 
     }
     double length = sqrt(sum) * largest;
     if (fabs(length - 1) > UNIT) {
-        he_notes_add(
-            &asset->into->notes,
+        he_warnings_add(
+            &asset->into->warnings,
             &(he_occurrence){.code = "rotation_made_unit",
                              .text = "normalized to length 1: the quaternion of a rotation",
                              .place = HE_PLACE_BYTE,
@@ -138,8 +138,8 @@ static he_status get_frame(he_gltf *asset, uint32_t node, he_gltf_frame *out, bo
         return HE_OK;
     }
     if (composed) {
-        he_notes_add(
-            &asset->into->notes,
+        he_warnings_add(
+            &asset->into->warnings,
             &(he_occurrence){.code = "matrix_and_more",
                              .text = "ignored: a translation, rotation or scale beside a matrix",
                              .place = HE_PLACE_BYTE,
@@ -286,10 +286,11 @@ static he_status find_scene(he_gltf *asset, uint32_t *out, he_error *err)
         *out = scenes.ids[0];
     }
     if (status == HE_OK && scenes.count > 1) {
-        he_notes_add(&asset->into->notes, &(he_occurrence){.code = "other_scenes",
-                                                           .text = "ignored: all scenes but one",
-                                                           .place = HE_PLACE_BYTE,
-                                                           .at = he_json_place(json, list)});
+        he_warnings_add(&asset->into->warnings,
+                        &(he_occurrence){.code = "other_scenes",
+                                         .text = "ignored: all scenes but one",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = he_json_place(json, list)});
     }
     he_ids_clear(&scenes);
     return status;
@@ -390,14 +391,15 @@ static he_status add_all_meshes(scene *s, he_error *err)
 
 static void note_meshes(const scene *s)
 {
-    he_notes *notes = &s->asset->into->notes;
+    he_warnings *warnings = &s->asset->into->warnings;
     uint64_t unused = 0;
     for (size_t i = 0; i < s->asset->meshes.count; i++) {
         unused += he_bits_get(s->used, i) == 0;
     }
-    he_notes_add_count(notes, "unused_meshes", "left out, being in no node of the scene: a mesh",
-                       unused);
-    he_notes_add_count(notes, "instances", "made once more for another node: a mesh", s->instances);
+    he_warnings_add_count(warnings, "unused_meshes",
+                          "left out, being in no node of the scene: a mesh", unused);
+    he_warnings_add_count(warnings, "instances", "made once more for another node: a mesh",
+                          s->instances);
 }
 
 he_status he_gltf_read_scene(he_gltf *asset, he_error *err)

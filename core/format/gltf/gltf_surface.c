@@ -11,18 +11,19 @@ enum { POINTS = 0, TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
 void he_gltf_surface_clear(he_gltf_surface *surface)
 {
-    he_spans_clear(&surface->object);
-    he_spans_clear(&surface->material);
+    he_face_groups_clear(&surface->object);
+    he_face_groups_clear(&surface->material);
     he_ids_clear(&surface->own_objects);
     he_ids_clear(&surface->own_materials);
 }
 
 static void note(he_gltf *asset, uint32_t value, const char *code, const char *text)
 {
-    he_notes_add(&asset->into->notes, &(he_occurrence){.code = code,
-                                                       .text = text,
-                                                       .place = HE_PLACE_BYTE,
-                                                       .at = he_json_place(&asset->json, value)});
+    he_warnings_add(&asset->into->warnings,
+                    &(he_occurrence){.code = code,
+                                     .text = text,
+                                     .place = HE_PLACE_BYTE,
+                                     .at = he_json_place(&asset->json, value)});
 }
 
 /* --- reading a primitive --- */
@@ -118,7 +119,8 @@ static he_status located(he_status status, uint64_t at, he_error *err)
 /* --- vertices and faces --- */
 
 /* Charges the memory that a primitive takes to the asset's limit: that of the soup, and that of
- * he_places, in which an element takes memory if its distance from the one before is unusual. */
+ * he_source_map, in which an element takes memory if its distance from the one before is
+ * unusual. */
 static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error *err)
 {
     he_import *into = s->asset->into;
@@ -127,12 +129,12 @@ static he_status spend(he_gltf_surface *s, const he_gltf_primitive *p, he_error 
     uint32_t face_step = step_of(s->asset, corners, p->value, p->mode == TRIANGLES ? 3 : 1);
     if (!s->begun) {
         s->begun = true;
-        he_places_init(&into->vertices, HE_PLACE_BYTE, vertex_step);
-        he_places_init(&into->faces, HE_PLACE_BYTE, face_step);
+        he_source_map_init(&into->vertices, HE_PLACE_BYTE, vertex_step);
+        he_source_map_init(&into->faces, HE_PLACE_BYTE, face_step);
     }
     uint64_t vertex = sizeof(he_vec3), face = 4 * sizeof(uint32_t);
-    vertex += into->vertices.step == vertex_step ? 0 : sizeof(he_place_run);
-    face += into->faces.step == face_step ? 0 : sizeof(he_place_run);
+    vertex += into->vertices.step == vertex_step ? 0 : sizeof(he_source_run);
+    face += into->faces.step == face_step ? 0 : sizeof(he_source_run);
     return he_gltf_spend(s->asset, p->value, p->vertices * vertex + p->faces * face, err);
 }
 
@@ -164,7 +166,8 @@ static he_status add_vertices(he_gltf_surface *s, const he_gltf_primitive *p, he
         }
         status = he_gltf_poll(s->asset, err);
         if (status == HE_OK) {
-            status = he_places_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
+            status =
+                he_source_map_add(&into->vertices, (uint32_t)into->soup.vertex_count, place, err);
         }
         if (status == HE_OK) {
             status = located(he_soup_add_vertex(&into->soup, position, err), place, err);
@@ -178,7 +181,7 @@ static he_status add_face(he_gltf_surface *s, const he_gltf_primitive *p, const 
 {
     he_import *into = s->asset->into;
     uint32_t turned[3] = {corners[0], corners[p->mirror ? 2 : 1], corners[p->mirror ? 1 : 2]};
-    he_status status = he_places_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
+    he_status status = he_source_map_add(&into->faces, (uint32_t)into->soup.face_count, place, err);
     return status == HE_OK ? located(he_soup_add_face(&into->soup, turned, 3, err), place, err)
                            : status;
 }
@@ -264,7 +267,7 @@ static he_status set_material(he_gltf_surface *s, const he_gltf_primitive *p, he
         name = status == HE_OK ? he_labels_get(s->names, index) : "";
     }
     return status == HE_OK
-               ? he_spans_set_label(&s->material, p->first_face, name, strlen(name), err)
+               ? he_face_groups_set_label(&s->material, p->first_face, name, strlen(name), err)
                : status;
 }
 
@@ -273,7 +276,7 @@ static he_status set_object(he_gltf_surface *s, const he_gltf_primitive *p, uint
 {
     char name[HE_GLTF_NAME];
     size_t length = he_json_string(&s->asset->json, value, name, sizeof name);
-    return he_spans_set_label(&s->object, p->first_face, name, length, err);
+    return he_face_groups_set_label(&s->object, p->first_face, name, length, err);
 }
 
 /* --- the whole --- */
@@ -389,25 +392,25 @@ he_status he_gltf_add_mesh(he_gltf_surface *surface, uint32_t mesh, uint32_t nam
 
 /* Makes the face attribute `name`, which is "object" or "material". Names from extras, which some
  * faces have, take precedence over those from nodes and materials. */
-static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const he_ids *own,
+static he_status finish_names(he_gltf_surface *surface, he_face_groups *groups, const he_ids *own,
                               const char *name, he_error *err)
 {
     he_import *into = surface->asset->into;
     he_soup *soup = &into->soup;
     he_column *column = he_gltf_find_column(soup, HE_FACE, name);
     if (column == NULL) {
-        return he_spans_finish(spans, soup, name, err);
+        return he_face_groups_finish(groups, soup, name, err);
     }
     if (column->labels != NULL) {
-        return he_spans_merge(spans, soup->face_count, column, own, err);
+        return he_face_groups_merge(groups, soup->face_count, column, own, err);
     }
-    if (spans->changes.count > 0) {
-        he_notes_add(&into->notes,
-                     &(he_occurrence){.code = "attribute_types",
-                                      .text = "ignored, because an earlier part of the "
-                                              "file has it with another type: attribute",
-                                      .subject = name,
-                                      .length = strlen(name)});
+    if (groups->changes.count > 0) {
+        he_warnings_add(&into->warnings,
+                        &(he_occurrence){.code = "attribute_types",
+                                         .text = "ignored, because an earlier part of the "
+                                                 "file has it with another type: attribute",
+                                         .subject = name,
+                                         .length = strlen(name)});
     }
     return HE_OK;
 }
@@ -415,8 +418,8 @@ static he_status finish_names(he_gltf_surface *surface, he_spans *spans, const h
 he_status he_gltf_surface_finish(he_gltf_surface *surface, he_error *err)
 {
     he_import *into = surface->asset->into;
-    he_notes_add_count(&into->notes, "mirrored", "turned over, since its node mirrors it: a face",
-                       surface->mirrored);
+    he_warnings_add_count(&into->warnings, "mirrored",
+                          "turned over, since its node mirrors it: a face", surface->mirrored);
     he_gltf_note_attributes(surface);
     he_status status =
         finish_names(surface, &surface->object, &surface->own_objects, "object", err);

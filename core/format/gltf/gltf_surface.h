@@ -3,7 +3,7 @@
 #define HE_FORMAT_GLTF_GLTF_SURFACE_H
 
 #include "format/gltf/gltf_material.h"
-#include "format/io/spans.h"
+#include "format/io/face_groups.h"
 
 enum { HE_GLTF_ATTRIBUTES = 256 };
 
@@ -20,12 +20,12 @@ extern const he_gltf_frame he_gltf_no_frame; /* the identity, bit by bit */
 typedef struct he_gltf_surface {
     he_gltf *asset;
     he_labels *names; /* names of the asset's materials, by their index */
-    he_spans object, material;
+    he_face_groups object, material;
     he_ids own_objects,
         own_materials; /* pairs: ranges of faces, from and to, whose names came from extras */
     uint64_t given[HE_GLTF_ATTRIBUTES]; /* number of rows with a value in each column of the soup */
     uint64_t mirrored;                  /* number of faces that were reversed */
-    bool begun;                         /* the import's he_places are initialised */
+    bool begun;                         /* the import's he_source_map are initialised */
 } he_gltf_surface;
 
 void he_gltf_surface_clear(he_gltf_surface *surface);

@@ -13,8 +13,8 @@ static uint32_t find_private(const he_gltf *asset)
 
 static void note_stale(he_gltf *asset, uint32_t value)
 {
-    he_notes_add(
-        &asset->into->notes,
+    he_warnings_add(
+        &asset->into->warnings,
         &(he_occurrence){
             .code = "stale_extras",
             .text = "ignored, because they do not fit the geometry: hedge's own data in extras",
@@ -223,12 +223,13 @@ static he_status read_order(he_gltf *asset, const he_gltf_accessor *a, uint32_t 
 
 /* Sorts the positions of faces in the input into the order of the faces: face i becomes face
  * order[i]. */
-static he_status order_places(he_places *places, const uint32_t *order, size_t count, he_error *err)
+static he_status order_source_map(he_source_map *map, const uint32_t *order, size_t count,
+                                  he_error *err)
 {
-    he_places made;
+    he_source_map made;
     he_status status = HE_OK;
     uint32_t *from = he_mem_array(NULL, count, sizeof *from);
-    he_places_init(&made, places->unit, places->step);
+    he_source_map_init(&made, map->unit, map->step);
     if (from == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to order faces");
     }
@@ -236,15 +237,15 @@ static he_status order_places(he_places *places, const uint32_t *order, size_t c
         from[order[i]] = i;
     }
     for (uint32_t i = 0; i < count && status == HE_OK; i++) {
-        status = he_places_add(&made, i, he_places_find(places, from[i]), err);
+        status = he_source_map_add(&made, i, he_source_map_find(map, from[i]), err);
     }
     he_mem_free(from);
     if (status != HE_OK) {
-        he_places_clear(&made);
+        he_source_map_clear(&made);
         return status;
     }
-    he_places_clear(places);
-    *places = made;
+    he_source_map_clear(map);
+    *map = made;
     return HE_OK;
 }
 
@@ -263,7 +264,7 @@ he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err)
         return HE_OK;
     }
     he_status status =
-        he_gltf_spend(asset, value, count * (2 * sizeof(uint32_t) + sizeof(he_place_run)), err);
+        he_gltf_spend(asset, value, count * (2 * sizeof(uint32_t) + sizeof(he_source_run)), err);
     uint32_t *order = status != HE_OK ? NULL : he_mem_array(NULL, count, sizeof *order);
     if (status == HE_OK && order == NULL) {
         status = he_fail_plain(err, HE_NO_MEMORY, "no memory to order %zu faces", count);
@@ -276,7 +277,7 @@ he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err)
     } else if (status == HE_OK) {
         status = he_soup_order_faces(&into->soup, order, err);
         if (status == HE_OK) {
-            status = order_places(&into->faces, order, count, err);
+            status = order_source_map(&into->faces, order, count, err);
         }
     }
     he_mem_free(order);

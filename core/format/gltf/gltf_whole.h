@@ -24,7 +24,7 @@ HE_NODISCARD he_status he_gltf_add_whole(he_gltf_surface *surface, uint32_t scen
  * stored order is not valid, the faces stay as they are, with a warning.
  * Returns HE_LIMIT if a limit would be exceeded.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_gltf_order_whole(he_gltf_surface *surface, he_error *err);
 
 #endif

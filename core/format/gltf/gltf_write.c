@@ -23,7 +23,7 @@ typedef struct glb_writer {
     uint32_t row;      /* the next vertex or face */
     uint32_t halfedge; /* the next corner of the face, or HE_NONE */
     size_t copy;       /* the next copy */
-    he_cut_walk walk;
+    he_export_triangle_walk walk;
     uint64_t written; /* bytes of the present part, or of all streams, written so far */
 } glb_writer;
 
@@ -174,7 +174,7 @@ static char *put_triangle(glb_writer *w, const he_glb_part *part, char *p)
             enter_face(w, face);
         }
     }
-    (void)he_cuts_next(&w->g.cuts, &w->walk, v);
+    (void)he_export_triangles_next(&w->g.cuts, &w->walk, v);
     for (size_t i = 0; i < 3; i++) {
         p = put_word(w->at != NULL ? w->at[v[i]] : number_of(w, v[i]), part->stride, p);
     }
@@ -272,11 +272,11 @@ static he_status pack_part(glb_writer *w, he_glb_part *part, he_error *err)
     return status;
 }
 
-static he_status pack(glb_writer *w, he_watch *watch, he_error *err)
+static he_status pack(glb_writer *w, he_progress *progress, he_error *err)
 {
     he_status status = HE_OK;
     for (size_t i = 0; i < w->g.count && status == HE_OK; i++) {
-        status = he_watch_step(watch, w->g.parts[i].offset, w->g.bytes, err);
+        status = he_progress_step(progress, w->g.parts[i].offset, w->g.bytes, err);
         if (status == HE_OK) {
             status = pack_part(w, &w->g.parts[i], err);
         }
@@ -304,8 +304,8 @@ static he_status rank_faces(glb_writer *w, he_error *err)
     return HE_OK;
 }
 
-static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status glb_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
     glb_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
@@ -313,7 +313,7 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->halfedge = HE_NONE;
     bool packs = encoding == HE_GLB_MESHOPT;
-    he_status status = he_glb_parts_make(mesh, packs, watch, notes, &w->g, err);
+    he_status status = he_glb_parts_make(mesh, packs, progress, warnings, &w->g, err);
     if (status == HE_OK && w->g.splits.copies.count > 0) {
         w->at = he_mem_array(NULL, mesh->c.vertices.issued, sizeof *w->at);
         if (w->at == NULL) {
@@ -324,7 +324,7 @@ static he_status glb_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         status = rank_faces(w, err);
     }
     if (status == HE_OK && packs) {
-        status = pack(w, watch, err);
+        status = pack(w, progress, err);
     }
     if (status == HE_OK) {
         status = he_glb_describe(&w->g, err);

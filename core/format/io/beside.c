@@ -1,6 +1,6 @@
 #include "format/io/beside.h"
 
-#include "format/text/notes.h"
+#include "format/text/warnings.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -120,7 +120,7 @@ void he_beside_list(const he_beside *beside, char *text, size_t size)
     text[0] = '\0';
     for (size_t i = 0; i < beside->count; i++) {
         const char *name = beside->files[i].name;
-        char quoted[HE_NOTE_SUBJECT], item[HE_NOTE_SUBJECT + 4];
+        char quoted[HE_WARNING_SUBJECT], item[HE_WARNING_SUBJECT + 4];
         he_quote(name, name + strlen(name), quoted, sizeof quoted);
         snprintf(item, sizeof item, "%s%s", i > 0 ? ", " : "", quoted);
         if (used + strlen(item) + sizeof more > size) {

@@ -49,8 +49,8 @@ static bool is_opaque(const he_colors *colors, double full)
     return i == colors->count;
 }
 
-he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *notes, he_kind domain,
-                           size_t elements, he_error *err)
+he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_warnings *warnings,
+                           he_kind domain, size_t elements, he_error *err)
 {
     if (colors->given == 0) {
         return HE_OK;
@@ -80,19 +80,19 @@ he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *not
         memcpy(he_column_row(column, i), row, column->row_bytes);
     }
     if (above) {
-        he_notes_add_count(notes, "byte_colors",
-                           "read as 0 to 255, being whole and above 1: colours", colors->given);
+        he_warnings_add_count(warnings, "byte_colors",
+                              "read as 0 to 255, being whole and above 1: colours", colors->given);
     }
     return HE_OK;
 }
 
 /* --- writing --- */
 
-const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_notes *notes)
+const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_warnings *warnings)
 {
     const he_column *column = he_mesh_find_column(mesh, domain, "color");
     bool fraction = column != NULL && (column->type == HE_FLOAT || column->type == HE_DOUBLE);
-    return fraction ? he_export_find(mesh, domain, "color", 3, 4, notes) : NULL;
+    return fraction ? he_export_find(mesh, domain, "color", 3, 4, warnings) : NULL;
 }
 
 uint32_t he_color_byte(double component)

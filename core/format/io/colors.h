@@ -31,12 +31,13 @@ void he_colors_clear(he_colors *colors);
 HE_NODISCARD he_status he_colors_add(he_colors *colors, size_t element, const double *values,
                                      size_t count, he_error *err);
 /* Makes the attribute for `elements` elements, if any had a colour. */
-HE_NODISCARD he_status he_colors_finish(const he_colors *colors, he_soup *soup, he_notes *notes,
-                                        he_kind domain, size_t elements, he_error *err);
+HE_NODISCARD he_status he_colors_finish(const he_colors *colors, he_soup *soup,
+                                        he_warnings *warnings, he_kind domain, size_t elements,
+                                        he_error *err);
 
 /* Finds the attribute of colours to write; NULL unless it has floats or doubles in three or four
  * components. */
-const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_notes *notes);
+const he_column *he_colors_find(const he_mesh *mesh, he_kind domain, he_warnings *warnings);
 /* Returns the byte that is nearest to a colour component between 0 and 1. */
 uint32_t he_color_byte(double component);
 /* Returns true if the component equals its nearest byte, to the precision of a float. */

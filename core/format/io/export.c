@@ -38,7 +38,7 @@ void he_narrowed_add(he_narrowed *narrowed, uint32_t vertex, he_vec3 position)
     }
 }
 
-he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes, he_error *err)
+he_status he_narrowed_finish(const he_narrowed *narrowed, he_warnings *warnings, he_error *err)
 {
     if (narrowed->beyond > 0) {
         char more[40] = "";
@@ -50,7 +50,7 @@ he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes, he_er
                        "vertex %u has a coordinate too large for the floats of this format%s",
                        narrowed->first, more);
     }
-    he_notes_add_count(notes, "rounded", "rounded to floats: a position", narrowed->rounded);
+    he_warnings_add_count(warnings, "rounded", "rounded to floats: a position", narrowed->rounded);
     return HE_OK;
 }
 
@@ -88,7 +88,7 @@ static double component_of(const he_column *column, size_t row, uint32_t compone
 }
 
 const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char *name,
-                                uint32_t least, uint32_t most, he_notes *notes)
+                                uint32_t least, uint32_t most, he_warnings *warnings)
 {
     const he_column *column = he_mesh_find_column(mesh, domain, name);
     if (column == NULL || column->components < least || column->components > most ||
@@ -101,8 +101,8 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
     for (size_t row = 0; row < column->rows; row++) {
         for (uint32_t i = 0; i < column->components; i++) {
             if (!isfinite(component_of(column, row, i))) {
-                he_notes_add(notes,
-                             &(he_occurrence){.code = "not_finite",
+                he_warnings_add(warnings, &(he_occurrence){
+                                              .code = "not_finite",
                                               .text = "written as 0: values that are not finite of",
                                               .subject = name,
                                               .length = strlen(name)});
@@ -113,7 +113,7 @@ const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char 
 }
 
 void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
-                         he_notes *notes)
+                         he_warnings *warnings)
 {
     for (size_t i = 0; i < he_mesh_columns(mesh); i++) {
         const he_column *column = he_mesh_column(mesh, i);
@@ -125,18 +125,18 @@ void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size
             char subject[HE_COLUMN_NAME + 16];
             int length = snprintf(subject, sizeof subject, "%s %s", he_kind_name(column->domain),
                                   column->name);
-            he_notes_add(notes, &(he_occurrence){.code = "attribute_lost",
-                                                 .text = "not written: attribute",
-                                                 .subject = subject,
-                                                 .length = (size_t)length});
+            he_warnings_add(warnings, &(he_occurrence){.code = "attribute_lost",
+                                                       .text = "not written: attribute",
+                                                       .subject = subject,
+                                                       .length = (size_t)length});
         }
     }
 }
 
-void he_export_note_materials(const he_mesh *mesh, he_notes *notes)
+void he_export_note_materials(const he_mesh *mesh, he_warnings *warnings)
 {
-    he_notes_add_count(notes, "materials_lost", "not carried: what a material looks like",
-                       he_materials_count(he_mesh_materials(mesh)));
+    he_warnings_add_count(warnings, "materials_lost", "not carried: what a material looks like",
+                          he_materials_count(he_mesh_materials(mesh)));
 }
 
 char *he_export_text(const char *text, char *to)
@@ -240,7 +240,7 @@ static he_status widen(table *t, const he_ids *first, he_error *err)
 }
 
 he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns, size_t count,
-                           bool apart, he_watch *watch, he_distinct *out, he_error *err)
+                           bool apart, he_progress *progress, he_distinct *out, he_error *err)
 {
     he_distinct made = {0};
     table t = {.mesh = mesh, .columns = columns, .count = count, .apart = apart};
@@ -257,7 +257,7 @@ he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
         goto out;
     }
     for (uint32_t f = 0; f < mesh->c.faces.issued; f++) {
-        status = he_watch_at(watch, f, mesh->c.faces.issued, err);
+        status = he_progress_at(progress, f, mesh->c.faces.issued, err);
         if (status != HE_OK) {
             goto out;
         }

@@ -3,7 +3,7 @@
 #ifndef HE_FORMAT_IO_EXPORT_H
 #define HE_FORMAT_IO_EXPORT_H
 
-#include "format/text/notes.h"
+#include "format/text/warnings.h"
 #include "mesh/walk.h"
 
 #include <float.h>
@@ -36,7 +36,7 @@ typedef struct he_narrowed {
 void he_narrowed_add(he_narrowed *narrowed, uint32_t vertex, he_vec3 position);
 /* Adds a warning about the positions that were rounded, if there are any.
  * Returns HE_BEYOND_FLOAT, naming the first vertex, if a position is beyond the largest float. */
-HE_NODISCARD he_status he_narrowed_finish(const he_narrowed *narrowed, he_notes *notes,
+HE_NODISCARD he_status he_narrowed_finish(const he_narrowed *narrowed, he_warnings *warnings,
                                           he_error *err);
 
 /* Computes the number of each vertex among the live vertices; *out is NULL if every vertex's number
@@ -47,14 +47,14 @@ HE_NODISCARD he_status he_export_numbers(const he_mesh *mesh, uint32_t **out, he
 /* Finds an attribute if its values are numbers with `least` to `most` components, else returns
  * NULL. Values that are not finite get a warning; they are written as 0. */
 const he_column *he_export_find(const he_mesh *mesh, he_kind domain, const char *name,
-                                uint32_t least, uint32_t most, he_notes *notes);
+                                uint32_t least, uint32_t most, he_warnings *warnings);
 /* Adds a warning for every attribute that is not among the `count` columns that are written, some
  * of which may be NULL. */
 void he_export_note_lost(const he_mesh *mesh, const he_column *const *used, size_t count,
-                         he_notes *notes);
+                         he_warnings *warnings);
 
 /* Adds a warning that the table of materials is not written, if the mesh has one. */
-void he_export_note_materials(const he_mesh *mesh, he_notes *notes);
+void he_export_note_materials(const he_mesh *mesh, he_warnings *warnings);
 
 /* Returns one component of an attribute's value as a double; 0 in place of a value that is not
  * finite. */
@@ -77,8 +77,8 @@ typedef struct he_distinct {
 /* Finds the distinct combinations of values in the `count` columns. With `apart`, the values of
  * corners at different vertices always count as distinct. */
 HE_NODISCARD he_status he_distinct_make(const he_mesh *mesh, const he_column *const *columns,
-                                        size_t count, bool apart, he_watch *watch, he_distinct *out,
-                                        he_error *err);
+                                        size_t count, bool apart, he_progress *progress,
+                                        he_distinct *out, he_error *err);
 void he_distinct_clear(he_distinct *distinct);
 
 #endif

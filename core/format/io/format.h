@@ -25,19 +25,19 @@
  *
  * Live vertices are numbered 0, 1, 2... in the order of their ids, faces are written in the order
  * of theirs. The document is never in memory as a whole. What the format cannot represent is known
- * from the start (he_writer_notes). After he_writer_new nothing can fail. */
+ * from the start (he_writer_warnings). After he_writer_new nothing can fail. */
 #ifndef HE_FORMAT_IO_FORMAT_H
 #define HE_FORMAT_IO_FORMAT_H
 
 #include "build/build.h"
 #include "format/io/beside.h"
-#include "format/io/places.h"
-#include "format/text/notes.h"
+#include "format/io/source_map.h"
+#include "format/text/warnings.h"
 
 typedef struct he_import {
     he_soup soup;
-    he_notes notes;
-    he_places vertices, faces;
+    he_warnings warnings;
+    he_source_map vertices, faces;
     double edges;        /* number of edges that the file declares, if edges_line is not 0 */
     uint64_t edges_line; /* line that declares the number of edges, 0 if none does */
     he_beside *beside;   /* the files that came with the one being read; NULL if there are none */
@@ -55,7 +55,8 @@ typedef struct he_reading {
     he_status (*feed)(void *state, const void *bytes, size_t n, he_error *err);
     he_status (*finish)(void *state, he_error *err);
     void (*close)(void *state);
-    bool at_end; /* feed only stores the bytes; finish parses them and steps the soup's watch */
+    bool at_end; /* feed only stores the bytes; finish parses them and reports to the soup's
+                    `progress` */
 } he_reading;
 
 /* The functions of a format's writer. `step` writes the next bytes at `*p` and advances it; at
@@ -63,12 +64,12 @@ typedef struct he_reading {
 enum { HE_WRITE_ROOM = 512 };
 
 typedef struct he_writing {
-    he_status (*open)(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                      void **state, he_error *err);
+    he_status (*open)(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                      he_warnings *warnings, void **state, he_error *err);
     bool (*step)(void *state, char **p, const char *end);
     void (*close)(void *state);
-    bool cuts; /* the writer cuts polygons into triangles (cuts.h), so the caller may fill the
-                  mesh's cache of long faces (long_faces.h) before */
+    bool cuts; /* the writer cuts polygons into triangles (export_triangles.h), so the caller may
+                  fill the mesh's cache of long faces (long_faces.h) before */
 } he_writing;
 
 typedef struct he_format {
@@ -120,27 +121,27 @@ HE_NODISCARD he_status he_reader_feed(he_reader *reader, const void *bytes, size
  * is added. `beside` may be NULL. */
 void he_reader_beside(he_reader *reader, he_beside *beside);
 /* Returns true if he_reader_finish takes about as long as feeding the bytes. The caller should then
- * set a watch with he_reader_watch. */
+ * set a watch with he_reader_set_progress. */
 bool he_reader_reads_at_end(const he_reader *reader);
-void he_reader_watch(he_reader *reader, he_watch *watch);
+void he_reader_set_progress(he_reader *reader, he_progress *progress);
 /* Ends the input and gets the import, which the caller clears; after this the reader can only be
  * freed. Returns the errors of he_reader_feed, too.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_reader_finish(he_reader *reader, he_import *out, he_error *err);
 
 typedef struct he_writer he_writer;
 
 /* Makes a writer of a mesh in a format. `encoding` is an index into the format's list of encodings.
- * The call takes time linear in the mesh, and reports progress to `watch`, which may be NULL.
+ * The call takes time linear in the mesh, and reports progress to `progress`, which may be NULL.
  * Returns HE_UNSUPPORTED if the format cannot be written.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_writer_new(const he_format *format, const he_mesh *mesh, size_t encoding,
-                                     he_watch *watch, he_writer **out, he_error *err);
+                                     he_progress *progress, he_writer **out, he_error *err);
 void he_writer_free(he_writer *writer);
 /* Writes the next bytes of the document, at most `size`. Returns their number; 0 at the end. */
 size_t he_writer_read(he_writer *writer, void *buffer, size_t size);
 /* Returns the warnings about content of the mesh that the document does not contain. */
-const he_notes *he_writer_notes(const he_writer *writer);
+const he_warnings *he_writer_warnings(const he_writer *writer);
 
 #endif

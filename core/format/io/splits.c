@@ -29,7 +29,7 @@ static he_status number_vertices(const he_mesh *m, const uint32_t *numbers, he_d
 }
 
 he_status he_splits_make(const he_mesh *m, const uint32_t *numbers, const he_column *const *columns,
-                         size_t count, he_watch *watch, he_splits *out, he_error *err)
+                         size_t count, he_progress *progress, he_splits *out, he_error *err)
 {
     he_distinct distinct = {0};
     he_splits made = {.own = he_mem_array(NULL, m->c.vertices.issued, sizeof *made.own)};
@@ -40,7 +40,7 @@ he_status he_splits_make(const he_mesh *m, const uint32_t *numbers, const he_col
     for (uint32_t v = 0; v < m->c.vertices.issued; v++) {
         made.own[v] = HE_NONE;
     }
-    he_status status = he_distinct_make(m, columns, count, true, watch, &distinct, err);
+    he_status status = he_distinct_make(m, columns, count, true, progress, &distinct, err);
     if (status == HE_OK) {
         status = number_vertices(m, numbers, &distinct, &made, err);
     }

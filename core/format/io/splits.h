@@ -19,13 +19,13 @@ typedef struct he_splits {
     he_ids copies;    /* a half-edge for each copy: its origin is the vertex that was copied */
 } he_splits;
 
-/* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `watch`
+/* Splits the vertices. `numbers` are the vertex numbers that he_export_numbers computes; `progress`
  * may be NULL.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_splits_make(const he_mesh *mesh, const uint32_t *numbers,
                                       const he_column *const *columns, size_t count,
-                                      he_watch *watch, he_splits *out, he_error *err);
+                                      he_progress *progress, he_splits *out, he_error *err);
 void he_splits_clear(he_splits *splits);
 
 #endif

@@ -1,5 +1,6 @@
 /* mtl.h - the material library of OBJ files (MTL): the functions of the format's row in format.c,
- * and a reader that fills a table of materials. What is "noted" is reported as a warning (notes.h).
+ * and a reader that fills a table of materials. What is "noted" is reported as a warning
+ * (warnings.h).
  *
  * Read:
  *   newmtl NAME         a material; the name is the rest of the line

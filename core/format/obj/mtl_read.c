@@ -1,6 +1,6 @@
 #include "format/obj/mtl.h"
 
-#include "format/io/spans.h"
+#include "format/io/face_groups.h"
 #include "format/text/lines.h"
 
 #include <string.h>
@@ -20,8 +20,8 @@ typedef struct library {
 
 static void note(library *l, const char *code, const char *text, const char *subject, size_t length)
 {
-    he_notes_add(
-        &l->into->notes,
+    he_warnings_add(
+        &l->into->warnings,
         &(he_occurrence){.code = code, .text = text, .subject = subject, .length = length});
 }
 

@@ -46,10 +46,10 @@ static void mtl_close(void *state)
     he_mem_free(state);
 }
 
-static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
-    (void)watch;
+    (void)progress;
     (void)encoding;
     mtl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
@@ -61,12 +61,12 @@ static he_status mtl_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         if (row == NULL) {
             continue;
         }
-        he_obj_note_name(row->name, notes);
+        he_obj_note_name(row->name, warnings);
         if (row->look.two_sided) {
-            he_notes_add(notes, &(he_occurrence){.code = "two_sided_lost",
-                                                 .text = "not written: two_sided of material",
-                                                 .subject = row->name,
-                                                 .length = row->length});
+            he_warnings_add(warnings, &(he_occurrence){.code = "two_sided_lost",
+                                                       .text = "not written: two_sided of material",
+                                                       .subject = row->name,
+                                                       .length = row->length});
         }
     }
     *state = w;

@@ -1,5 +1,5 @@
 /* obj.h - Wavefront OBJ: the functions of the format's row in format.c. What is "noted" is reported
- * as a warning (notes.h).
+ * as a warning (warnings.h).
  *
  * Read                      as
  *   v x y z                   a vertex
@@ -21,7 +21,7 @@
  *
  * Reading returns HE_BAD_INDEX if an index is 0, or too large when the file has ended. Returns
  * HE_SYNTAX if no line was understood; a file of comments is an empty mesh. If some corners have a
- * texture coordinate or normal, those without one get zeros and a note.
+ * texture coordinate or normal, those without one get zeros and a warning.
  *
  * Written: mtllib if the mesh has materials or came with the name of a library; v, with three
  * numbers of a colour if vertices have colours; vt and vn (values of corners whose bits are equal

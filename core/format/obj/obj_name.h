@@ -2,7 +2,7 @@
 #ifndef HE_FORMAT_OBJ_OBJ_NAME_H
 #define HE_FORMAT_OBJ_OBJ_NAME_H
 
-#include "format/text/notes.h"
+#include "format/text/warnings.h"
 
 #include <stdbool.h>
 
@@ -20,7 +20,7 @@ static inline char he_obj_printable(const char *p, bool first)
 }
 
 /* Adds a warning about a name that is changed when it is written. */
-void he_obj_note_name(const char *name, he_notes *notes);
+void he_obj_note_name(const char *name, he_warnings *warnings);
 
 /* A name of any length that is being written; {0} means that none is being written. */
 typedef struct he_obj_name {

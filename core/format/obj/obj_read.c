@@ -1,8 +1,8 @@
 #include "format/obj/obj.h"
 
 #include "format/io/colors.h"
-#include "format/io/pool.h"
-#include "format/io/spans.h"
+#include "format/io/corner_pool.h"
+#include "format/io/face_groups.h"
 #include "format/obj/mtl.h"
 #include "format/text/lines.h"
 #include "format/text/number.h"
@@ -13,9 +13,9 @@
 typedef struct obj {
     he_import *into;
     he_lines lines;
-    he_pool uv, normal;
+    he_corner_pool uv, normal;
     he_colors colors;
-    he_spans object, group, material, smoothing;
+    he_face_groups object, group, material, smoothing;
     he_labels *libraries; /* names on the lines of mtllib, NULL while there are none */
     he_ids library_lines; /* line on which each library is named first */
     uint32_t highest;     /* highest vertex that a corner refers to */
@@ -29,7 +29,7 @@ static void note(obj *o, const he_line *line, he_occurrence warning)
 {
     warning.place = HE_PLACE_LINE;
     warning.at = line->number;
-    he_notes_add(&o->into->notes, &warning);
+    he_warnings_add(&o->into->warnings, &warning);
 }
 
 /* The numbers of a line, however many there are. */
@@ -96,7 +96,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     size_t vertex = soup->vertex_count;
     status = he_soup_add_vertex(soup, (he_vec3){n[0], n[1], n[2]}, err);
     if (status == HE_OK) {
-        status = he_places_add(&o->into->vertices, (uint32_t)vertex, line->number, err);
+        status = he_source_map_add(&o->into->vertices, (uint32_t)vertex, line->number, err);
     }
     if (status == HE_OK && count >= 6) {
         status = he_colors_add(&o->colors, vertex, n + 3, count - 3, err);
@@ -108,7 +108,7 @@ static he_status read_vertex(obj *o, const he_line *line, const char *p, he_erro
     return he_line_locate(status, line, err);
 }
 
-static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, const char *p,
+static he_status read_pool_value(obj *o, he_corner_pool *pool, const he_line *line, const char *p,
                                  size_t least, he_error *err)
 {
     double n[3] = {0, 0, 0};
@@ -125,7 +125,7 @@ static he_status read_pool_value(obj *o, he_pool *pool, const he_line *line, con
     if (read.count > 3) {
         note_extra(o, line);
     }
-    return he_line_locate(he_pool_add(pool, n, limit, err), line, err);
+    return he_line_locate(he_corner_pool_add(pool, n, limit, err), line, err);
 }
 
 /* Reads an index of the file and converts it to one that counts from 0. `count` elements were read
@@ -162,10 +162,10 @@ static he_status read_index(const he_line *line, const char **p, const char *wha
 
 /* Warns about the index of a texture coordinate or normal that does not exist. The corner then has
  * no such value, but the shape is not affected, so the file is not refused. */
-static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
+static void note_no_value(obj *o, const he_corner_pool *pool, uint64_t at)
 {
-    he_notes_add(
-        &o->into->notes,
+    he_warnings_add(
+        &o->into->warnings,
         &(he_occurrence){
             .code = pool == &o->uv ? "no_such_uv" : "no_such_normal",
             .text = pool == &o->uv
@@ -175,7 +175,7 @@ static void note_no_value(obj *o, const he_pool *pool, uint64_t at)
             .at = at});
 }
 
-static he_status read_value(obj *o, const he_line *line, const char **p, he_pool *pool,
+static he_status read_value(obj *o, const he_line *line, const char **p, he_corner_pool *pool,
                             size_t corner, he_error *err)
 {
     const char *begin = *p;
@@ -184,7 +184,7 @@ static he_status read_value(obj *o, const he_line *line, const char **p, he_pool
     he_error failure = {0};
     he_status status = read_index(line, p, what, pool->count, &index, &failure);
     if (status == HE_OK) {
-        return he_pool_name(pool, corner, index, err);
+        return he_corner_pool_name(pool, corner, index, err);
     }
     double value = 0;
     size_t used = 0;
@@ -210,7 +210,7 @@ static he_status read_corner(obj *o, const he_line *line, const char **p, he_err
     }
     o->highest = index > o->highest ? index : o->highest;
     status = he_soup_add_corner(soup, index, err);
-    he_pool *pools[2] = {&o->uv, &o->normal};
+    he_corner_pool *pools[2] = {&o->uv, &o->normal};
     for (size_t i = 0; i < 2 && status == HE_OK && *p < end && **p == '/'; i++) {
         ++*p;
         if (he_token_ends(*p, end) || **p == '/') {
@@ -234,7 +234,7 @@ static he_status read_face(obj *o, const he_line *line, const char *p, he_error 
     he_status status = he_soup_begin_face(soup, err);
     if (status == HE_OK) {
         uint32_t face = (uint32_t)soup->face_count - 1;
-        status = he_places_add(&o->into->faces, face, line->number, err);
+        status = he_source_map_add(&o->into->faces, face, line->number, err);
     }
     while (status == HE_OK && !he_at_end(p, line->end)) {
         status = read_corner(o, line, &p, err);
@@ -257,7 +257,7 @@ static he_status read_smoothing(obj *o, const he_line *line, const char *p, he_e
             return he_token_fail(err, HE_SYNTAX, line, p, "is not a smoothing group");
         }
     }
-    return he_spans_set(&o->smoothing, o->into->soup.face_count, (uint32_t)value, err);
+    return he_face_groups_set(&o->smoothing, o->into->soup.face_count, (uint32_t)value, err);
 }
 
 static bool is_word(const char *p, const char *end)
@@ -295,7 +295,7 @@ static he_status read_library(obj *o, const he_line *line, const char *p, he_err
             return he_fail_plain(err, HE_NO_MEMORY, "no memory for names");
         }
     }
-    he_status status = he_line_name(line, p, &o->into->notes, &name, err);
+    he_status status = he_line_name(line, p, &o->into->warnings, &name, err);
     if (status == HE_OK && name.length > 0) {
         status = he_labels_add(o->libraries, name.text, name.length, &number, err);
     }
@@ -309,16 +309,16 @@ static he_status read_library(obj *o, const he_line *line, const char *p, he_err
 static he_status read_other(obj *o, const he_line *line, const char *p, const char *end,
                             he_error *err)
 {
-    he_notes *notes = &o->into->notes;
+    he_warnings *warnings = &o->into->warnings;
     size_t faces = o->into->soup.face_count, length = (size_t)(end - p);
     o->understood++;
     switch (length) {
     case 1:
         if (*p == 'g') {
-            return he_spans_set_name(&o->group, faces, line, end, notes, err);
+            return he_face_groups_set_name(&o->group, faces, line, end, warnings, err);
         }
         if (*p == 'o') {
-            return he_spans_set_name(&o->object, faces, line, end, notes, err);
+            return he_face_groups_set_name(&o->object, faces, line, end, warnings, err);
         }
         if (*p == 's') {
             return read_smoothing(o, line, end, err);
@@ -331,7 +331,7 @@ static he_status read_other(obj *o, const he_line *line, const char *p, const ch
         break;
     case 6:
         if (memcmp(p, "usemtl", 6) == 0) {
-            return he_spans_set_name(&o->material, faces, line, end, notes, err);
+            return he_face_groups_set_name(&o->material, faces, line, end, warnings, err);
         }
         if (memcmp(p, "mtllib", 6) == 0) {
             return read_library(o, line, end, err);
@@ -398,13 +398,13 @@ static void obj_close(void *state)
 {
     obj *o = state;
     he_lines_clear(&o->lines);
-    he_pool_clear(&o->uv);
-    he_pool_clear(&o->normal);
+    he_corner_pool_clear(&o->uv);
+    he_corner_pool_clear(&o->normal);
     he_colors_clear(&o->colors);
-    he_spans_clear(&o->object);
-    he_spans_clear(&o->group);
-    he_spans_clear(&o->material);
-    he_spans_clear(&o->smoothing);
+    he_face_groups_clear(&o->object);
+    he_face_groups_clear(&o->group);
+    he_face_groups_clear(&o->material);
+    he_face_groups_clear(&o->smoothing);
     he_labels_release(o->libraries);
     he_ids_clear(&o->library_lines);
     he_mem_free(o);
@@ -421,8 +421,8 @@ static he_status obj_open(he_import *into, void **state, he_error *err)
     o->lines.joins = true;
     o->lines.limit = into->soup.limits.bytes;
     o->colors.fractions = true;
-    he_places_init(&into->vertices, HE_PLACE_LINE, 1);
-    he_places_init(&into->faces, HE_PLACE_LINE, 1);
+    he_source_map_init(&into->vertices, HE_PLACE_LINE, 1);
+    he_source_map_init(&into->faces, HE_PLACE_LINE, 1);
     *state = o;
     return HE_OK;
 }
@@ -435,16 +435,17 @@ static he_status obj_feed(void *state, const void *bytes, size_t n, he_error *er
 
 static uint64_t line_of(const obj *o, size_t corner)
 {
-    return he_places_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
+    return he_source_map_find(&o->into->faces, he_soup_face_of(&o->into->soup, corner));
 }
 
 /* Removes the indices of corners that refer to a texture coordinate or normal that does not
  * exist. */
-static void check_values(obj *o, he_pool *pool)
+static void check_values(obj *o, he_corner_pool *pool)
 {
-    for (size_t c = he_pool_next_bad(pool, 0); c != SIZE_MAX; c = he_pool_next_bad(pool, c + 1)) {
+    for (size_t c = he_corner_pool_next_bad(pool, 0); c != SIZE_MAX;
+         c = he_corner_pool_next_bad(pool, c + 1)) {
         note_no_value(o, pool, line_of(o, c));
-        he_pool_forget(pool, c);
+        he_corner_pool_forget(pool, c);
     }
 }
 
@@ -469,15 +470,15 @@ static he_status check_indices(obj *o, he_error *err)
 static he_status note_unused(obj *o, he_error *err)
 {
     size_t uvs = 0, normals = 0;
-    he_status status = he_pool_unused(&o->uv, &uvs, err);
+    he_status status = he_corner_pool_unused(&o->uv, &uvs, err);
     if (status == HE_OK) {
-        status = he_pool_unused(&o->normal, &normals, err);
+        status = he_corner_pool_unused(&o->normal, &normals, err);
     }
     if (status == HE_OK) {
-        he_notes_add_count(&o->into->notes, "unused_uv",
-                           "ignored: texture coordinates that no corner has", uvs);
-        he_notes_add_count(&o->into->notes, "unused_normal", "ignored: normals that no corner has",
-                           normals);
+        he_warnings_add_count(&o->into->warnings, "unused_uv",
+                              "ignored: texture coordinates that no corner has", uvs);
+        he_warnings_add_count(&o->into->warnings, "unused_normal",
+                              "ignored: normals that no corner has", normals);
     }
     return status;
 }
@@ -485,7 +486,7 @@ static he_status note_unused(obj *o, he_error *err)
 static void note_partial(obj *o, size_t with, size_t all, const char *code, const char *text)
 {
     if (with > 0) {
-        he_notes_add_count(&o->into->notes, code, text, all - with);
+        he_warnings_add_count(&o->into->warnings, code, text, all - with);
     }
 }
 
@@ -495,8 +496,8 @@ static he_status open_library(obj *o, const char *name, size_t length, uint64_t 
 {
     const he_beside_file *file = he_beside_find(o->into->beside, name, length);
     if (file == NULL) {
-        he_notes_add(
-            &o->into->notes,
+        he_warnings_add(
+            &o->into->warnings,
             &(he_occurrence){.code = "library_missing",
                              .text = "not sent with the file (send both as multipart/form-data): "
                                      "the material library",
@@ -545,8 +546,9 @@ static he_status keep_libraries(obj *o, he_error *err)
     size_t count = o->library_lines.count;
     he_column *column = NULL;
     if (count > HE_COLUMN_COMPONENTS) {
-        he_notes_add_count(&o->into->notes, "libraries", "left out: the name of a material library",
-                           count - HE_COLUMN_COMPONENTS);
+        he_warnings_add_count(&o->into->warnings, "libraries",
+                              "left out: the name of a material library",
+                              count - HE_COLUMN_COMPONENTS);
         count = HE_COLUMN_COMPONENTS;
     }
     if (count == 0) {
@@ -593,26 +595,26 @@ static he_status obj_finish(void *state, he_error *err)
                  "set to 0: vertices without a colour");
     status = note_unused(o, err);
     if (status == HE_OK) {
-        status = he_pool_finish(&o->uv, soup, "uv", 2, err);
+        status = he_corner_pool_finish(&o->uv, soup, "uv", 2, err);
     }
     if (status == HE_OK) {
-        status = he_pool_finish(&o->normal, soup, "normal", 3, err);
+        status = he_corner_pool_finish(&o->normal, soup, "normal", 3, err);
     }
     if (status == HE_OK) {
-        status =
-            he_colors_finish(&o->colors, soup, &o->into->notes, HE_VERTEX, soup->vertex_count, err);
+        status = he_colors_finish(&o->colors, soup, &o->into->warnings, HE_VERTEX,
+                                  soup->vertex_count, err);
     }
     if (status == HE_OK) {
-        status = he_spans_finish(&o->object, soup, "object", err);
+        status = he_face_groups_finish(&o->object, soup, "object", err);
     }
     if (status == HE_OK) {
-        status = he_spans_finish(&o->group, soup, "group", err);
+        status = he_face_groups_finish(&o->group, soup, "group", err);
     }
     if (status == HE_OK) {
-        status = he_spans_finish(&o->material, soup, "material", err);
+        status = he_face_groups_finish(&o->material, soup, "material", err);
     }
     if (status == HE_OK) {
-        status = he_spans_finish(&o->smoothing, soup, "smoothing", err);
+        status = he_face_groups_finish(&o->smoothing, soup, "smoothing", err);
     }
     if (status == HE_OK) {
         status = keep_libraries(o, err);

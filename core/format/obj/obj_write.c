@@ -11,11 +11,11 @@
 typedef enum part { HEADER, LIBRARIES, VERTICES, UVS, NORMALS, FACES, END } part;
 
 /* The kinds of lines that apply to all faces after them, until the next line of the same kind. */
-enum { OBJECT, GROUP, MATERIAL, SMOOTHING, SPANS };
+enum { OBJECT, GROUP, MATERIAL, SMOOTHING, GROUPS };
 
 static const struct {
     const char *attribute, *keyword;
-} spans[SPANS] = {{"object", "o"}, {"group", "g"}, {"material", "usemtl"}, {"smoothing", "s"}};
+} groups[GROUPS] = {{"object", "o"}, {"group", "g"}, {"material", "usemtl"}, {"smoothing", "s"}};
 
 /* A source of texture coordinates or normals: an attribute of corners, or of vertices, or none. */
 typedef struct values {
@@ -30,8 +30,8 @@ typedef struct obj_writer {
     uint32_t *numbers; /* number of each vertex in the file; NULL if it is the id */
     const he_column *color;
     values uv, normal;
-    const he_column *spans[SPANS];
-    uint32_t said[SPANS]; /* value of the last line of each kind, HE_NONE before the first one */
+    const he_column *groups[GROUPS];
+    uint32_t said[GROUPS]; /* value of the last line of each kind, HE_NONE before the first one */
     part part;
     uint32_t row;      /* the next vertex, value or face */
     uint32_t halfedge; /* the next corner of the face being written, or HE_NONE */
@@ -45,22 +45,22 @@ static const char *label_of(const he_column *column, uint32_t value)
     return value < he_labels_count(column->labels) ? he_labels_get(column->labels, value) : "";
 }
 
-static void note_changed_names(const he_column *column, he_notes *notes)
+static void note_changed_names(const he_column *column, he_warnings *warnings)
 {
     for (size_t i = 0; i < he_labels_count(column->labels); i++) {
-        he_obj_note_name(he_labels_get(column->labels, i), notes);
+        he_obj_note_name(he_labels_get(column->labels, i), warnings);
     }
 }
 
 static he_status find_values(values *v, const he_mesh *mesh, const char *name, uint32_t least,
-                             he_watch *watch, he_notes *notes, he_error *err)
+                             he_progress *progress, he_warnings *warnings, he_error *err)
 {
-    v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, notes);
+    v->column = he_export_find(mesh, HE_HALFEDGE, name, least, 3, warnings);
     if (v->column != NULL) {
         v->of_corners = true;
-        return he_distinct_make(mesh, &v->column, 1, false, watch, &v->distinct, err);
+        return he_distinct_make(mesh, &v->column, 1, false, progress, &v->distinct, err);
     }
-    v->column = he_export_find(mesh, HE_VERTEX, name, least, 3, notes);
+    v->column = he_export_find(mesh, HE_VERTEX, name, least, 3, warnings);
     return HE_OK;
 }
 
@@ -78,28 +78,28 @@ static uint64_t count_unnamed(const values *v, const he_mesh *mesh)
     return count;
 }
 
-static void note_unnamed(const obj_writer *w, he_notes *notes)
+static void note_unnamed(const obj_writer *w, he_warnings *warnings)
 {
-    he_notes_add_count(notes, "unnamed_uv",
-                       "written, but no face names them: the texture coordinates of a vertex",
-                       count_unnamed(&w->uv, w->mesh));
-    he_notes_add_count(notes, "unnamed_normal",
-                       "written, but no face names it: the normal of a vertex",
-                       count_unnamed(&w->normal, w->mesh));
+    he_warnings_add_count(warnings, "unnamed_uv",
+                          "written, but no face names them: the texture coordinates of a vertex",
+                          count_unnamed(&w->uv, w->mesh));
+    he_warnings_add_count(warnings, "unnamed_normal",
+                          "written, but no face names it: the normal of a vertex",
+                          count_unnamed(&w->normal, w->mesh));
 }
 
 /* Finds the names of the material libraries. Returns the attribute that has them, or NULL. */
-static const he_column *find_libraries(obj_writer *w, he_notes *notes)
+static const he_column *find_libraries(obj_writer *w, he_warnings *warnings)
 {
     w->library_count = he_mtl_names(w->mesh, w->libraries);
     for (size_t i = 0; i < w->library_count; i++) {
-        he_obj_note_name(w->libraries[i], notes);
+        he_obj_note_name(w->libraries[i], warnings);
     }
     if (he_materials_count(he_mesh_materials(w->mesh)) > 0) {
-        he_notes_add(notes,
-                     &(he_occurrence){
-                         .code = "in_library",
-                         .text = "written to the material library (format=mtl) only: materials"});
+        he_warnings_add(
+            warnings, &(he_occurrence){
+                          .code = "in_library",
+                          .text = "written to the material library (format=mtl) only: materials"});
     }
     return he_mesh_find_column(w->mesh, HE_MESH_KIND, HE_OBJ_LIBRARY);
 }
@@ -113,8 +113,8 @@ static void obj_close(void *state)
     he_mem_free(w);
 }
 
-static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status obj_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
     (void)encoding;
     obj_writer *w = he_mem_zero(1, sizeof *w);
@@ -128,37 +128,37 @@ static he_status obj_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     w->said[OBJECT] = w->said[GROUP] = w->said[MATERIAL] = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
-        status = find_values(&w->uv, mesh, "uv", 2, watch, notes, err);
+        status = find_values(&w->uv, mesh, "uv", 2, progress, warnings, err);
     }
     if (status == HE_OK) {
-        status = find_values(&w->normal, mesh, "normal", 3, watch, notes, err);
+        status = find_values(&w->normal, mesh, "normal", 3, progress, warnings, err);
     }
     if (status != HE_OK) {
         obj_close(w);
         return status;
     }
-    w->color = he_colors_find(mesh, HE_VERTEX, notes);
+    w->color = he_colors_find(mesh, HE_VERTEX, warnings);
     if (w->color != NULL && w->color->components == 4) {
-        he_notes_add(notes, &(he_occurrence){.code = "alpha_lost",
-                                             .text = "not written: the fourth component of",
-                                             .subject = "vertex color",
-                                             .length = strlen("vertex color")});
+        he_warnings_add(warnings, &(he_occurrence){.code = "alpha_lost",
+                                                   .text = "not written: the fourth component of",
+                                                   .subject = "vertex color",
+                                                   .length = strlen("vertex color")});
     }
-    const he_column *used[SPANS + 4] = {w->color, w->uv.column, w->normal.column};
-    used[SPANS + 3] = find_libraries(w, notes);
-    for (size_t i = 0; i < SPANS; i++) {
-        const he_column *column = he_mesh_find_column(mesh, HE_FACE, spans[i].attribute);
+    const he_column *used[GROUPS + 4] = {w->color, w->uv.column, w->normal.column};
+    used[GROUPS + 3] = find_libraries(w, warnings);
+    for (size_t i = 0; i < GROUPS; i++) {
+        const he_column *column = he_mesh_find_column(mesh, HE_FACE, groups[i].attribute);
         bool named = i != SMOOTHING;
         if (column != NULL && column->type == HE_UINT32 && column->components == 1 &&
             (column->labels != NULL) == named) {
-            w->spans[i] = used[3 + i] = column;
+            w->groups[i] = used[3 + i] = column;
             if (named) {
-                note_changed_names(column, notes);
+                note_changed_names(column, warnings);
             }
         }
     }
-    note_unnamed(w, notes);
-    he_export_note_lost(mesh, used, SPANS + 4, notes);
+    note_unnamed(w, warnings);
+    he_export_note_lost(mesh, used, GROUPS + 4, warnings);
     *state = w;
     return HE_OK;
 }
@@ -250,27 +250,27 @@ static char *write_rows(obj_writer *w, const values *v, char *p, const char *end
  * differs from the lines written last. */
 static char *write_span(obj_writer *w, uint32_t face, char *p)
 {
-    for (size_t i = 0; i < SPANS; i++) {
+    for (size_t i = 0; i < GROUPS; i++) {
         uint32_t value;
-        if (w->spans[i] == NULL) {
+        if (w->groups[i] == NULL) {
             continue;
         }
-        memcpy(&value, he_column_value(w->spans[i], face), sizeof value);
+        memcpy(&value, he_column_value(w->groups[i], face), sizeof value);
         if (value == w->said[i]) {
             continue;
         }
         bool first = w->said[i] == HE_NONE;
         w->said[i] = value;
-        if (first && i != SMOOTHING && *label_of(w->spans[i], value) == '\0') {
+        if (first && i != SMOOTHING && *label_of(w->groups[i], value) == '\0') {
             continue;
         }
-        p = he_export_text(spans[i].keyword, p);
+        p = he_export_text(groups[i].keyword, p);
         if (i == SMOOTHING) {
             *p++ = ' ';
             p += he_u32_print(value, p);
             *p++ = '\n';
         } else {
-            w->name.rest = label_of(w->spans[i], value);
+            w->name.rest = label_of(w->groups[i], value);
             if (*w->name.rest != '\0') {
                 *p++ = ' ';
             }

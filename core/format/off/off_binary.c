@@ -17,13 +17,14 @@ void he_off_binary_init(he_off_binary *binary, he_off_values *values, unsigned h
 {
     *binary = (he_off_binary){.values = values, .has = has, .offset = offset};
     values->vertex_colors.fractions = values->face_colors.fractions = true;
-    he_places_init(&values->into->vertices, HE_PLACE_BYTE, (uint32_t)vertex_numbers(binary) * WORD);
-    he_places_init(&values->into->faces, HE_PLACE_BYTE, SHORTEST_FACE);
-    he_notes_add(&values->into->notes,
-                 &(he_occurrence){.code = "binary_off",
-                                  .text = "read as big-endian binary: the body",
-                                  .place = HE_PLACE_BYTE,
-                                  .at = offset});
+    he_source_map_init(&values->into->vertices, HE_PLACE_BYTE,
+                       (uint32_t)vertex_numbers(binary) * WORD);
+    he_source_map_init(&values->into->faces, HE_PLACE_BYTE, SHORTEST_FACE);
+    he_warnings_add(&values->into->warnings,
+                    &(he_occurrence){.code = "binary_off",
+                                     .text = "read as big-endian binary: the body",
+                                     .place = HE_PLACE_BYTE,
+                                     .at = offset});
 }
 
 static uint32_t word_at(const unsigned char *p)
@@ -44,11 +45,11 @@ static double value_at(const he_off_binary *b, const unsigned char *p, uint64_t 
     float value;
     memcpy(&value, &bits, sizeof value);
     if (!isfinite(value)) {
-        he_notes_add(&b->values->into->notes,
-                     &(he_occurrence){.code = "not_finite",
-                                      .text = "set to 0: a value that is not finite",
-                                      .place = HE_PLACE_BYTE,
-                                      .at = at});
+        he_warnings_add(&b->values->into->warnings,
+                        &(he_occurrence){.code = "not_finite",
+                                         .text = "set to 0: a value that is not finite",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = at});
         return 0;
     }
     return (double)value;
@@ -102,7 +103,7 @@ static he_status take_position(he_off_binary *b, const unsigned char *p, uint64_
         memcpy(&xyz[i], &bits, sizeof bits);
     }
     he_status status =
-        he_places_add(&b->values->into->vertices, (uint32_t)soup->vertex_count, at, err);
+        he_source_map_add(&b->values->into->vertices, (uint32_t)soup->vertex_count, at, err);
     return status == HE_OK ? he_soup_add_vertex(soup, (he_vec3){xyz[0], xyz[1], xyz[2]}, err)
                            : status;
 }
@@ -140,7 +141,7 @@ static he_status take_degree(he_off_binary *b, const unsigned char *p, he_error 
     uint64_t count = 0, at = begin_of(b, WORD);
     he_status status = take_count(p, "corners in one face", soup->limits.corners, at, &count, err);
     if (status == HE_OK) {
-        status = he_places_add(&b->values->into->faces, (uint32_t)soup->face_count, at, err);
+        status = he_source_map_add(&b->values->into->faces, (uint32_t)soup->face_count, at, err);
     }
     b->left = (uint32_t)count;
     b->part = count > 0 ? HE_OFF_CORNER : HE_OFF_COLOR_COUNT;
@@ -169,11 +170,12 @@ static he_status take_color_count(he_off_binary *b, const unsigned char *p, he_e
     uint64_t count = 0, at = begin_of(b, WORD);
     he_status status = take_count(p, "numbers of a colour", 0, at, &count, err);
     if (status == HE_OK && count != 0 && count != 3 && count != 4) {
-        he_notes_add(&b->values->into->notes,
-                     &(he_occurrence){.code = "extra_numbers",
-                                      .text = "ignored: numbers after a face that are not a colour",
-                                      .place = HE_PLACE_BYTE,
-                                      .at = at});
+        he_warnings_add(
+            &b->values->into->warnings,
+            &(he_occurrence){.code = "extra_numbers",
+                             .text = "ignored: numbers after a face that are not a colour",
+                             .place = HE_PLACE_BYTE,
+                             .at = at});
     }
     b->left = b->color_count = (uint32_t)count;
     b->part = HE_OFF_COLOR;
@@ -242,11 +244,11 @@ static size_t size_of(const he_off_binary *b)
 static he_status take_trailing(he_off_binary *b, size_t n, he_error *err)
 {
     if (b->trailing == 0) {
-        he_notes_add(&b->values->into->notes,
-                     &(he_occurrence){.code = "trailing_bytes",
-                                      .text = "ignored: bytes after the last face",
-                                      .place = HE_PLACE_BYTE,
-                                      .at = b->offset});
+        he_warnings_add(&b->values->into->warnings,
+                        &(he_occurrence){.code = "trailing_bytes",
+                                         .text = "ignored: bytes after the last face",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = b->offset});
     }
     b->trailing += n;
     b->offset += n;

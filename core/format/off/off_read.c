@@ -44,8 +44,8 @@ typedef struct off {
 
 static void note(off *o, const char *code, const char *text, const he_line *line)
 {
-    he_notes_add(
-        &o->into->notes,
+    he_warnings_add(
+        &o->into->warnings,
         &(he_occurrence){.code = code, .text = text, .place = HE_PLACE_LINE, .at = line->number});
 }
 
@@ -323,8 +323,8 @@ static he_status read_vertex(off *o, const he_line *line, const char **p, he_err
     needed += (o->has & HE_OFF_UV) != 0 ? 2 : 0;
     if (o->number_count == 0) {
         o->number_line = line->number;
-        he_status status = he_places_add(&o->into->vertices, (uint32_t)o->into->soup.vertex_count,
-                                         line->number, err);
+        he_status status = he_source_map_add(
+            &o->into->vertices, (uint32_t)o->into->soup.vertex_count, line->number, err);
         if (status != HE_OK) {
             return status;
         }
@@ -413,7 +413,8 @@ static bool read_plain_face(off *o, const he_line *line, const char **p, he_stat
         return false;
     }
     if (added == HE_OK) {
-        added = he_places_add(&o->into->faces, (uint32_t)soup->face_count - 1, line->number, err);
+        added =
+            he_source_map_add(&o->into->faces, (uint32_t)soup->face_count - 1, line->number, err);
     }
     if (soup->face_count == o->faces) {
         o->section = DONE;
@@ -433,7 +434,8 @@ static he_status read_face(off *o, const he_line *line, const char **p, he_error
     if (!o->open) {
         status = read_count(line, p, "corners in one face", soup->limits.corners, &o->missing, err);
         if (status == HE_OK) {
-            status = he_places_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);
+            status =
+                he_source_map_add(&o->into->faces, (uint32_t)soup->face_count, line->number, err);
         }
         if (status == HE_OK) {
             status = he_soup_begin_face(soup, err);
@@ -511,8 +513,8 @@ static he_status off_open(he_import *into, void **state, he_error *err)
     o->into = o->values.into = into;
     he_lines_init(&o->lines, read_line, o);
     o->lines.limit = into->soup.limits.bytes;
-    he_places_init(&into->vertices, HE_PLACE_LINE, 1);
-    he_places_init(&into->faces, HE_PLACE_LINE, 1);
+    he_source_map_init(&into->vertices, HE_PLACE_LINE, 1);
+    he_source_map_init(&into->faces, HE_PLACE_LINE, 1);
     *state = o;
     return HE_OK;
 }

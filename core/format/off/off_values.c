@@ -41,10 +41,10 @@ he_status he_off_add_uv(he_off_values *values, const double *uv, he_error *err)
 he_status he_off_values_finish(const he_off_values *values, he_error *err)
 {
     he_soup *soup = &values->into->soup;
-    he_notes *notes = &values->into->notes;
-    he_status status =
-        he_colors_finish(&values->vertex_colors, soup, notes, HE_VERTEX, soup->vertex_count, err);
-    return status == HE_OK
-               ? he_colors_finish(&values->face_colors, soup, notes, HE_FACE, soup->face_count, err)
-               : status;
+    he_warnings *warnings = &values->into->warnings;
+    he_status status = he_colors_finish(&values->vertex_colors, soup, warnings, HE_VERTEX,
+                                        soup->vertex_count, err);
+    return status == HE_OK ? he_colors_finish(&values->face_colors, soup, warnings, HE_FACE,
+                                              soup->face_count, err)
+                           : status;
 }

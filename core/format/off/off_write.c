@@ -24,11 +24,11 @@ static void off_close(void *state)
     he_mem_free(w);
 }
 
-static he_status off_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status off_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
     (void)encoding;
-    (void)watch;
+    (void)progress;
     off_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
         return he_fail_plain(err, HE_NO_MEMORY, "no memory for a writer");
@@ -40,13 +40,13 @@ static he_status off_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
         off_close(w);
         return status;
     }
-    w->normal = he_export_find(mesh, HE_VERTEX, "normal", 3, 3, notes);
-    w->color = he_colors_find(mesh, HE_VERTEX, notes);
-    w->uv = he_export_find(mesh, HE_VERTEX, "uv", 2, 2, notes);
-    w->face_color = he_colors_find(mesh, HE_FACE, notes);
+    w->normal = he_export_find(mesh, HE_VERTEX, "normal", 3, 3, warnings);
+    w->color = he_colors_find(mesh, HE_VERTEX, warnings);
+    w->uv = he_export_find(mesh, HE_VERTEX, "uv", 2, 2, warnings);
+    w->face_color = he_colors_find(mesh, HE_FACE, warnings);
     const he_column *used[] = {w->normal, w->color, w->uv, w->face_color};
-    he_export_note_lost(mesh, used, sizeof used / sizeof *used, notes);
-    he_export_note_materials(mesh, notes);
+    he_export_note_lost(mesh, used, sizeof used / sizeof *used, warnings);
+    he_export_note_materials(mesh, warnings);
     *state = w;
     return HE_OK;
 }

@@ -1,5 +1,5 @@
 /* ply.h - Polygon File Format (the Stanford triangle format): the functions of the format's row in
- * format.c. What is "noted" is reported as a warning (notes.h).
+ * format.c. What is "noted" is reported as a warning (warnings.h).
  *
  *     ply
  *     format ascii 1.0              or binary_little_endian, binary_big_endian
@@ -11,8 +11,8 @@
  * READING. Elements in any order, properties in any order and of any type. In "vertex", x, y and z
  * are the position; in "face", the list vertex_indices or vertex_index has the corners; in
  * "tristrips", such a list has strips of triangles, each begun by -1, with every second triangle
- * reversed. These lists may be of floats or doubles that are whole, with a note. Other numbers of
- * vertices and faces become attributes of that name; those of a normal, a colour and a texture
+ * reversed. These lists may be of floats or doubles that are whole, with a warning. Other numbers
+ * of vertices and faces become attributes of that name; those of a normal, a colour and a texture
  * coordinate together become one attribute (ply_groups.h).
  *
  * Whole numbers are int32 or uint32, those of a colour floats of 0 to 1, others keep their type; a
@@ -30,8 +30,8 @@
  * Errors of the header and in ASCII name a line, those in binary a byte.
  *
  * WRITING. Positions are float if each is one exactly, else double, so they read back to the same
- * bits. Colours are uchar, and a note counts those that no byte represents exactly. Attributes of
- * one component keep their name; of several only normal, color and uv (as s, t) have one.
+ * bits. Colours are uchar, and a warning counts those that no byte represents exactly. Attributes
+ * of one component keep their name; of several only normal, color and uv (as s, t) have one.
  * Attributes of corners take precedence over those of vertices, and are marked so that they are
  * read back as such (ply_groups.h). */
 #ifndef HE_FORMAT_PLY_PLY_H

@@ -3,7 +3,7 @@
 #define HE_FORMAT_PLY_PLY_HEADER_H
 
 #include "format/text/lines.h"
-#include "format/text/notes.h"
+#include "format/text/warnings.h"
 #include "mesh/column.h"
 
 /* The most elements and properties that a header may declare, so that the work for each row stays
@@ -36,15 +36,15 @@ const char *he_ply_type_name(he_ply_type type);
 he_type he_ply_type_column(he_ply_type type);
 
 typedef struct he_ply_property {
-    char name[HE_NOTE_SUBJECT]; /* the name, made printable, and cut if it is longer */
-    bool nameable;              /* an attribute can have this name */
+    char name[HE_WARNING_SUBJECT]; /* the name, made printable, and cut if it is longer */
+    bool nameable;                 /* an attribute can have this name */
     bool list;
     he_ply_type count, type; /* `count` is the type of a list's length */
     uint64_t line;
 } he_ply_property;
 
 typedef struct he_ply_element {
-    char name[HE_NOTE_SUBJECT];
+    char name[HE_WARNING_SUBJECT];
     uint64_t rows;
     size_t first, properties; /* index of its first property in the header, and their number */
     bool lists;               /* some property is a list, so rows differ in length */
@@ -55,7 +55,7 @@ typedef struct he_ply_element {
 /* {0} is empty. */
 typedef struct he_ply_header {
     bool begun, ended;
-    char corners[HE_NOTE_SUBJECT]; /* the rest of a comment that begins with "hedge corners" */
+    char corners[HE_WARNING_SUBJECT]; /* the rest of a comment that begins with "hedge corners" */
     he_ply_encoding encoding;
     he_ply_element *elements;
     size_t count, capacity;

@@ -69,8 +69,8 @@ static void join_copies(he_import *into, size_t mark)
     if (vertices > 0) {
         join(soup, column, vertices);
     } else if (soup->vertex_count > 0) {
-        he_notes_add(
-            &into->notes,
+        he_warnings_add(
+            &into->warnings,
             &(he_occurrence){
                 .code = "stale_copies",
                 .text = "not joined, because their positions differ: vertices marked as copies"});

@@ -29,8 +29,8 @@ typedef struct ply {
 
 static void note(ply *o, const char *code, const char *text, uint64_t at)
 {
-    he_notes_add(&o->into->notes,
-                 &(he_occurrence){.code = code, .text = text, .place = o->rows.unit, .at = at});
+    he_warnings_add(&o->into->warnings,
+                    &(he_occurrence){.code = code, .text = text, .place = o->rows.unit, .at = at});
 }
 
 /* --- ascii --- */

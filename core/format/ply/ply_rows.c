@@ -20,8 +20,8 @@ static he_status at_place(const he_ply_rows *rows, he_status status, he_error *e
 
 static void note_ignored(const he_ply_rows *rows, const he_ply_property *property)
 {
-    he_notes_add(
-        &rows->into->notes,
+    he_warnings_add(
+        &rows->into->warnings,
         &(he_occurrence){.code = property->list ? "ignored_list" : "ignored_property",
                          .text = property->list ? "ignored: list property" : "ignored: property",
                          .subject = property->name,
@@ -151,8 +151,8 @@ static he_status map_corners(he_ply_rows *rows, const he_ply_element *e, he_ply_
                           "property '%s' is not a list", property->name);
     }
     if (property->type >= HE_PLY_FLOAT) {
-        he_notes_add(
-            &rows->into->notes,
+        he_warnings_add(
+            &rows->into->warnings,
             &(he_occurrence){
                 .code = "fraction_indices",
                 .text = "read although it is not a type of whole numbers: vertex indices of type",
@@ -201,12 +201,12 @@ static he_status map_element(he_ply_rows *rows, const he_ply_element *e, he_erro
         return status == HE_OK ? map_attributes(rows, e, HE_FACE, err) : status;
     }
     if (strcmp(e->name, "tristrips") != 0) {
-        he_notes_add(&rows->into->notes, &(he_occurrence){.code = "ignored_element",
-                                                          .text = "ignored: element",
-                                                          .subject = e->name,
-                                                          .length = strlen(e->name),
-                                                          .place = HE_PLACE_LINE,
-                                                          .at = e->line});
+        he_warnings_add(&rows->into->warnings, &(he_occurrence){.code = "ignored_element",
+                                                                .text = "ignored: element",
+                                                                .subject = e->name,
+                                                                .length = strlen(e->name),
+                                                                .place = HE_PLACE_LINE,
+                                                                .at = e->line});
         return HE_OK;
     }
     status = map_corners(rows, e, HE_PLY_STRIP, err);
@@ -239,8 +239,8 @@ he_status he_ply_rows_open(he_ply_rows *out, he_import *into, const he_ply_heade
         he_ply_rows_clear(&rows);
         return status;
     }
-    he_places_init(&into->vertices, rows.unit, 0);
-    he_places_init(&into->faces, rows.unit, 0);
+    he_source_map_init(&into->vertices, rows.unit, 0);
+    he_source_map_init(&into->faces, rows.unit, 0);
     *out = rows;
     return HE_OK;
 }
@@ -274,13 +274,13 @@ void he_ply_rows_next(he_ply_rows *rows)
 
 /* Records where an element begins in the input. The first two elements show the usual distance
  * between elements. */
-static he_status add_place(const he_ply_rows *rows, he_places *places, size_t element,
+static he_status add_place(const he_ply_rows *rows, he_source_map *map, size_t element,
                            he_error *err)
 {
-    if (element == 1 && rows->at - places->runs[0].at <= UINT32_MAX) {
-        places->step = (uint32_t)(rows->at - places->runs[0].at);
+    if (element == 1 && rows->at - map->runs[0].at <= UINT32_MAX) {
+        map->step = (uint32_t)(rows->at - map->runs[0].at);
     }
-    return he_places_add(places, (uint32_t)element, rows->at, err);
+    return he_source_map_add(map, (uint32_t)element, rows->at, err);
 }
 
 /* Extends a column, with defaults, so that it has `end` rows. */
@@ -343,13 +343,13 @@ he_status he_ply_rows_value(he_ply_rows *rows, size_t property, double value, he
     he_column *column = target->column;
     bool whole = column->type == HE_INT32 || column->type == HE_UINT32;
     if (!whole && !(fabs(value) <= (column->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_notes_add(&rows->into->notes,
-                     &(he_occurrence){.code = "not_finite",
-                                      .text = "set to 0: values that are not finite of",
-                                      .subject = column->name,
-                                      .length = strlen(column->name),
-                                      .place = rows->unit,
-                                      .at = rows->at});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){.code = "not_finite",
+                                         .text = "set to 0: values that are not finite of",
+                                         .subject = column->name,
+                                         .length = strlen(column->name),
+                                         .place = rows->unit,
+                                         .at = rows->at});
         value = 0;
     }
     if (target->full != 1) {
@@ -502,13 +502,13 @@ static void put_uv(he_ply_rows *rows, size_t corner, uint32_t component, double 
 {
     unsigned char *at = he_column_row(rows->uv, corner);
     if (!(fabs(value) <= (rows->uv->type == HE_FLOAT ? FLT_MAX : DBL_MAX))) {
-        he_notes_add(&rows->into->notes,
-                     &(he_occurrence){.code = "not_finite",
-                                      .text = "set to 0: values that are not finite of",
-                                      .subject = "uv",
-                                      .length = strlen("uv"),
-                                      .place = rows->unit,
-                                      .at = rows->at});
+        he_warnings_add(&rows->into->warnings,
+                        &(he_occurrence){.code = "not_finite",
+                                         .text = "set to 0: values that are not finite of",
+                                         .subject = "uv",
+                                         .length = strlen("uv"),
+                                         .place = rows->unit,
+                                         .at = rows->at});
         value = 0;
     }
     float narrow = (float)value;
@@ -525,8 +525,8 @@ static he_status end_uvs(he_ply_rows *rows, he_error *err)
     size_t count = rows->uv_count;
     rows->uv_count = 0;
     if (count != 2 * corners) {
-        he_notes_add(
-            &rows->into->notes,
+        he_warnings_add(
+            &rows->into->warnings,
             &(he_occurrence){
                 .code = count == 0 ? "faces_without_uv" : "texcoord_count",
                 .text = count == 0 ? "set to 0, because it has none: texture coordinates of a face"

@@ -105,33 +105,34 @@ static void add(ply_writer *w, const char *name, const he_column *column, uint32
 }
 
 static const he_column *find_group(const ply_writer *w, const he_ply_group *group, he_kind domain,
-                                   he_notes *notes)
+                                   he_warnings *warnings)
 {
-    return group->color ? he_colors_find(w->mesh, domain, notes)
+    return group->color ? he_colors_find(w->mesh, domain, warnings)
                         : he_export_find(w->mesh, domain, group->attribute, group->least,
-                                         group->most, notes);
+                                         group->most, warnings);
 }
 
 /* Adds the properties of a group to what is written. An attribute of corners takes precedence over
  * one of vertices. */
-static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain, he_notes *notes)
+static void add_group(ply_writer *w, const he_ply_group *group, he_kind domain,
+                      he_warnings *warnings)
 {
     const he_column *column = NULL;
     uint64_t lost = 0;
     if (domain == HE_VERTEX && he_mesh_faces(w->mesh) > 0) {
-        column = find_group(w, group, HE_HALFEDGE, notes);
+        column = find_group(w, group, HE_HALFEDGE, warnings);
         if (column != NULL) {
             w->corners[w->corner_count++] = column;
             w->texcoord = strcmp(group->attribute, "uv") == 0 ? column : w->texcoord;
         }
     }
-    column = column != NULL ? column : find_group(w, group, domain, notes);
+    column = column != NULL ? column : find_group(w, group, domain, warnings);
     for (uint32_t i = 0; column != NULL && i < column->components; i++) {
         add(w, group->names[i], column, i, group->color ? HE_PLY_UINT8 : type_of(column));
         w->outputs[w->count - 1].color = group->color;
     }
     if (column != NULL && group->color && !he_colors_are_bytes(w->mesh, column, &lost)) {
-        he_notes_add_count(notes, "rounded_colors", "rounded to bytes: a colour", lost);
+        he_warnings_add_count(warnings, "rounded_colors", "rounded to bytes: a colour", lost);
     }
 }
 
@@ -163,19 +164,20 @@ static bool is_word(const char *name)
     return true;
 }
 
-static void add_attributes(ply_writer *w, he_kind domain, const he_column **used, he_notes *notes)
+static void add_attributes(ply_writer *w, he_kind domain, const he_column **used,
+                           he_warnings *warnings)
 {
     size_t first = w->count;
     for (size_t g = 0; g < HE_PLY_GROUPS; g++) {
         if (he_ply_groups[g].written) {
-            add_group(w, &he_ply_groups[g], domain, notes);
+            add_group(w, &he_ply_groups[g], domain, warnings);
         }
     }
     for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
         const he_column *column = he_mesh_column(w->mesh, i);
         if (column != NULL && column->domain == domain && is_word(column->name) &&
             !is_taken(w, first, column->name) &&
-            he_export_find(w->mesh, domain, column->name, 1, 1, notes) != NULL) {
+            he_export_find(w->mesh, domain, column->name, 1, 1, warnings) != NULL) {
             add(w, column->name, column, 0, type_of(column));
         }
     }
@@ -184,25 +186,26 @@ static void add_attributes(ply_writer *w, he_kind domain, const he_column **used
     }
 }
 
-static he_status split(ply_writer *w, he_watch *watch, he_notes *notes, he_error *err)
+static he_status split(ply_writer *w, he_progress *progress, he_warnings *warnings, he_error *err)
 {
     if (w->corner_count == 0) {
         return HE_OK;
     }
     he_status status =
-        he_splits_make(w->mesh, w->numbers, w->corners, w->corner_count, watch, &w->splits, err);
+        he_splits_make(w->mesh, w->numbers, w->corners, w->corner_count, progress, &w->splits, err);
     if (status == HE_OK && w->splits.copies.count > 0) {
         add(w, HE_PLY_VERTEX_MARK, NULL, 0, HE_PLY_UINT32);
         w->outputs[w->count - 1].own = true;
-        he_notes_add_count(notes, "split_vertices",
-                           "made for other programs where corners differ, and joined by hedge: "
-                           "a vertex",
-                           w->splits.copies.count);
+        he_warnings_add_count(warnings, "split_vertices",
+                              "made for other programs where corners differ, and joined by hedge: "
+                              "a vertex",
+                              w->splits.copies.count);
     }
     return status;
 }
 
-static he_status choose_outputs(ply_writer *w, he_watch *watch, he_notes *notes, he_error *err)
+static he_status choose_outputs(ply_writer *w, he_progress *progress, he_warnings *warnings,
+                                he_error *err)
 {
     size_t most = 4;
     for (size_t i = 0; i < he_mesh_columns(w->mesh); i++) {
@@ -221,19 +224,19 @@ static he_status choose_outputs(ply_writer *w, he_watch *watch, he_notes *notes,
         used[i] = NULL;
         add(w, names[i], NULL, i, type);
     }
-    add_attributes(w, HE_VERTEX, used, notes);
+    add_attributes(w, HE_VERTEX, used, warnings);
     used[w->count] = NULL;
-    he_status status = split(w, watch, notes, err);
+    he_status status = split(w, progress, warnings, err);
     w->vertex_outputs = w->count;
-    add_attributes(w, HE_FACE, used, notes);
-    he_export_note_lost(w->mesh, used, w->count, notes);
-    he_export_note_materials(w->mesh, notes);
+    add_attributes(w, HE_FACE, used, warnings);
+    he_export_note_lost(w->mesh, used, w->count, warnings);
+    he_export_note_materials(w->mesh, warnings);
     he_mem_free(used);
     return status;
 }
 
-static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status ply_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
     /* This array has the order in which the format's row in format.c lists its encodings. */
     static const he_ply_encoding encodings[] = {HE_PLY_LITTLE_ENDIAN, HE_PLY_ASCII,
@@ -247,7 +250,7 @@ static he_status ply_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     w->halfedge = HE_NONE;
     he_status status = he_export_numbers(mesh, &w->numbers, err);
     if (status == HE_OK) {
-        status = choose_outputs(w, watch, notes, err);
+        status = choose_outputs(w, progress, warnings, err);
     }
     if (status != HE_OK) {
         ply_close(w);

@@ -1,5 +1,5 @@
 /* stl.h - STL, triangles for stereolithography: the functions of the format's row in format.c. What
- * is "noted" is reported as a warning (notes.h).
+ * is "noted" is reported as a warning (warnings.h).
  *
  *     solid NAME                         binary, little-endian:
  *       facet normal x y z                 80 bytes of anything

@@ -1,6 +1,6 @@
 #include "format/stl/stl.h"
 
-#include "format/io/spans.h"
+#include "format/io/face_groups.h"
 #include "format/io/weld.h"
 #include "format/text/lines.h"
 
@@ -23,7 +23,7 @@ typedef struct stl {
 
     /* text */
     he_lines lines;
-    he_spans object;
+    he_face_groups object;
     bool in_facet, in_solid, begun;
     unsigned corner_count,
         numbers; /* corners of the facet read so far; numbers of a corner still to come */
@@ -54,7 +54,7 @@ static he_status add_corner(stl *o, unsigned i, he_vec3 position, uint64_t at, h
     size_t before = soup->vertex_count;
     he_status status = he_weld_vertex(&o->weld, soup, position, &o->corners[i], err);
     if (status == HE_OK && soup->vertex_count > before) {
-        status = he_places_add(&o->into->vertices, o->corners[i], at, err);
+        status = he_source_map_add(&o->into->vertices, o->corners[i], at, err);
     }
     return status;
 }
@@ -63,7 +63,7 @@ static he_status add_facet(stl *o, uint64_t at, he_error *err)
 {
     size_t face = o->into->soup.face_count;
     he_status status = he_soup_add_face(&o->into->soup, o->corners, 3, err);
-    return status == HE_OK ? he_places_add(&o->into->faces, (uint32_t)face, at, err) : status;
+    return status == HE_OK ? he_source_map_add(&o->into->faces, (uint32_t)face, at, err) : status;
 }
 
 /* --- text --- */
@@ -89,7 +89,8 @@ static he_status begin_solid(stl *o, const he_line *line, const char *p, he_erro
     if (p == line->end && o->object.changes.count == 0) {
         return HE_OK;
     }
-    return he_spans_set_name(&o->object, o->into->soup.face_count, line, p, &o->into->notes, err);
+    return he_face_groups_set_name(&o->object, o->into->soup.face_count, line, p,
+                                   &o->into->warnings, err);
 }
 
 /* Returns the end of the normal of a facet: the end of the line, or the word "outer". */
@@ -141,12 +142,12 @@ static he_status read_word(stl *o, const he_line *line, const char **p, he_error
     } else if (is(word, end, "endfacet")) {
         return end_facet(o, line, word, err);
     } else if (!is(word, end, "outer") && !is(word, end, "loop") && !is(word, end, "endloop")) {
-        he_notes_add(&o->into->notes, &(he_occurrence){.code = "unknown_keyword",
-                                                       .text = "ignored: unknown keyword",
-                                                       .subject = word,
-                                                       .length = (size_t)(end - word),
-                                                       .place = HE_PLACE_LINE,
-                                                       .at = line->number});
+        he_warnings_add(&o->into->warnings, &(he_occurrence){.code = "unknown_keyword",
+                                                             .text = "ignored: unknown keyword",
+                                                             .subject = word,
+                                                             .length = (size_t)(end - word),
+                                                             .place = HE_PLACE_LINE,
+                                                             .at = line->number});
         o->unknown = o->unknown == 0 ? line->number : o->unknown;
         *p = line->end;
     }
@@ -190,13 +191,13 @@ static he_status finish_text(stl *o, he_error *err)
                           "not an STL file: it has no facets");
     }
     if (o->in_solid) {
-        he_notes_add(&o->into->notes,
-                     &(he_occurrence){.code = "no_endsolid",
-                                      .text = "the file ends before its last endsolid",
-                                      .place = HE_PLACE_LINE,
-                                      .at = last_line});
+        he_warnings_add(&o->into->warnings,
+                        &(he_occurrence){.code = "no_endsolid",
+                                         .text = "the file ends before its last endsolid",
+                                         .place = HE_PLACE_LINE,
+                                         .at = last_line});
     }
-    return he_spans_finish(&o->object, &o->into->soup, "object", err);
+    return he_face_groups_finish(&o->object, &o->into->soup, "object", err);
 }
 
 /* --- binary --- */
@@ -258,11 +259,11 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
         status = add_facet(o, at, err);
     }
     if (p[0] != 0 || p[1] != 0) {
-        he_notes_add(&o->into->notes,
-                     &(he_occurrence){.code = "attribute_bytes",
-                                      .text = "ignored: attribute bytes of a facet",
-                                      .place = HE_PLACE_BYTE,
-                                      .at = at});
+        he_warnings_add(&o->into->warnings,
+                        &(he_occurrence){.code = "attribute_bytes",
+                                         .text = "ignored: attribute bytes of a facet",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = at});
     }
     o->left--;
     return at_place(status, HE_PLACE_BYTE, at, err);
@@ -273,11 +274,11 @@ static he_status take_facet(stl *o, const unsigned char *bytes, uint64_t at, he_
 static he_status take_trailing(stl *o, size_t n, he_error *err)
 {
     if (o->trailing == 0) {
-        he_notes_add(&o->into->notes,
-                     &(he_occurrence){.code = "trailing_bytes",
-                                      .text = "ignored: bytes after the last facet",
-                                      .place = HE_PLACE_BYTE,
-                                      .at = o->offset});
+        he_warnings_add(&o->into->warnings,
+                        &(he_occurrence){.code = "trailing_bytes",
+                                         .text = "ignored: bytes after the last facet",
+                                         .place = HE_PLACE_BYTE,
+                                         .at = o->offset});
     }
     o->trailing += n < FACET ? n : FACET;
     if (o->trailing >= FACET || o->count == 0) {
@@ -357,7 +358,7 @@ static void stl_close(void *state)
     stl *o = state;
     he_weld_clear(&o->weld);
     he_lines_clear(&o->lines);
-    he_spans_clear(&o->object);
+    he_face_groups_clear(&o->object);
     he_mem_free(o);
 }
 
@@ -387,8 +388,8 @@ static he_status decide(stl *o, he_error *err)
         begins_solid(head, head + o->head_count) && memchr(head, '\0', o->head_count) == NULL;
     o->kind = text ? TEXT : BINARY;
     /* In text most facets take seven lines. */
-    he_places_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
-    he_places_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
+    he_source_map_init(&o->into->vertices, text ? HE_PLACE_LINE : HE_PLACE_BYTE, 0);
+    he_source_map_init(&o->into->faces, text ? HE_PLACE_LINE : HE_PLACE_BYTE, text ? 7 : FACET);
     return feed_known(o, o->head, o->head_count, err);
 }
 
@@ -422,9 +423,9 @@ static he_status stl_finish(void *state, he_error *err)
         status = o->kind == TEXT ? finish_text(o, err) : finish_binary(o, err);
     }
     if (status == HE_OK) {
-        he_notes_add_count(&o->into->notes, "welded",
-                           "made one with another at its position: a corner",
-                           soup->corner_count - soup->vertex_count);
+        he_warnings_add_count(&o->into->warnings, "welded",
+                              "made one with another at its position: a corner",
+                              soup->corner_count - soup->vertex_count);
     }
     return status;
 }

@@ -1,7 +1,7 @@
 #include "format/stl/stl.h"
 
-#include "format/io/cuts.h"
 #include "format/io/export.h"
+#include "format/io/export_triangles.h"
 #include "format/io/weld.h"
 #include "format/text/number.h"
 
@@ -16,26 +16,26 @@ enum { HEADER_BYTES = 80 };
 typedef struct stl_writer {
     const he_mesh *mesh;
     bool text;
-    he_cuts cuts;
-    he_cut_walk walk;
+    he_export_triangles cuts;
+    he_export_triangle_walk walk;
     part part;
 } stl_writer;
 
 static void stl_close(void *state)
 {
     stl_writer *w = state;
-    he_cuts_clear(&w->cuts);
+    he_export_triangles_clear(&w->cuts);
     he_mem_free(w);
 }
 
 /* --- warnings, which are found before the first byte is written --- */
 
-static void note_cuts(const he_cuts *cuts, he_notes *notes)
+static void note_cuts(const he_export_triangles *cuts, he_warnings *warnings)
 {
-    he_notes_add_count(notes, "triangulated", "cut into triangles: a face", cuts->polygons);
-    he_notes_add_count(notes, "turned_triangles",
-                       "cut into triangles some of which have no area or are turned over: a face",
-                       cuts->turned);
+    he_warnings_add_count(warnings, "triangulated", "cut into triangles: a face", cuts->polygons);
+    he_warnings_add_count(
+        warnings, "turned_triangles",
+        "cut into triangles some of which have no area or are turned over: a face", cuts->turned);
 }
 
 /* The mesh that a reader will make of the file, in which vertices at equal positions are merged. It
@@ -47,13 +47,13 @@ typedef struct again {
     uint64_t isolated, used;
 } again;
 
-static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, he_error *err)
+static he_status weld_vertices(const stl_writer *w, again *a, he_warnings *warnings, he_error *err)
 {
     const he_content *c = &w->mesh->c;
     he_narrowed narrowed = {0};
     he_status status = HE_OK;
     for (uint32_t v = 0; v < c->vertices.issued && status == HE_OK; v++) {
-        status = he_watch_at(a->soup.limits.watch, v, c->vertices.issued, err);
+        status = he_progress_at(a->soup.limits.progress, v, c->vertices.issued, err);
         if (status != HE_OK || !he_vertex_is_live(w->mesh, (he_vertex){v})) {
             continue;
         }
@@ -69,17 +69,17 @@ static he_status weld_vertices(const stl_writer *w, again *a, he_notes *notes, h
         a->used++;
         status = he_weld_vertex(&a->weld, &a->soup, p, &a->vertex[v], err);
     }
-    return status == HE_OK ? he_narrowed_finish(&narrowed, notes, err) : status;
+    return status == HE_OK ? he_narrowed_finish(&narrowed, warnings, err) : status;
 }
 
 /* Counts the defects for which a reader will refuse the facets. They arise because vertices at
  * equal positions are merged, or because two faces were cut along the same diagonal. */
 static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he_error *err)
 {
-    he_cut_walk walk = {0};
+    he_export_triangle_walk walk = {0};
     uint32_t v[3];
     he_status status = HE_OK;
-    while (status == HE_OK && he_cuts_next(&w->cuts, &walk, v)) {
+    while (status == HE_OK && he_export_triangles_next(&w->cuts, &walk, v)) {
         for (size_t i = 0; i < 3; i++) {
             v[i] = a->vertex[v[i]];
         }
@@ -89,7 +89,8 @@ static he_status try_facets(const stl_writer *w, again *a, uint64_t *defects, he
 }
 
 /* Adds warnings about how the mesh will differ when the file is read again. */
-static he_status note_differences(const stl_writer *w, again *a, he_notes *notes, he_error *err)
+static he_status note_differences(const stl_writer *w, again *a, he_warnings *warnings,
+                                  he_error *err)
 {
     uint64_t defects = 0;
     a->vertex = he_mem_array(NULL, w->mesh->c.vertices.issued, sizeof *a->vertex);
@@ -97,36 +98,37 @@ static he_status note_differences(const stl_writer *w, again *a, he_notes *notes
         return he_fail_plain(err, HE_NO_MEMORY, "no memory to number %u vertices",
                              w->mesh->c.vertices.issued);
     }
-    he_status status = weld_vertices(w, a, notes, err);
+    he_status status = weld_vertices(w, a, warnings, err);
     uint64_t merged = a->used - a->soup.vertex_count;
     if (status == HE_OK && (merged > 0 || w->cuts.polygons > 0)) {
         status = try_facets(w, a, &defects, err);
     }
     if (status == HE_OK) {
-        he_notes_add_count(notes, "isolated_vertices", "not carried: a vertex of no face",
-                           a->isolated);
-        he_notes_add_count(notes, "merged", "at the position of another, and one with it: a vertex",
-                           merged);
-        he_notes_add_count(notes, "no_mesh_again",
-                           "refused without repairs when it is read again: a facet or vertex",
-                           defects);
+        he_warnings_add_count(warnings, "isolated_vertices", "not carried: a vertex of no face",
+                              a->isolated);
+        he_warnings_add_count(warnings, "merged",
+                              "at the position of another, and one with it: a vertex", merged);
+        he_warnings_add_count(warnings, "no_mesh_again",
+                              "refused without repairs when it is read again: a facet or vertex",
+                              defects);
     }
     return status;
 }
 
-static he_status note_again(const stl_writer *w, he_watch *watch, he_notes *notes, he_error *err)
+static he_status note_again(const stl_writer *w, he_progress *progress, he_warnings *warnings,
+                            he_error *err)
 {
     again a = {.vertex = NULL};
-    he_soup_init(&a.soup, &(he_limits){.watch = watch});
-    he_status status = note_differences(w, &a, notes, err);
+    he_soup_init(&a.soup, &(he_limits){.progress = progress});
+    he_status status = note_differences(w, &a, warnings, err);
     he_weld_clear(&a.weld);
     he_soup_clear(&a.soup);
     he_mem_free(a.vertex);
     return status;
 }
 
-static he_status stl_open(const he_mesh *mesh, size_t encoding, he_watch *watch, he_notes *notes,
-                          void **state, he_error *err)
+static he_status stl_open(const he_mesh *mesh, size_t encoding, he_progress *progress,
+                          he_warnings *warnings, void **state, he_error *err)
 {
     stl_writer *w = he_mem_zero(1, sizeof *w);
     if (w == NULL) {
@@ -134,17 +136,17 @@ static he_status stl_open(const he_mesh *mesh, size_t encoding, he_watch *watch,
     }
     w->mesh = mesh;
     w->text = encoding != 0;
-    he_status status = he_cuts_make(mesh, watch, &w->cuts, err);
+    he_status status = he_export_triangles_make(mesh, progress, &w->cuts, err);
     if (status == HE_OK) {
-        note_cuts(&w->cuts, notes);
-        status = note_again(w, watch, notes, err);
+        note_cuts(&w->cuts, warnings);
+        status = note_again(w, progress, warnings, err);
     }
     if (status != HE_OK) {
         stl_close(w);
         return status;
     }
-    he_export_note_lost(mesh, NULL, 0, notes);
-    he_export_note_materials(mesh, notes);
+    he_export_note_lost(mesh, NULL, 0, warnings);
+    he_export_note_materials(mesh, warnings);
     *state = w;
     return HE_OK;
 }
@@ -254,7 +256,7 @@ static char *write_facets(stl_writer *w, char *p, const char *end)
 {
     while (end - p >= HE_WRITE_ROOM) {
         uint32_t v[3];
-        if (!he_cuts_next(&w->cuts, &w->walk, v)) {
+        if (!he_export_triangles_next(&w->cuts, &w->walk, v)) {
             w->part = END;
             return w->text ? he_export_text("endsolid\n", p) : p;
         }

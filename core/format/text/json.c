@@ -1,8 +1,8 @@
 #include "format/text/json.h"
 
 #include "format/text/json_string.h"
-#include "format/text/notes.h"
 #include "format/text/number.h"
+#include "format/text/warnings.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -12,7 +12,7 @@
 #define HE_FORMAT_TEXT_JSON_H
 
 #include "base/mem.h"
-#include "base/watch.h"
+#include "base/progress.h"
 #include "mesh/mesh.h"
 
 enum { HE_JSON_PATH = 100 };
@@ -39,9 +39,9 @@ typedef struct he_json {
  * Returns HE_NOT_FINITE if a number is beyond the range of doubles.
  * Returns HE_LIMIT if the text has too many values or is too long.
  * Returns HE_NO_MEMORY if memory is out.
- * Returns HE_CANCELLED if the watch cancelled the work. */
+ * Returns HE_CANCELLED if the work was cancelled. */
 HE_NODISCARD he_status he_json_parse(he_json *json, const char *text, size_t length,
-                                     uint64_t offset, he_watch *watch, he_error *err);
+                                     uint64_t offset, he_progress *progress, he_error *err);
 void he_json_clear(he_json *json);
 
 /* Returns the type of a value: '{', '[', '"', 't', 'f', 'n', or '0' for any number; '\0' for

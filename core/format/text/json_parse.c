@@ -3,7 +3,7 @@
 
 #include "base/text_hash.h"
 #include "format/text/json_lexer.h"
-#include "format/text/notes.h"
+#include "format/text/warnings.h"
 
 #include <string.h>
 
@@ -12,7 +12,7 @@ enum { STRIDE = 1 << 16 };
 
 typedef struct scan {
     he_json *json;
-    he_watch *watch;
+    he_progress *progress;
     const char *told; /* the byte up to which progress was reported */
     he_lexer lexer;
     uint32_t open[HE_JSON_DEPTH]; /* numbers of the arrays and objects that are not closed yet */
@@ -43,7 +43,7 @@ static he_status tell(scan *s)
 {
     const char *at = s->lexer.at;
     s->told = at;
-    return he_watch_step(s->watch, (uint64_t)(at - s->json->text), s->json->length, s->err);
+    return he_progress_step(s->progress, (uint64_t)(at - s->json->text), s->json->length, s->err);
 }
 
 static he_status poll(scan *s)
@@ -127,7 +127,7 @@ static he_status check_many(scan *s, uint32_t object, size_t count)
     for (uint32_t i = he_json_first(json, object); i != HE_NONE && status == HE_OK;
          i = he_json_after(json, object, i)) {
         char text[NAME_ROOM];
-        if (i % HE_WATCH_STRIDE == 0) {
+        if (i % HE_PROGRESS_STRIDE == 0) {
             status = tell(s);
         }
         size_t length = he_json_string(json, i, text, sizeof text);
@@ -201,14 +201,14 @@ static he_status scan_text(scan *s)
 }
 
 he_status he_json_parse(he_json *json, const char *text, size_t length, uint64_t offset,
-                        he_watch *watch, he_error *err)
+                        he_progress *progress, he_error *err)
 {
     *json = (he_json){.text = text, .length = length, .offset = offset};
     if (length > HE_JSON_TEXT) {
         return he_fail_at(err, HE_LIMIT, HE_PLACE_BYTE, offset,
                           "JSON: there are more than %zu bytes", HE_JSON_TEXT);
     }
-    scan s = {.json = json, .watch = watch, .told = text, .err = err};
+    scan s = {.json = json, .progress = progress, .told = text, .err = err};
     he_lexer_init(&s.lexer, NULL);
     s.lexer.offset = offset;
     he_lexer_feed(&s.lexer, text, length);

@@ -1,7 +1,7 @@
 #include "format/text/lines.h"
 
-#include "format/text/notes.h"
 #include "format/text/number.h"
+#include "format/text/warnings.h"
 
 #include <stdarg.h>
 #include <stdio.h>

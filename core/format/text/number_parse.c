@@ -1,7 +1,7 @@
 #include "format/text/number.h"
 
-#include "format/text/exact.h"
-#include "format/text/power.h"
+#include "format/text/decimal_exact.h"
+#include "format/text/pow5.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -73,13 +73,13 @@ static const char *read_digits(const char *p, const char *end, uint64_t *value)
 static uint64_t nearest(uint64_t w, int64_t q, bool *decided)
 {
     *decided = true;
-    if (q < HE_POWER_MIN) {
+    if (q < HE_POW5_MIN) {
         return 0;
     }
     if (q > 308) {
         return INFINITY_BITS;
     }
-    he_power power = he_power_of_five((int)q);
+    he_pow5 power = he_pow5_get((int)q);
     if (q < 0 && q >= -27) { /* the method needs the inverses of exact powers rounded up */
         power.low++;
         power.high += power.low == 0;
@@ -157,7 +157,7 @@ static uint64_t nearest_to_many(const char *begin, const char *end, int64_t expo
     if (bits == next && decided && next_decided) {
         return bits;
     }
-    return he_exact_round(first, end, exponent, bits);
+    return he_decimal_exact_round(first, end, exponent, bits);
 }
 
 /* Returns the length of a word by which C libraries print infinity or NaN; 0 if there is no such
@@ -267,7 +267,7 @@ he_status he_double_parse(const char *begin, const char *end, he_grammar grammar
             bits = nearest(w, exponent, &decided);
         }
         if (!decided) {
-            bits = he_exact_round(first, mantissa_end, exponent, bits);
+            bits = he_decimal_exact_round(first, mantissa_end, exponent, bits);
         }
         *used = (size_t)(p - begin);
         if (bits == INFINITY_BITS) {

@@ -1,6 +1,6 @@
 #include "format/text/number.h"
 
-#include "format/text/power.h"
+#include "format/text/pow5.h"
 
 #include <string.h>
 
@@ -107,7 +107,7 @@ typedef struct decimal {
 /* Returns the top 64 bits of the product of a 64-bit and a 128-bit number. The last bit is set if
  * anything was cut off, so that comparing with even numbers stays exact (Schubfach, section
  * 9.6). */
-static uint64_t scale(he_power g, uint64_t value)
+static uint64_t scale(he_pow5 g, uint64_t value)
 {
     he_u128 low = (he_u128)g.low * value;
     he_u128 high = (he_u128)g.high * value + (uint64_t)(low >> 64);
@@ -122,7 +122,7 @@ static decimal shortest(uint64_t c, int q, int narrow)
 {
     int k = narrow ? (q * 1262611 - 524031) >> 22 : (q * 1262611) >> 22; /* log10, floor */
     int h = q + he_floor_log2_of_ten(-k) + 1;
-    he_power g = he_power_of_five(-k);
+    he_pow5 g = he_pow5_get(-k);
     if (-k < 0 || -k > 55) { /* the power is not exact: the paper needs it rounded up */
         g.low++;
         g.high += g.low == 0;

@@ -19,7 +19,7 @@ static double wall_seconds(void)
 }
 
 /* Gives the work access to the helping threads, if `helped`; they are started once. */
-static void lend(he_watch *watch, bool helped)
+static void lend(he_progress *progress, bool helped)
 {
     static st_parallel *hands;
     if (hands == NULL) {
@@ -28,17 +28,17 @@ static void lend(he_watch *watch, bool helped)
     if (hands == NULL) {
         bench_require(HE_NO_MEMORY);
     }
-    he_watch_init(watch, NULL, NULL);
-    watch->exec = helped ? st_parallel_exec(hands) : NULL;
+    he_progress_init(progress, NULL, NULL);
+    progress->parallel = helped ? st_parallel_host(hands) : NULL;
 }
 
 static void build(bench_side *side, bool helped, bench_result *out)
 {
     he_mesh *mesh;
-    he_watch watch;
+    he_progress progress;
     he_soup soup = bench_soup(side);
-    lend(&watch, helped);
-    soup.limits.watch = &watch;
+    lend(&progress, helped);
+    soup.limits.progress = &progress;
     double start = wall_seconds();
     bench_require(he_build(&soup, 0, &mesh, NULL, NULL));
     out->value = wall_seconds() - start;
@@ -69,13 +69,13 @@ static he_vec3 *rows_new(size_t count)
 
 static void face_normals(bench_side *side, bool helped, bench_result *out)
 {
-    he_watch watch;
+    he_progress progress;
     const he_mesh *m = bench_mesh(side);
     uint32_t count = he_mesh_issued(m, HE_FACE);
     he_vec3 *rows = rows_new(count);
-    lend(&watch, helped);
+    lend(&progress, helped);
     double start = wall_seconds();
-    bench_require(he_face_normals(m, &watch, rows, NULL));
+    bench_require(he_face_normals(m, &progress, rows, NULL));
     out->value = wall_seconds() - start;
     out->amount = count;
     bench_exact(out, hash_of(rows, count));
@@ -84,13 +84,13 @@ static void face_normals(bench_side *side, bool helped, bench_result *out)
 
 static void corner_normals(bench_side *side, bool helped, bench_result *out)
 {
-    he_watch watch;
+    he_progress progress;
     const he_mesh *m = bench_mesh(side);
     size_t count = 2 * (size_t)he_mesh_issued(m, HE_EDGE);
     he_vec3 *rows = rows_new(count);
-    lend(&watch, helped);
+    lend(&progress, helped);
     double start = wall_seconds();
-    bench_require(he_corner_normals(m, 0.5, &watch, rows, NULL));
+    bench_require(he_corner_normals(m, 0.5, &progress, rows, NULL));
     out->value = wall_seconds() - start;
     out->amount = (double)count;
     bench_exact(out, hash_of(rows, count));
@@ -100,15 +100,15 @@ static void corner_normals(bench_side *side, bool helped, bench_result *out)
 static void subdivide(bench_side *side, he_scheme scheme, bool helped, bench_result *out)
 {
     he_mesh *m;
-    he_watch watch;
+    he_progress progress;
     bench_require(he_mesh_copy(bench_mesh(side), &m, NULL));
-    lend(&watch, helped);
-    he_mesh_watch(m, &watch);
+    lend(&progress, helped);
+    he_mesh_set_progress(m, &progress);
     double start = wall_seconds();
     bench_require(he_subdivide(m, scheme, 1, NULL, NULL));
     out->value = wall_seconds() - start;
     out->amount = he_mesh_faces(m);
-    he_mesh_watch(m, NULL);
+    he_mesh_set_progress(m, NULL);
     uint64_t hash = bench_mesh_hash(m);
     for (uint32_t v = 0; v < he_mesh_issued(m, HE_VERTEX); v++) {
         he_vec3 p = he_position(m, (he_vertex){v});
@@ -134,11 +134,11 @@ static void import(bench_side *side, const char *format, const char *name, bool 
 {
     he_import import;
     he_mesh *mesh;
-    he_watch watch;
-    lend(&watch, helped);
+    he_progress progress;
+    lend(&progress, helped);
     double start = wall_seconds();
     bench_read(side, format, name, &import);
-    import.soup.limits.watch = &watch;
+    import.soup.limits.progress = &progress;
     bench_require(he_build(&import.soup, HE_BUILD_TAKE, &mesh, NULL, NULL));
     he_import_clear(&import);
     out->value = wall_seconds() - start;

@@ -20,7 +20,7 @@ static void one_ring(bench_side *side, bench_result *out)
             he_vec3 p = he_position(m, he_target(m, h));
             sum += p.x + p.y + p.z;
             visited++;
-            h = he_turn_ccw(m, h);
+            h = he_swing_ccw(m, h);
         } while (h.i != first.i);
     }
     out->value = bench_seconds() - start;

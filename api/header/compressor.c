@@ -1,0 +1,179 @@
+#include "api/header/compressor.h"
+
+#include "api/header/compression.h"
+#include "api/limits.h"
+#include "base/mem.h"
+
+#include <string.h>
+
+enum { LEVEL = 1, GZIP_MEMORY = 8 };
+
+struct api_compressor {
+    api_coding coding;
+    api_plain plain;
+    size_t used; /* bytes of plain.bytes used */
+    z_stream zlib;
+    ZSTD_CCtx *zstd;
+    bool begun; /* the compressor was started */
+    bool as_it_is;
+    bool read;  /* the whole body was read: what is left of it is in `in` */
+    bool ended; /* the whole output was returned */
+    bool failed;
+    size_t from, to;
+    /* The bytes from..to are uncompressed input. There is room for one byte more than is compressed
+     * at once, which shows whether the body is longer. */
+    char in[API_COMPRESS_AT_ONCE + 1];
+};
+
+api_compressor *api_compressor_new(api_coding coding, const api_plain *plain)
+{
+    api_compressor *compressor = he_mem_alloc(sizeof *compressor);
+    if (compressor != NULL) {
+        memset(compressor, 0, offsetof(api_compressor, in));
+        compressor->coding = coding;
+        compressor->plain = *plain;
+    }
+    return compressor;
+}
+
+void api_compressor_free(api_compressor *compressor)
+{
+    if (compressor != NULL) {
+        if (compressor->begun && compressor->coding == API_GZIP) {
+            deflateEnd(&compressor->zlib);
+        }
+        ZSTD_freeCCtx(compressor->zstd);
+        he_mem_free(compressor);
+    }
+}
+
+/* Reads bytes of the body into the free part of `in`. */
+static void fill(api_compressor *compressor)
+{
+    const api_plain *plain = &compressor->plain;
+    while (!compressor->read && !compressor->failed && compressor->to < sizeof compressor->in) {
+        size_t room = sizeof compressor->in - compressor->to;
+        if (plain->bytes != NULL) {
+            size_t left = plain->length - compressor->used, take = left < room ? left : room;
+            memcpy(compressor->in + compressor->to, plain->bytes + compressor->used, take);
+            compressor->used += take;
+            compressor->to += take;
+            compressor->read = compressor->used == plain->length;
+        } else {
+            int64_t got = plain->read(plain->context, compressor->in + compressor->to, room);
+            compressor->to += got > 0 ? (size_t)got : 0;
+            compressor->read = got == 0;
+            compressor->failed = got < 0;
+        }
+    }
+}
+
+bool api_compressor_whole(api_compressor *compressor, const char **bytes, size_t *length)
+{
+    fill(compressor);
+    *bytes = compressor->in;
+    *length = compressor->to;
+    return compressor->read && compressor->to <= API_COMPRESS_AT_ONCE;
+}
+
+static bool begin_gzip(api_compressor *compressor)
+{
+    /* A short body needs no larger window than itself. zlib does not support windows of 256
+     * bytes. */
+    int window = MAX_WBITS;
+    while (compressor->read && window > 9 && compressor->to <= (size_t)1 << (window - 1)) {
+        window--;
+    }
+    int memory = window < MAX_WBITS ? window - 7 : GZIP_MEMORY;
+    api_compression_zlib(&compressor->zlib, NULL);
+    return deflateInit2(&compressor->zlib, LEVEL, Z_DEFLATED, window + 16, memory,
+                        Z_DEFAULT_STRATEGY) == Z_OK;
+}
+
+/* Makes zstd allocate its memory now by compressing no bytes: it would otherwise allocate with the
+ * first bytes, when failure is too late. */
+static bool begin_zstd(api_compressor *compressor)
+{
+    ZSTD_inBuffer none = {"", 0, 0};
+    ZSTD_outBuffer nowhere = {NULL, 0, 0};
+    compressor->zstd = ZSTD_createCCtx_advanced(api_compression_zstd(NULL));
+    return compressor->zstd != NULL &&
+           !ZSTD_isError(
+               ZSTD_CCtx_setParameter(compressor->zstd, ZSTD_c_compressionLevel, LEVEL)) &&
+           !ZSTD_isError(ZSTD_CCtx_setParameter(compressor->zstd, ZSTD_c_checksumFlag, 1)) &&
+           (!compressor->read ||
+            !ZSTD_isError(ZSTD_CCtx_setPledgedSrcSize(compressor->zstd, compressor->to))) &&
+           !ZSTD_isError(ZSTD_compressStream2(compressor->zstd, &nowhere, &none, ZSTD_e_continue));
+}
+
+bool api_compressor_begin(api_compressor *compressor)
+{
+    compressor->begun =
+        compressor->coding == API_GZIP ? begin_gzip(compressor) : begin_zstd(compressor);
+    return compressor->begun;
+}
+
+void api_compressor_give_up(api_compressor *compressor)
+{
+    compressor->as_it_is = true;
+}
+
+/* Each compresses the bytes from..to into `buffer`, and returns the number of bytes written. */
+static size_t step_gzip(api_compressor *compressor, char *buffer, size_t size)
+{
+    z_stream *z = &compressor->zlib;
+    z->next_in = (z_const Bytef *)(compressor->in + compressor->from);
+    z->avail_in = (unsigned)(compressor->to - compressor->from);
+    z->next_out = (Bytef *)buffer;
+    z->avail_out = size > UINT32_MAX ? UINT32_MAX : (unsigned)size;
+    unsigned room = z->avail_out;
+    int status = deflate(z, compressor->read ? Z_FINISH : Z_NO_FLUSH);
+    compressor->from = compressor->to - z->avail_in;
+    compressor->ended = status == Z_STREAM_END;
+    compressor->failed = status == Z_STREAM_ERROR;
+    return room - z->avail_out;
+}
+
+static size_t step_zstd(api_compressor *compressor, char *buffer, size_t size)
+{
+    ZSTD_inBuffer in = {compressor->in + compressor->from, compressor->to - compressor->from, 0};
+    ZSTD_outBuffer out = {buffer, size, 0};
+    size_t left = ZSTD_compressStream2(compressor->zstd, &out, &in,
+                                       compressor->read ? ZSTD_e_end : ZSTD_e_continue);
+    compressor->from += in.pos;
+    compressor->failed = ZSTD_isError(left);
+    compressor->ended = compressor->read && left == 0;
+    return out.pos;
+}
+
+static size_t step_plain(api_compressor *compressor, char *buffer, size_t size)
+{
+    size_t left = compressor->to - compressor->from, take = left < size ? left : size;
+    memcpy(buffer, compressor->in + compressor->from, take);
+    compressor->from += take;
+    compressor->ended = compressor->read && compressor->from == compressor->to;
+    return take;
+}
+
+int64_t api_compressor_read(void *context, char *buffer, size_t size)
+{
+    api_compressor *compressor = context;
+    size_t given = 0, plain = 0;
+    while (given < size && !compressor->ended && (given == 0 || plain < API_COMPRESS_TURN)) {
+        if (compressor->from == compressor->to) {
+            compressor->from = compressor->to = 0;
+        }
+        if (compressor->to == 0) {
+            fill(compressor);
+            plain += compressor->to;
+        }
+        if (compressor->failed) {
+            return -1;
+        }
+        given += compressor->as_it_is ? step_plain(compressor, buffer + given, size - given)
+                 : compressor->coding == API_GZIP
+                     ? step_gzip(compressor, buffer + given, size - given)
+                     : step_zstd(compressor, buffer + given, size - given);
+    }
+    return compressor->failed ? -1 : (int64_t)given;
+}

@@ -1,0 +1,37 @@
+/* swing.h - finds the neighbour of each corner of a soup around its vertex: the first half of
+ * he_build.
+ *
+ * A corner c of a face stands for the half-edge that leaves it. The swing of c (an operator of J.
+ * Rossignac's corner table) is the corner at the same vertex in the next face counter-clockwise: it
+ * leaves along the edge by which the face of c arrives.
+ *
+ *                 o
+ *            swing(c)\   face of c        the edge from prev(c) to c runs back along swing(c), so
+ *                     \                   the mate of a corner (the one whose half-edge is the
+ *          ------------ v -----> c        twin) is the turn of the next corner of its face
+ *
+ * Once the corners are sorted by vertex, one vertex after another is checked, in a few words that
+ * lie together in memory: which of its edges have two faces, that no edge has three faces or two in
+ * the same direction, and that the turns around the vertex reach all its corners. */
+#ifndef HE_BUILD_SWING_H
+#define HE_BUILD_SWING_H
+
+#include "build/corner.h"
+
+typedef struct he_swings {
+    uint32_t *swing; /* the next corner around the vertex of each corner; HE_NONE at a boundary */
+    uint32_t *first; /* first corner of each vertex, HE_NONE if it has none */
+    uint32_t *spare; /* a word for each corner, memory that the caller may use for anything */
+    size_t edges;
+} he_swings;
+
+/* Finds the next corner around the vertex of each corner. The caller owns the arrays on success. If
+ * the soup has defects, they are added to `report` and counted in *total, and `out` is as it was.
+ * If some faces are not valid, only these faces are reported: rest.h checks the others.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_soup_swing(const he_corners *corners, he_swings *out, he_report *report,
+                                     uint64_t *total, he_error *err);
+void he_swings_clear(he_swings *swings);
+
+#endif

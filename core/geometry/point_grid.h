@@ -1,0 +1,51 @@
+/* point_grid.h - a grid of points: finds the point of lowest number within a tolerance of another.
+ *
+ *     for each point p, in the order of their numbers:
+ *         he_point_grid_find    finds the lowest kept point within the tolerance of p, or HE_NONE
+ *         he_point_grid_keep    keeps p under its own number, if no kept point was found
+ *
+ * Kept points are in a hash table of cells of 4 tolerances. Points within the tolerance of p are in
+ * the cell of p or, if p is near a side of its cell, in the neighbour there: 8 cells at most (27
+ * very far from 0), 3.4 on average. A cell holds few points, since kept points are farther apart
+ * than the tolerance. So the total time is linear in the points, wherever they lie and whatever
+ * their number. */
+#ifndef HE_GEOMETRY_POINT_GRID_H
+#define HE_GEOMETRY_POINT_GRID_H
+
+#include "base/mem.h"
+#include "mesh/mesh.h"
+
+typedef struct he_point_grid_slot {
+    uint32_t hash, number; /* hash and number + 1 of a kept point; 0 in a free slot */
+} he_point_grid_slot;
+
+/* A grid of kept points. {0} is empty. */
+typedef struct he_point_grid {
+    he_point_grid_slot *slots;
+    size_t mask;
+    uint64_t seed;
+    double tolerance;
+    const he_vec3 *points; /* positions of all points by their numbers; borrowed */
+} he_point_grid;
+
+/* The points that are compared, and how near to each other two of them must be. */
+typedef struct he_point_grid_points {
+    const he_vec3 *at; /* positions of the points; borrowed while the grid is used */
+    double tolerance;
+    /* A random number. It and the address of the table keep a file from choosing points that all
+     * fall into one slot. */
+    uint64_t seed;
+} he_point_grid_points;
+
+/* Makes an empty grid with room for `most` kept points. `progress` may be NULL.
+ * Returns HE_NO_MEMORY if memory is out.
+ * Returns HE_CANCELLED if the work was cancelled. */
+HE_NODISCARD he_status he_point_grid_make(he_point_grid *out, const he_point_grid_points *points,
+                                          size_t most, he_progress *progress, he_error *err);
+void he_point_grid_clear(he_point_grid *grid);
+/* Finds the kept point of lowest number within the tolerance of p; HE_NONE if there is none. Sets
+ * *home, which the caller passes on to he_point_grid_keep if it keeps p. */
+uint32_t he_point_grid_find(const he_point_grid *grid, he_vec3 p, uint32_t *home);
+void he_point_grid_keep(he_point_grid *grid, uint32_t home, uint32_t number);
+
+#endif

@@ -1,0 +1,183 @@
+/* attribute_transfer.c - the functions of write.h that set the attributes of a row from those of
+ * other rows. */
+#include "mesh/marks.h"
+#include "mesh/write.h"
+
+#include <math.h>
+
+bool he_has_columns(const he_mesh *m, he_kind kind)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        if (m->c.columns[i] != NULL && m->c.columns[i]->domain == kind) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Writes the weighted sum of n rows of a column, or their mean without weights, in the column's own
+ * type. Integers and booleans are rounded to nearest; the sum stays within the type's range despite
+ * rounding errors. */
+static void blend(const he_column *column, const uint32_t *rows, const double *weights, size_t n,
+                  unsigned char *out)
+{
+    size_t size = he_type_bytes(column->type);
+    for (uint32_t k = 0; k < column->components; k++) {
+        double sum = 0;
+        for (size_t i = 0; i < n; i++) {
+            const unsigned char *from = he_column_value(column, rows[i]) + k * size;
+            double value = 0;
+            switch (column->type) {
+            case HE_BOOL:
+                value = *from;
+                break;
+            case HE_INT32: {
+                int32_t number;
+                memcpy(&number, from, sizeof number);
+                value = number;
+                break;
+            }
+            case HE_UINT32: {
+                uint32_t number;
+                memcpy(&number, from, sizeof number);
+                value = number;
+                break;
+            }
+            case HE_FLOAT: {
+                float number;
+                memcpy(&number, from, sizeof number);
+                value = (double)number;
+                break;
+            }
+            case HE_DOUBLE:
+                memcpy(&value, from, sizeof value);
+                break;
+            case HE_TYPE_COUNT:
+                break;
+            }
+            sum += (weights == NULL ? 1.0 / (double)n : weights[i]) * value;
+        }
+        unsigned char *to = out + k * size;
+        switch (column->type) {
+        case HE_BOOL:
+            *to = sum >= 0.5;
+            break;
+        case HE_INT32: {
+            sum = fmax(INT32_MIN, fmin(sum, INT32_MAX));
+            int32_t number = (int32_t)(sum < 0 ? sum - 0.5 : sum + 0.5);
+            memcpy(to, &number, sizeof number);
+            break;
+        }
+        case HE_UINT32: {
+            uint32_t number = (uint32_t)(fmin(sum, UINT32_MAX) + 0.5);
+            memcpy(to, &number, sizeof number);
+            break;
+        }
+        case HE_FLOAT: {
+            float number = (float)sum;
+            memcpy(to, &number, sizeof number);
+            break;
+        }
+        case HE_DOUBLE:
+            memcpy(to, &sum, sizeof sum);
+            break;
+        case HE_TYPE_COUNT:
+            break;
+        }
+    }
+}
+
+/* The rows that a value is made of. */
+typedef struct mixture {
+    const uint32_t *rows;
+    const double *weights; /* NULL: all rows have one weight */
+    size_t n;
+    uint32_t nearest; /* the row that is copied where values are not interpolated */
+} mixture;
+
+/* Sets row `to` of every column in a domain to the value that the column's rule makes of others. */
+static void carry(he_mesh *m, he_kind kind, uint32_t to, const mixture *of)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column == NULL || column->domain != kind) {
+            continue;
+        }
+        unsigned char value[HE_COLUMN_ROW_BYTES];
+        bool spreads = kind != HE_VERTEX || !he_is_mark(column, "locked");
+        switch (spreads ? column->rule : HE_DEFAULT) {
+        case HE_COPY:
+            memcpy(value, he_column_value(column, of->nearest), column->row_bytes);
+            break;
+        case HE_INTERPOLATE:
+            blend(column, of->rows, of->weights, of->n, value);
+            break;
+        case HE_DEFAULT:
+        case HE_RULE_COUNT:
+            memcpy(value, column->fallback, column->row_bytes);
+            break;
+        }
+        he_set_attribute(m, i, to, value);
+    }
+}
+
+void he_values_between(he_mesh *m, he_kind kind, uint32_t to, uint32_t a, uint32_t b, double t)
+{
+    const uint32_t rows[2] = {a, b};
+    const double weights[2] = {1 - t, t};
+    carry(m, kind, to, &(mixture){rows, weights, 2, t < 1 ? a : b});
+}
+
+void he_values_copy(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == kind) {
+            unsigned char value[HE_COLUMN_ROW_BYTES];
+            const unsigned char *row =
+                column->rule == HE_DEFAULT ? column->fallback : he_column_value(column, from);
+            memcpy(value, row, column->row_bytes);
+            he_set_attribute(m, i, to, value);
+        }
+    }
+}
+
+void he_attributes_mean(he_mesh *m, he_kind kind, uint32_t to, const uint32_t *from, size_t n)
+{
+    if (n > 0) {
+        carry(m, kind, to, &(mixture){from, NULL, n, from[0]});
+    }
+}
+
+void he_values_mix(he_mesh *m, he_kind kind, uint32_t row, uint32_t other, double t)
+{
+    const uint32_t rows[2] = {other, row};
+    const double weights[2] = {1 - t, t};
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == kind && column->rule == HE_INTERPOLATE) {
+            unsigned char value[HE_COLUMN_ROW_BYTES];
+            blend(column, rows, weights, 2, value);
+            he_set_attribute(m, i, row, value);
+        }
+    }
+}
+
+void he_values_merge(he_mesh *m, he_kind kind, uint32_t into, uint32_t gone, double t)
+{
+    if (!he_is_marked(he_mark_find(m, kind, "locked"), into)) {
+        he_values_mix(m, kind, into, gone, t);
+    }
+}
+
+void he_values_move(he_mesh *m, he_kind kind, uint32_t to, uint32_t from)
+{
+    for (size_t i = 0; i < m->c.column_count; i++) {
+        const he_column *column = m->c.columns[i];
+        if (column != NULL && column->domain == kind) {
+            unsigned char value[HE_COLUMN_ROW_BYTES];
+            memcpy(value, he_column_value(column, from), column->row_bytes);
+            he_set_attribute(m, i, to, value);
+        }
+    }
+}

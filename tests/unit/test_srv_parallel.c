@@ -1,0 +1,391 @@
+/* Parallel work: each part is run exactly once, on whichever thread, and the result does not depend
+ * on the threads. */
+#include "tests/unit/fixture.h"
+
+#include "algo/subdivide.h"
+#include "base/parallel.h"
+#include "geometry/geometry.h"
+#include "mesh/walk.h"
+#include "system/parallel.h"
+#include "tests/failing.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+static const size_t hand_counts[] = {0, 1, 7};
+enum { HAND_COUNTS = 3 };
+
+/* --- parts --- */
+
+enum { PARTS = 500, OWNERS = 4, ROUNDS = 20 };
+
+typedef struct tally {
+    _Atomic uint32_t runs[PARTS];
+    const he_parallel *parallel; /* if not NULL, each part divides its work into parts again */
+    uint32_t failing;            /* this part and all later ones fail */
+} tally;
+
+static he_status count_part(void *context, uint32_t part, he_error *err)
+{
+    tally *t = context;
+    atomic_fetch_add(&t->runs[part], 1);
+    return part < t->failing ? HE_OK
+                             : he_fail_plain(err, HE_NO_MEMORY, "part %u of the work", part);
+}
+
+static he_status cut_again(void *context, uint32_t part, he_error *err)
+{
+    tally *t = context;
+    (void)part;
+    return t->parallel->run(t->parallel->self, PARTS, count_part, t, NULL, err);
+}
+
+static bool ran_each(const tally *t, uint32_t times)
+{
+    for (size_t i = 0; i < PARTS; i++) {
+        if (atomic_load(&t->runs[i]) != times) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void *own_work(void *context)
+{
+    const he_parallel *parallel = context;
+    for (int round = 0; round < ROUNDS; round++) {
+        tally t = {.parallel = parallel, .failing = PARTS};
+        if (parallel->run(parallel->self, 8, cut_again, &t, NULL, NULL) != HE_OK ||
+            !ran_each(&t, 8)) {
+            return context;
+        }
+    }
+    return NULL;
+}
+
+static void each_part_is_run_once_whoever_else_has_work(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HAND_COUNTS; i++) {
+        pthread_t owners[OWNERS];
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_parallel *parallel = st_parallel_host(hands);
+        assert_int_equal(parallel->threads, hand_counts[i] + 1);
+        for (size_t k = 0; k < OWNERS; k++) {
+            assert_int_equal(
+                pthread_create(&owners[k], NULL, own_work, (void *)(uintptr_t)parallel), 0);
+        }
+        for (size_t k = 0; k < OWNERS; k++) {
+            void *failed;
+            pthread_join(owners[k], &failed);
+            assert_null(failed);
+        }
+        st_parallel_free(hands);
+    }
+}
+
+static void of_parts_that_fail_the_first_one_is_told(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HAND_COUNTS; i++) {
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_parallel *parallel = st_parallel_host(hands);
+        for (uint32_t unlucky = 0; unlucky < PARTS; unlucky += 7) {
+            tally t = {.failing = unlucky};
+            he_error err = {0};
+            char text[64];
+            assert_int_equal(parallel->run(parallel->self, PARTS, count_part, &t, NULL, &err),
+                             HE_NO_MEMORY);
+            snprintf(text, sizeof text, "part %u of the work", unlucky);
+            assert_string_equal(err.text, text);
+            assert_int_equal(atomic_load(&t.runs[unlucky]), 1);
+            uint32_t runs = 0;
+            for (uint32_t part = unlucky; part < PARTS; part++) {
+                runs += atomic_load(&t.runs[part]);
+            }
+            assert_true(runs <= hand_counts[i] + 1);
+        }
+        st_parallel_free(hands);
+    }
+}
+
+/* --- cancelling --- */
+
+typedef struct listener {
+    pthread_t owner;
+    long told, give_up_at;
+    bool elsewhere;
+} listener;
+
+static bool hear(void *context, const char *phase, double done)
+{
+    listener *l = context;
+    (void)phase, (void)done;
+    l->elsewhere |= !pthread_equal(l->owner, pthread_self());
+    return ++l->told != l->give_up_at;
+}
+
+static void work_is_given_up_between_parts_on_its_own_thread(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < HAND_COUNTS; i++) {
+        st_parallel *hands = st_parallel_new(hand_counts[i]);
+        const he_parallel *parallel = st_parallel_host(hands);
+        tally t = {.failing = PARTS};
+        listener l = {.owner = pthread_self(), .give_up_at = 1};
+        he_progress progress;
+        he_error err = {0};
+        he_progress_init(&progress, hear, &l);
+        assert_int_equal(parallel->run(parallel->self, PARTS, count_part, &t, &progress, &err),
+                         HE_CANCELLED);
+        assert_int_equal(err.status, HE_CANCELLED);
+        assert_false(l.elsewhere);
+        st_parallel_free(hands);
+    }
+}
+
+/* --- what core computes in parallel --- */
+
+/* The soups are large enough for many parts; if `shuffled` is set, their vertices and faces are in
+ * random order. */
+enum { SIDE = 220 };
+
+static uint32_t scatter(uint32_t i, uint32_t count, bool shuffled)
+{
+    /* The prime 7919 divides neither of the counts below, so each number is reached once. */
+    return shuffled ? (uint32_t)((uint64_t)i * 7919u % count) : i;
+}
+
+static void add_torus(he_soup *soup, bool shuffled)
+{
+    const uint32_t count = SIDE * SIDE;
+    for (uint32_t v = 0; v < count; v++) {
+        assert_int_equal(he_soup_add_vertex(soup, (he_vec3){v, v % SIDE, v % 7}, NULL), HE_OK);
+    }
+    for (uint32_t n = 0; n < 2 * count; n++) {
+        uint32_t f = scatter(n, 2 * count, shuffled), q = f / 2, i = q / SIDE, j = q % SIDE;
+        uint32_t down = (i + 1) % SIDE * SIDE, right = (j + 1) % SIDE;
+        const uint32_t low[3] = {q, down + j, down + right},
+                       high[3] = {q, down + right, i * SIDE + right};
+        uint32_t corners[3];
+        for (size_t k = 0; k < 3; k++) {
+            corners[k] = scatter(f % 2 == 0 ? low[k] : high[k], count, shuffled);
+        }
+        assert_int_equal(he_soup_add_face(soup, corners, 3, NULL), HE_OK);
+    }
+}
+
+/* Adds quads and pentagons with holes between them, and a fan of triangles around one vertex. */
+static void add_mixed(he_soup *soup)
+{
+    for (uint32_t v = 0; v < (SIDE + 1) * (SIDE + 1) + 2 * SIDE * SIDE; v++) {
+        assert_int_equal(he_soup_add_vertex(soup, (he_vec3){v % 31, v % 17, v}, NULL), HE_OK);
+    }
+    const uint32_t row = SIDE + 1, hub = row * row;
+    for (uint32_t q = 0; q < SIDE * SIDE; q++) {
+        uint32_t a = q / SIDE * row + q % SIDE;
+        const uint32_t corners[4] = {a, a + 1, a + row + 1, a + row};
+        if (q % 11 != 3) {
+            assert_int_equal(he_soup_add_face(soup, corners, q % 11 == 5 ? 3 : 4, NULL), HE_OK);
+        }
+    }
+    for (uint32_t i = 1; i < SIDE * SIDE; i++) {
+        const uint32_t corners[3] = {hub, hub + i, hub + i + 1};
+        assert_int_equal(he_soup_add_face(soup, corners, 3, NULL), HE_OK);
+    }
+}
+
+static void make_soup(int which, he_soup *soup)
+{
+    he_soup_init(soup, NULL);
+    if (which < 2) {
+        add_torus(soup, which == 1);
+    } else {
+        add_mixed(soup);
+    }
+}
+
+static he_mesh *build_with(he_soup *soup, const he_parallel *parallel)
+{
+    he_mesh *mesh = NULL;
+    he_progress progress;
+    he_progress_init(&progress, NULL, NULL);
+    progress.parallel = parallel;
+    soup->limits.progress = &progress;
+    assert_int_equal(he_build(soup, 0, &mesh, NULL, NULL), HE_OK);
+    soup->limits.progress = NULL;
+    return mesh;
+}
+
+static void a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        he_soup soup;
+        make_soup(which, &soup);
+        he_mesh *alone = build_with(&soup, NULL);
+        for (size_t i = 0; i < HAND_COUNTS; i++) {
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
+            he_mesh *mesh = build_with(&soup, st_parallel_host(hands));
+            assert_true(he_mesh_equal(alone, mesh));
+            he_mesh_free(mesh);
+            st_parallel_free(hands);
+        }
+        he_mesh_free(alone);
+        he_soup_clear(&soup);
+    }
+}
+
+/* Returns the normals of all faces, then of all corners; the caller must free them. */
+static he_vec3 *normals_of(const he_mesh *mesh, he_progress *progress)
+{
+    size_t faces = he_mesh_issued(mesh, HE_FACE),
+           corners = 2 * (size_t)he_mesh_issued(mesh, HE_EDGE);
+    he_vec3 *normals = malloc((faces + corners) * sizeof *normals);
+    assert_non_null(normals);
+    assert_int_equal(he_face_normals(mesh, progress, normals, NULL), HE_OK);
+    assert_int_equal(he_corner_normals(mesh, 0.5, progress, normals + faces, NULL), HE_OK);
+    return normals;
+}
+
+enum { SCHEMES = HE_SQRT3 - HE_LOOP + 1 };
+
+/* The result of a subdivision; the scheme `loop` refuses faces other than triangles, and
+ * names one. */
+typedef struct subdivided {
+    he_mesh *mesh;
+    he_status status;
+    he_error error;
+} subdivided;
+
+static subdivided subdivide(const he_mesh *mesh, int scheme, he_progress *progress)
+{
+    subdivided s = {.mesh = NULL};
+    assert_int_equal(he_mesh_copy(mesh, &s.mesh, NULL), HE_OK);
+    he_mesh_set_progress(s.mesh, progress);
+    s.status = he_subdivide(s.mesh, (he_scheme)(HE_LOOP + scheme), 1, NULL, &s.error);
+    he_mesh_set_progress(s.mesh, NULL);
+    return s;
+}
+
+static void expect_same_subdivision(const subdivided *alone, const subdivided *helped)
+{
+    assert_int_equal(alone->status, helped->status);
+    assert_int_equal(alone->error.id, helped->error.id);
+    assert_string_equal(alone->error.text, helped->error.text);
+    assert_true(he_mesh_equal(alone->mesh, helped->mesh));
+}
+
+static void normals_and_subdivision_are_the_same_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 3; which++) {
+        he_soup soup;
+        make_soup(which, &soup);
+        he_mesh *mesh = build_with(&soup, NULL);
+        size_t count = he_mesh_issued(mesh, HE_FACE) + 2 * (size_t)he_mesh_issued(mesh, HE_EDGE);
+        he_vec3 *normals = normals_of(mesh, NULL);
+        subdivided alone[SCHEMES];
+        for (int scheme = 0; scheme < SCHEMES; scheme++) {
+            alone[scheme] = subdivide(mesh, scheme, NULL);
+        }
+        for (size_t i = 0; i < HAND_COUNTS; i++) {
+            he_progress progress;
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
+            he_progress_init(&progress, NULL, NULL);
+            progress.parallel = st_parallel_host(hands);
+            he_vec3 *helped = normals_of(mesh, &progress);
+            assert_memory_equal(normals, helped, count * sizeof *helped);
+            free(helped);
+            for (int scheme = 0; scheme < SCHEMES; scheme++) {
+                subdivided by_hands = subdivide(mesh, scheme, &progress);
+                expect_same_subdivision(&alone[scheme], &by_hands);
+                he_mesh_free(by_hands.mesh);
+            }
+            st_parallel_free(hands);
+        }
+        for (int scheme = 0; scheme < SCHEMES; scheme++) {
+            he_mesh_free(alone[scheme].mesh);
+        }
+        free(normals);
+        he_mesh_free(mesh);
+        he_soup_clear(&soup);
+    }
+}
+
+static void defects_are_the_same_on_1_2_and_8_threads(void **state)
+{
+    (void)state;
+    /* The additional faces make a third face on two edges, a duplicate, and a second closed fan at
+     * a vertex. */
+    static const uint32_t extra[3][3] = {{0, 1, 5000}, {0, SIDE, SIDE + 1}, {9, 10, 11}};
+    for (int which = 0; which < 3; which++) {
+        static he_report alone, report;
+        he_error first = {0}, err = {0};
+        he_soup soup;
+        he_mesh *mesh = NULL;
+        make_soup(0, &soup);
+        assert_int_equal(he_soup_add_face(&soup, extra[which], 3, NULL), HE_OK);
+        he_status status = he_build(&soup, 0, &mesh, &alone, &first);
+        assert_true(status != HE_OK);
+        for (size_t i = 0; i < HAND_COUNTS; i++) {
+            st_parallel *hands = st_parallel_new(hand_counts[i]);
+            he_progress progress;
+            he_progress_init(&progress, NULL, NULL);
+            progress.parallel = st_parallel_host(hands);
+            soup.limits.progress = &progress;
+            assert_int_equal(he_build(&soup, 0, &mesh, &report, &err), status);
+            assert_int_equal(report.total, alone.total);
+            assert_memory_equal(
+                report.defects, alone.defects,
+                (report.total < HE_REPORT_DEFECTS ? report.total : HE_REPORT_DEFECTS) *
+                    sizeof *report.defects);
+            assert_string_equal(err.text, first.text);
+            st_parallel_free(hands);
+        }
+        soup.limits.progress = NULL;
+        he_soup_clear(&soup);
+    }
+}
+
+/* --- memory --- */
+
+static void memory_that_runs_out_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    he_soup soup;
+    make_soup(2, &soup);
+    st_parallel *hands = st_parallel_new(1);
+    he_progress progress;
+    he_progress_init(&progress, NULL, NULL);
+    progress.parallel = st_parallel_host(hands);
+    soup.limits.progress = &progress;
+    failing f = {0};
+    while (failing_next(&f)) {
+        he_mesh *mesh = NULL;
+        he_error err = {0};
+        he_status status = he_build(&soup, 0, &mesh, NULL, &err);
+        assert_true(status == HE_OK || (status == HE_NO_MEMORY && mesh == NULL));
+        he_mesh_free(mesh);
+        failing_status(&f, status);
+        assert_int_equal(failing_blocks(), 0);
+    }
+    assert_true(f.n > 10);
+    st_parallel_free(hands);
+    soup.limits.progress = NULL;
+    he_soup_clear(&soup);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_part_is_run_once_whoever_else_has_work),
+        cmocka_unit_test(of_parts_that_fail_the_first_one_is_told),
+        cmocka_unit_test(work_is_given_up_between_parts_on_its_own_thread),
+        cmocka_unit_test(a_mesh_is_the_same_in_every_bit_on_1_2_and_8_threads),
+        cmocka_unit_test(normals_and_subdivision_are_the_same_on_1_2_and_8_threads),
+        cmocka_unit_test(defects_are_the_same_on_1_2_and_8_threads),
+        cmocka_unit_test(memory_that_runs_out_leaves_nothing_behind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
