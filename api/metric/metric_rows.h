@@ -82,8 +82,8 @@
     X(JOB_TIME, "hedge_job_duration_seconds", HISTOGRAM, "", "How long jobs ran.")                 \
     /* the store */                                                                                \
     X(STORE_STATE, "hedge_store_state", GAUGE, "state",                                            \
-      "1 for the state of the store, 0 for the others: writable, full (the disk has no space), "   \
-      "failed (no change is taken until a restart).")                                              \
+      "1 for the state that the store is in, 0 for the other states: writable, full when the "     \
+      "disk has no space, failed when changes are refused until a restart.")                       \
     X(DISK_FULL, "hedge_store_disk_full_total", COUNTER, "", "How often the disk was found full.") \
     X(COMMIT_TIME, "hedge_store_commit_duration_seconds", HISTOGRAM, "",                           \
       "How long a group of changes took to be written and synced; its count is that of commits.")  \

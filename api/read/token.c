@@ -113,7 +113,7 @@ static bool check_target(api_exchange *x, const api_in *in, const char *target)
         return false;
     }
     return api_route_find(x->service->routes, "GET", &path, &variables, allow) != NULL ||
-           api_in_fail(in, API_BAD_PATH, "the server does not answer GET \"%.150s\"", raw);
+           api_in_fail(in, API_BAD_PATH, "no route answers GET \"%.150s\"", raw);
 }
 
 void api_tickets_post(api_exchange *x)
