@@ -64,9 +64,15 @@ function machine() {
     return `${os.cpus().length} x ${cpu.model}, ${system}`;
 }
 
-function commit() {
-    const git = (...words) => execFileSync('git', words, { encoding: 'utf8' }).trim();
-    return git('rev-parse', '--short=10', 'HEAD') + (git('status', '--porcelain', '-uno') ? '+' : '');
+// Returns what was measured: the commit, or the version if git is not there or knows nothing of it.
+function state() {
+    const git = (...words) => execFileSync('git', words, { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] }).trim();
+    try {
+        return `commit ${git('rev-parse', '--short=10', 'HEAD')}${git('status', '--porcelain', '-uno') ? '+' : ''}`;
+    } catch {
+        const [, version] = /SRV_VERSION "(.*)"/.exec(readFileSync(here('../../server/version.h'), 'utf8'));
+        return `version ${version}`;
+    }
 }
 
 // Returns the text of each section that the page has, by name.
@@ -88,7 +94,7 @@ function writePage(texts) {
 function section(name, command, printed) {
     const { about, picture } = sections[name];
     const day = new Date().toISOString().slice(0, 10);
-    const lines = [`## ${name}`, '', about, '', `${day}, ${machine()}, commit ${commit()}, \`${command}\`:`];
+    const lines = [`## ${name}`, '', about, '', `${day}, ${machine()}, ${state()}, \`${command}\`:`];
     lines.push('', '```', printed.trim().replaceAll(/^DONE .*\n/gm, ''), '```');
     const made = picture && `build/${picture[0]}`;
     if (made && existsSync(made)) {
